@@ -61,7 +61,7 @@ EXTRA = {
 )
 def main(arguments: argparse.Namespace) -> int:
     """Serve until interrupted, or replay; return the exit code."""
-    from studies.interactive.pivot import presets
+    from studies.interactive import presets
 
     if arguments.case is not None:
         if arguments.preset is not None:
@@ -135,23 +135,21 @@ def calibrate(arguments: argparse.Namespace) -> int:
     not suffice.
     """
     _require_extra("calibrate")
-    from studies.interactive.tracking.views import calibrated, views
-    from studies.interactive.web.sources import VideoSource
+    from studies.interactive.tracking.films import Video
+    from studies.interactive.tracking.sheet import calibrated, views
 
     place = int(arguments.source) if arguments.source.isdecimal() else Path(arguments.source)
     found, size = [], (0, 0)
-    for corners, seen in views(VideoSource(place).once(), arguments.views):
+    for corners, seen in views(Video(place).once(), arguments.views):
         found.append(corners)
         size = seen
         print(f"\rview {len(found)} of {arguments.views}", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
-    made = calibrated(found, size)
-    made.camera.write(arguments.out)
+    camera, spread, rms = calibrated(found, size)
+    camera.write(arguments.out)
     for name, unit in (("fx", "px"), ("fy", "px"), ("cx", "px"), ("cy", "px"), ("k1", ""), ("k2", "")):
-        print(f"{name} = {getattr(made.camera, name):.4g} ± {getattr(made.sd, name):.2g} {unit}".rstrip())
-    print(
-        f"{arguments.out}: {len(found)} views of {size[0]} x {size[1]} px, corners within {made.rms:.2f} px"
-    )
+        print(f"{name} = {getattr(camera, name):.4g} ± {getattr(spread, name):.2g} {unit}".rstrip())
+    print(f"{arguments.out}: {len(found)} views of {size[0]} x {size[1]} px, corners within {rms:.2f} px")
     return 0
 
 
@@ -198,19 +196,18 @@ def _require_extra(name: str) -> None:
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
     """Return what makes the pictures, and how the page shall call it."""
-    from studies.interactive.tracking.painter import demo_film
-    from studies.interactive.web.sources import FilmSource, VideoSource
+    from studies.interactive.tracking.films import Video, demo_film
 
     if arguments.film is not None:
         if arguments.camera != "browser":
             raise BadInput(f"--camera: got {arguments.camera} beside --film, expected one of them")
-        made = FilmSource(demo_film()) if arguments.film == "demo" else VideoSource(Path(arguments.film))
+        made = demo_film() if arguments.film == "demo" else Video(Path(arguments.film))
         return made, "film"
     if arguments.camera in ("browser", "none"):
         return None, arguments.camera
     if not arguments.camera.isdecimal():
         raise BadInput(f"--camera: got {arguments.camera}, expected browser, none or a number")
-    return VideoSource(int(arguments.camera)), "server"
+    return Video(int(arguments.camera)), "server"
 
 
 def _stream(path: Path | None):  # type: ignore[no-untyped-def]
@@ -227,7 +224,7 @@ def _stream(path: Path | None):  # type: ignore[no-untyped-def]
 
 def _replay(path: Path) -> int:
     """Replay a session file; 0 where every state is the recorded one."""
-    from studies.interactive.pivot.recording import replay
+    from studies.interactive.recording import replay
 
     try:
         lines = path.read_text(encoding="utf-8").splitlines()

@@ -18,9 +18,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
-from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
-from studies.interactive.pivot.session import Session
-from studies.interactive.tracking.painter import rotation
+from studies.interactive.presets import PRESETS, STEPS_A_FRAME
+from studies.interactive.session import Session
 from studies.record import style
 
 #: The paper's pictures a second.
@@ -50,13 +49,12 @@ def _missing() -> str:
 
 def _browsed() -> Answer:
     """Return snapshots, and the frames as they were shown."""
-    from studies.interactive.tracking.painter import demo_film
+    from studies.interactive.tracking.films import demo_film
     from studies.interactive.web.browser import Browser
     from studies.interactive.web.server import Server, Settings, warm_up
-    from studies.interactive.web.sources import FilmSource
 
     warm_up()  # no picture waits for a compiler
-    source = FilmSource(demo_film())
+    source = demo_film()
     shots = source.shots()
     for _ in range(WATCHED):  # draw the film before it is timed
         next(shots)
@@ -96,6 +94,8 @@ def _snapshots(browser: Any) -> Iterator[dict[str, Any]]:
 
 def _taken(browser: Any, label: str) -> dict[str, Any]:
     """Return what the page shows now."""
+    from studies.interactive.tracking.films import rotation
+
     state = browser.ask("({ ...studio.state, canvas: document.getElementById('stage').toDataURL() })")
     return {
         "label": label,
@@ -133,6 +133,8 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
         call()
         took = 1e3 * (time.perf_counter() - begin)
         return {"preset": preset, "work": work, "repeat": repeat, "frame": frame, "time_ms": took}
+
+    from studies.interactive.tracking.films import rotation
 
     for repeat in range(REPEATS):
         session = Session(preset)

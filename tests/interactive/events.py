@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from studies.interactive.pivot.session import Session
+from studies.interactive.session import Session
 
 FRAME = 0.04
 

@@ -7,10 +7,10 @@ from functools import cache, lru_cache
 import numpy as np
 
 from spline_model.held import HeldPivot
-from studies.interactive.pivot.design import SIDE, Placing, build, turned
-from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Film, Finger, Marker, Optics, Painter
+from studies.interactive.design import SIDE, Placing, build, turned
+from studies.interactive.presets import PRESETS
+from studies.interactive.tracking.films import Film
+from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
 
@@ -109,7 +109,7 @@ def errors(events):
 
 def raw(picture, quads, gamma):
     """Corners as the detector gives them."""
-    return tracking.edges.Refined(corners=quads, share=np.ones((2, 4)), step=np.ones((2, 4)))
+    return quads, np.ones((2, 4))
 
 
 def counter(picture):

@@ -7,10 +7,9 @@ import sys
 import time
 from pathlib import Path
 
-from studies.interactive.tracking.painter import demo_film
+from studies.interactive.tracking.films import demo_film
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
-from studies.interactive.web.sources import FilmSource
 
 #: What the numbers stand at, from 1 on.
 PARTS = (
@@ -41,7 +40,7 @@ TYPE = """
 def main(folder: Path) -> None:
     """Write the pictures, as a laptop and a phone show the page."""
     warm_up()
-    source = FilmSource(demo_film())
+    source = demo_film()
     with Server(Settings(camera="none")) as hosted:
         with Browser(width=1366, height=768) as browser:
             _open(browser, hosted.address)

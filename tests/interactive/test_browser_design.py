@@ -8,7 +8,6 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import film
 from tests.interactive.pages import load
 from tests.interactive.test_browser_film import pixels
@@ -83,7 +82,7 @@ def test_load_is_set_and_seen(page):
 def test_scrubbing_shows_the_pictures():
     """Requirement: back in the last minute the picture of that moment is shown under the strips, of the same
     size, for less than 20 kB a picture; a film offers no list of cameras."""
-    made = FilmSource(film(frames=12, samples=2))
+    made = film(frames=12, samples=2)
     with Server(Settings(camera="film", source=made)) as hosted, Browser() as browser:
         load(browser, hosted)
         browser.wait("studio.ring.states.filter((s) => s.small).length > 12")

@@ -13,14 +13,13 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from PIL import Image
 
-from studies.interactive.pivot.design import Placing, build
-from studies.interactive.pivot.presets import PRESETS
+from studies.interactive.design import Placing, build
+from studies.interactive.presets import PRESETS
+from studies.interactive.tracking.films import encoded
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.tracking.planar import project
-from studies.interactive.tracking.tracker import encoded
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import both, film, true_corners, truth
 from tests.interactive.pages import BODY, BUSY, WATCH, load
 
@@ -88,7 +87,7 @@ def still():
     """Canvas, state and homography of a page that shows one picture of a film, and the frame's number."""
     number = 6
     optics, picture = Optics(), film().picture(6)
-    one = FilmSource(film(frames=1))
+    one = film(frames=1)
     one._kept[0] = encoded(picture, 95)
     with Server(Settings(camera="film", source=one)) as hosted, Browser() as browser:
         load(browser, hosted)

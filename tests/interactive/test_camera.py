@@ -12,8 +12,8 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.__main__ import main
 from studies.errors import BadInput
-from studies.interactive.pivot.design import PRINTED
-from studies.interactive.pivot.session import Session
+from studies.interactive.design import PRINTED
+from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera
@@ -63,7 +63,7 @@ CAMERAS = [
 def test_camera_gates_have_teeth(monkeypatch):
     """Requirement: with corners as the detector gives them both fail."""
     assert gates.teeth("camera_angle") == gates.teeth("camera_shift") == {"refined": False}
-    monkeypatch.setattr(tracking.edges, "refine", raw)
+    monkeypatch.setattr(tracking.squares, "refine", raw)
     monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
     angles, shifts, _ = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
     for quantity, values in (("angle", angles), ("shift", shifts)):

@@ -6,9 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from studies.interactive.pivot.input import Clock
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
+from studies.interactive.input import Clock
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
 from tests.interactive.events import FRAME, codes, session, turned
 
 

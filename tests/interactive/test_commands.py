@@ -157,7 +157,7 @@ def test_sheet_is_read_in_size():
     """Requirement: both markers are read from the sheet as it is printed, 60 mm wide, upright and as far
     apart as the session takes them to be."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
-    from studies.interactive.pivot.session import Session
+    from studies.interactive.session import Session
     from studies.interactive.tracking.sheet import page
     from studies.interactive.tracking.tracker import Tracker
 

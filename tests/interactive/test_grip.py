@@ -7,9 +7,9 @@ import pytest
 
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
-from studies.interactive.pivot.design import SLIDE_STIFFNESS
-from studies.interactive.pivot.presets import PRESETS, as_case, values_of
-from studies.interactive.pivot.session import Session
+from studies.interactive.design import SLIDE_STIFFNESS
+from studies.interactive.presets import PRESETS, as_case, values_of
+from studies.interactive.session import Session
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, turned
 from tests.table_one import SIX

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.pivot.design import inverse
-from studies.interactive.pivot.presets import PARAMETERS, PRESETS
-from studies.interactive.pivot.session import ACTIONS, Session
+from studies.interactive.design import inverse
+from studies.interactive.presets import PARAMETERS, PRESETS
+from studies.interactive.session import EVENTS, Session
 from tests.interactive.events import FRAME, codes, seen, session, turned
 
 
@@ -179,10 +179,11 @@ def test_wrong_print_size_shows_off_the_path(preset, size):
 
 
 def test_every_action_is_known_to_the_protocol():
-    """Requirement: the page can send every event that the session takes."""
+    """Requirement: the page can send every event that the session takes, and it has a way for each."""
     from studies.interactive.web.protocol import FIELDS
 
-    assert set(ACTIONS) <= set(FIELDS)
+    assert set(EVENTS) <= set(FIELDS)
+    assert all(callable(getattr(Session, f"_{name}")) for name in EVENTS)
 
 
 def test_holding_the_whole_pose_begins_where_the_body_is():

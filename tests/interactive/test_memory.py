@@ -3,6 +3,7 @@
 import json
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,6 @@ from websockets.sync.client import connect
 from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource
 from tests.interactive.films import film
 
 STATM = Path("/proc/self/statm")
@@ -37,8 +37,7 @@ def test_ten_minutes_of_film_do_not_grow(monkeypatch):
     and leave no socket open."""
     monkeypatch.setattr(protocol, "RATE", 1e9)
     monkeypatch.setattr(protocol, "BURST", 1e9)
-    source = FilmSource(film(Optics(width=480, height=360, focal=450.0), frames=40, samples=3))
-    source.rate = 1e6
+    source = replace(film(Optics(width=480, height=360, focal=450.0), frames=40, samples=3), rate=1e6)
     with Server(Settings(camera="film", source=source)) as hosted:
         port, token = hosted.port, hosted.token
         address, origin = f"ws://127.0.0.1:{port}/ws", f"http://127.0.0.1:{port}"

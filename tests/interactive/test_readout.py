@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.pivot.view import fixed, quantity, scales
+from studies.interactive.presets import PRESETS
+from studies.interactive.view import fixed, quantity, scales
 from tests.interactive.events import seen, session, turned
 
 

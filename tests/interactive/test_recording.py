@@ -10,10 +10,10 @@ import pytest
 from spline_model.modes import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.design import build
-from studies.interactive.pivot.recording import Recorder, line, mark, replay
-from studies.interactive.pivot.session import Session
+from studies.interactive import presets
+from studies.interactive.design import build
+from studies.interactive.recording import Recorder, mark, replay
+from studies.interactive.session import Session
 from studies.record.source import ROOT
 
 
@@ -55,6 +55,17 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     assert all(good for _, good in replay(lines))
     with pytest.raises(BadInput, match="preset: got 'own', expected its case file beside the command"):
         presets.preset(presets.OWN)
+
+
+def test_a_recording_begins_at_rest():
+    """Requirement: a session that is recorded begins anew, held at rest, whatever it did before."""
+    session = Session()
+    session.feed({"do": "pose", "pose": [0.0, 0.0, 0.3], "t": 0.0})
+    session.feed({"do": "release", "t": 0.1})
+    lines = Recorder(session).lines
+    assert not session.mechanics.moving
+    assert session.mechanics.snapshot.pose[2] == 0.0
+    assert all(good for _, good in replay(lines))
 
 
 def test_a_changed_event_is_noticed():
@@ -105,4 +116,4 @@ def test_a_recording_is_bounded():
         recorder.write({"do": "tick", "t": 0.0}, state)
     assert recorder.full
     assert sum(map(len, recorder.lines)) < 5200
-    assert line({"do": "tick"}, state) == f'{{"do": "tick", "mark": "{mark(state)}"}}\n'
+    assert recorder.lines[1] == f'{{"do": "tick", "t": 0.0, "mark": "{mark(state)}"}}\n'

@@ -12,9 +12,9 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.recording import Recorder, mark, replay
-from studies.interactive.pivot.session import Session
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.recording import Recorder, mark, replay
+from studies.interactive.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.sockets import answer, opened, say

@@ -8,9 +8,9 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
+from studies.interactive.tracking.films import Video
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
-from studies.interactive.web.sources import FilmSource, VideoSource
 from tests.interactive.films import counter, film, truth
 from tests.interactive.latency import measured
 from tests.interactive.sockets import answer, closing, frame, opened, say
@@ -19,7 +19,7 @@ from tests.interactive.sockets import answer, closing, frame, opened, say
 def test_film_is_tracked_and_sent():
     """Requirement: a film's pictures come with the state that belongs to them; released, each is four
     steps."""
-    made = FilmSource(film(frames=12, samples=3))
+    made = film(frames=12, samples=3)
     with Server(Settings(camera="film", source=made)) as hosted, opened(hosted) as socket:
         for k in range(12):
             state, jpeg = frame(socket)
@@ -68,7 +68,7 @@ def test_film_file_is_played(tmp_path):
     for picture in film(frames=3):
         writer.write(picture)
     writer.release()
-    shots = [shot for shot, _ in zip(VideoSource(path).shots(), range(5), strict=False)]
+    shots = [shot for shot, _ in zip(Video(path).shots(), range(5), strict=False)]
     assert [shot.number for shot in shots] == [0, 1, 2, 3, 4]
     assert [counter(shot.picture) for shot in shots] == [0, 1, 2, 0, 1]
     assert shots[4].time == pytest.approx(4 / 25)

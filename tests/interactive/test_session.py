@@ -8,7 +8,7 @@ import pytest
 
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
-from studies.interactive.pivot.presets import PRESETS, STEPS_A_FRAME
+from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, total, turned
 from tests.table_one import SIX, TABLE_ONE

@@ -7,13 +7,13 @@ import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
-from studies.interactive.pivot.design import SIDE
-from studies.interactive.pivot.session import Session
+from studies.interactive.design import SIDE
+from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.edges import refine
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
-from studies.interactive.tracking.tracker import Detector, Tracker
+from studies.interactive.tracking.squares import refine
+from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive.films import (
     both,
@@ -73,7 +73,7 @@ def test_tracking_gates_have_teeth(name, monkeypatch):
         gates.teeth(f"tracking_{name}_angle") == gates.teeth(f"tracking_{name}_shift") == {"refined": False}
     )
 
-    monkeypatch.setattr(tracking.edges, "refine", raw)
+    monkeypatch.setattr(tracking.squares, "refine", raw)
     monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
     made, camera = (fingers(0.010), None) if name == "finger" else FILMS[name]
     angles, shifts, _ = errors(watch(replace(made, frames=min(made.frames, 10)), camera))
@@ -86,8 +86,8 @@ def test_corners_have_no_bias():
     """Requirement: refined corners lie neither to a side nor in- or outwards of the true ones by 0.01 px."""
     optics, gaps, outward = Optics(gamma=1.0), [], []
     for k, picture in enumerate(film(optics, frames=12, samples=8)):
-        quads = Detector().find(picture).corners
-        refined = refine(picture, np.stack((quads[0], quads[1])), gamma=1.0).corners
+        quads = Tracker().markers(picture)
+        refined = refine(picture, np.stack((quads[0][0], quads[1][0])), gamma=1.0)[0]
         true = np.stack([true_corners(optics, marker) for marker in both(k)])
         gaps.append(refined - true)
         away = true - true.mean(axis=1, keepdims=True)
@@ -195,8 +195,8 @@ def test_wrong_camera_is_refused():
     wrong = Camera(fx=0.8 * optics.focal, fy=0.8 * optics.focal, cx=319.5, cy=239.5)
     made = film(frames=4)
     assert {names(event) for event in watch(made, wrong)} == {"refused"}
-    quads = Detector().find(made.picture(2)).corners
-    corners = refine(made.picture(2), np.stack((quads[0], quads[1]))).corners
+    quads = Tracker().markers(made.picture(2))
+    corners = refine(made.picture(2), np.stack((quads[0][0], quads[1][0])))[0]
     assert fit(corners, wrong).rms > 0.25
     assert fit(corners, optics.camera).rms < 0.05
 

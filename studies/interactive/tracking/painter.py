@@ -1,24 +1,22 @@
-"""Films of both markers with known truth: drawn exactly, blurred, unevenly lit and noisy as a camera's.
+"""Pictures of markers with known truth: drawn exactly, blurred, unevenly lit and noisy as a camera's.
 
 Every pixel is the mean of exact black and white over its area, so that the truth holds to a small part of a
 pixel.
 """
 
 import math
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates  # type: ignore[attr-defined]
+from scipy.spatial.transform import Rotation
 
-from spline_model.held import HeldPivot
-from studies.interactive.pivot.design import SIDE, Placing, build, turned
-from studies.interactive.pivot.presets import PRESETS
-from studies.interactive.tracking.planar import BITS, Camera, cells
+from studies.interactive.design import SIDE
+from studies.interactive.tracking.edges import Picture
+from studies.interactive.tracking.planar import BITS, Camera, cells, project
 from studies.kinds import Array
-
-Picture = NDArray[np.uint8]
 
 #: White margin around a marker in its cells.
 MARGIN = 1.5
@@ -63,10 +61,8 @@ class Optics:
     @property
     def plane(self) -> Array:
         """Homography (3, 3) from the plane [m] to the picture [px], the lens apart."""
-        ct, st, cr, sr = math.cos(self.tilt), math.sin(self.tilt), math.cos(self.roll), math.sin(self.roll)
-        roll = np.array([[cr, -sr, 0.0], [sr, cr, 0.0], [0.0, 0.0, 1.0]])
-        tilt = np.array([[1.0, 0.0, 0.0], [0.0, -ct, -st], [0.0, st, -ct]])  # picture y runs down
-        turn = roll @ tilt
+        # picture y runs down
+        turn = Rotation.from_euler("xz", (math.pi - self.tilt, self.roll)).as_matrix()
         place = np.array([0.0, 0.0, self.distance]) - turn @ np.array([*self.target, 0.0])
         return np.asarray(self.camera.matrix @ np.column_stack((turn[:, 0], turn[:, 1], place)))
 
@@ -114,8 +110,6 @@ class Painter:
 
     def draw(self, markers: list[Marker], number: int = 0, fingers: tuple[Finger, ...] = ()) -> Picture:
         """Return the picture (height, width) of the markers and fingers; `number` seeds the noise."""
-        import cv2
-
         optics = self.optics
         picture = self._ground.copy()
         for marker in markers:
@@ -150,77 +144,44 @@ class Painter:
     def _marker(self, picture: Array, marker: Marker) -> None:
         plane = self._plane_of(marker)
         half = 0.5 + MARGIN / BITS
-        outline = self._lens(_seen(plane, half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])))
-        area = self._box(outline)
-        if area is None:
-            return
-        rows, columns, x, y = area
-        u, v = np.moveaxis(self._back(plane, x, y), -1, 0)
-        inside = (np.abs(u) < half) & (np.abs(v) < half)
-        i = np.clip(np.floor((0.5 - v) * BITS), -1, BITS).astype(int)
-        j = np.clip(np.floor((u + 0.5) * BITS), -1, BITS).astype(int)
-        values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i + 1, j + 1]
-        self._mix(picture, rows, columns, values, inside)
+        where, places = self._area(plane, half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))
+        inside = np.abs(places).max(axis=-1) < half
+        j, i = np.moveaxis(np.floor((places * [1.0, -1.0] + 0.5) * BITS), -1, 0)
+        i, j = (np.clip(each, -1, BITS).astype(int) + 1 for each in (i, j))
+        values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i, j]
+        self._mix(picture, where, values, inside)
 
     def _finger(self, picture: Array, finger: Finger) -> None:
         angle = np.linspace(0, 2 * math.pi, 33)
         edge = np.array(finger.centre) + finger.radius * np.column_stack((np.cos(angle), np.sin(angle)))
-        area = self._box(self._lens(_seen(self.optics.plane, edge)))
-        if area is None:
-            return
-        rows, columns, x, y = area
-        gap = self._back(self.optics.plane, x, y) - finger.centre
+        where, places = self._area(self.optics.plane, edge)
+        gap = places - finger.centre
         inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
-        self._mix(picture, rows, columns, np.full(inside.shape, SKIN), inside)
+        self._mix(picture, where, np.full(inside.shape, SKIN), inside)
 
     def _mix(
-        self, picture: Array, rows: slice, columns: slice, values: Array, inside: NDArray[np.bool_]
+        self, picture: Array, where: tuple[slice, slice], values: Array, inside: NDArray[np.bool_]
     ) -> None:
         """Put the mean light of the samples' values over the picture where they are inside."""
         values = WHITEST * (values / WHITEST) ** self.optics.gamma
-        height, width = rows.stop - rows.start, columns.stop - columns.start
+        height, width = picture[where].shape
         shape = (height, self.samples, width, self.samples)
         cover = inside.reshape(shape).mean(axis=(1, 3))
         paint = (values * inside).reshape(shape).mean(axis=(1, 3))
-        picture[rows, columns] = picture[rows, columns] * (1.0 - cover) + paint
+        picture[where] = picture[where] * (1.0 - cover) + paint
 
-    def _box(self, outline: Array) -> tuple[slice, slice, Array, Array] | None:
-        """Pixels around an outline, and their samples' places; None outside the picture."""
-        low, high = (
-            np.floor(outline.min(axis=0)).astype(int) - 1,
-            np.ceil(outline.max(axis=0)).astype(int) + 2,
-        )
-        left, top = max(0, low[0]), max(0, low[1])
-        right, bottom = min(self.optics.width, high[0]), min(self.optics.height, high[1])
-        if left >= right or top >= bottom:
-            return None
+    def _area(self, plane: Array, outline: Array) -> tuple[tuple[slice, slice], Array]:
+        """Pixels around an outline (P, 2) of a plane, and places (..., 2) of it that their samples see."""
+        camera, size = self.optics.camera, (self.optics.width, self.optics.height)
+        seen = project(plane, outline)
+        seen = camera.distorted(seen) if self.optics.k1 else seen
+        left, top = np.clip(np.floor(seen.min(axis=0)).astype(int) - 1, 0, size)
+        right, bottom = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 2, 0, size)
         inner = (np.arange(self.samples) + 0.5) / self.samples - 0.5
-        x = (np.arange(left, right)[:, None] + inner).ravel()
-        y = (np.arange(top, bottom)[:, None] + inner).ravel()
-        grid_x, grid_y = np.meshgrid(x, y)
-        return slice(top, bottom), slice(left, right), grid_x, grid_y
-
-    def _back(self, plane: Array, x: Array, y: Array) -> Array:
-        """Places (..., 2) in the plane that are seen at (x, y) [px]."""
-        seen = np.stack((x, y), axis=-1)
-        straight = self.optics.camera.undistorted(seen) if self.optics.k1 else seen
-        image = np.concatenate((straight, np.ones((*x.shape, 1))), axis=-1) @ np.linalg.inv(plane).T
-        return np.asarray(image[..., :2] / image[..., 2:])
-
-    def _lens(self, straight: Array) -> Array:
-        if not self.optics.k1:
-            return straight
-        camera = self.optics.camera
-        centre = np.array([camera.cx, camera.cy])
-        flat = (straight - centre) / camera.fx
-        return np.asarray(
-            flat * (1.0 + camera.k1 * np.sum(flat**2, axis=-1, keepdims=True)) * camera.fx + centre
-        )
-
-
-def _seen(plane: Array, points: Array) -> Array:
-    image = points @ plane[:, :2].T + plane[:, 2]
-    return np.asarray(image[:, :2] / image[:, 2:])
+        x, y = ((np.arange(*ends)[:, None] + inner).ravel() for ends in ((left, right), (top, bottom)))
+        samples = np.stack(np.meshgrid(x, y), axis=-1)
+        samples = camera.undistorted(samples) if self.optics.k1 else samples
+        return (slice(top, bottom), slice(left, right)), project(np.asarray(np.linalg.inv(plane)), samples)
 
 
 def _burn_in(picture: Picture, number: int) -> None:
@@ -228,55 +189,3 @@ def _burn_in(picture: Picture, number: int) -> None:
     for bit in range(COUNTER_BITS):
         value = 255 if number >> bit & 1 else 0
         picture[0 : 2 * BLOCK, bit * BLOCK : (bit + 1) * BLOCK] = value
-
-
-@dataclass(frozen=True, kw_only=True)
-class Film:
-    """Frames at 25 Hz by number: `scene(k)` gives the markers and fingers of frame k."""
-
-    painter: Painter
-    frames: int
-    scene: Callable[[int], tuple[list[Marker], tuple[Finger, ...]]]
-    rate: float = 25.0
-
-    def picture(self, k: int) -> Picture:
-        """Return frame k, from 0."""
-        markers, fingers = self.scene(k % self.frames)
-        return self.painter.draw(markers, k % self.frames, fingers)
-
-    def __iter__(self) -> Iterator[Picture]:
-        return (self.picture(k) for k in range(self.frames))
-
-
-#: Length of the film, its turns and the frames in which a finger covers a corner and a hand a marker.
-FRAMES = 300
-TURN = math.radians(52)
-FINGER = range(150, 168)
-HIDDEN = range(235, 247)
-
-
-def demo_film() -> Film:
-    """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
-    else."""
-    pivot = build(PRESETS["polymer"].values())
-    placing, solver = Placing.of(pivot), HeldPivot(pivot)
-    poses = [placing.marker(solver.turn(rotation(k)).pose) for k in range(FRAMES)]
-
-    def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:
-        moving = Marker(number=1, pose=tuple(poses[k]))
-        markers = [Marker(number=0, pose=(0.0, 0.0, 0.0)), moving]
-        return (markers[:1] if k in HIDDEN else markers), (_finger(poses[k]),) if k in FINGER else ()
-
-    return Film(painter=Painter(Optics(), samples=2, numbered=False), frames=FRAMES, scene=scene)
-
-
-def rotation(k: int) -> float:
-    """Return the body's rotation in frame k [rad]: there, back, to the other side, still for the last
-    second."""
-    u = min(1.0, k / (FRAMES - 25))
-    return TURN * math.sin(2.0 * math.pi * u) * math.sin(math.pi * u) ** 2 * 1.3
-
-
-def _finger(pose: NDArray[np.float64]) -> Finger:
-    corner = pose[:2] + turned(pose[2], np.array([0.03, 0.03]))
-    return Finger(centre=(float(corner[0]), float(corner[1])))

@@ -7,10 +7,12 @@ residual can tell is the printed size.
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
@@ -25,6 +27,8 @@ CORNERS = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
 #: Cells of a marker's side with its black border.
 BITS = 8
 ITERATIONS = 12
+#: Steps of the central differences in the unknowns of a plane, of sides and radians.
+STEP = 1e-6
 #: Standard deviation of an edge's offset that is expected before the residuals are seen [px], and how many of
 #: them it is worth.
 EXPECTED_PX, WORTH = 0.006, 1.5
@@ -50,15 +54,20 @@ class Camera:
         """The camera matrix (3, 3)."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
+    @property
+    def _lens(self) -> Array:
+        return np.array([self.k1, self.k2, 0.0, 0.0])
+
     def undistorted(self, picture: Array) -> Array:
         """Return where points (..., 2) [px] would be seen without the lens."""
-        scale, centre = np.array([self.fx, self.fy]), np.array([self.cx, self.cy])
-        seen = (picture - centre) / scale
-        straight = seen.copy()
-        for _ in range(20):
-            square = np.sum(straight**2, axis=-1, keepdims=True)
-            straight = seen / (1.0 + square * (self.k1 + square * self.k2))
-        return np.asarray(straight * scale + centre)
+        rounds = (cv2.TERM_CRITERIA_COUNT, 20, 0.0)
+        straight = cv2.undistortImagePoints(picture.reshape(-1, 1, 2), self.matrix, self._lens, arg1=rounds)
+        return np.asarray(straight, dtype=float).reshape(picture.shape)
+
+    def distorted(self, straight: Array) -> Array:
+        """Return where points (P, 2) [px] that are so without the lens are seen."""
+        rays = cv2.convertPointsToHomogeneous(straight)[:, 0] @ np.linalg.inv(self.matrix).T
+        return np.asarray(cv2.projectPoints(rays, np.zeros(3), np.zeros(3), self.matrix, self._lens)[0][:, 0])
 
     @classmethod
     def read(cls, path: Path) -> "Camera":
@@ -99,8 +108,6 @@ class Fit:
 @cache
 def cells(number: int) -> NDArray[np.bool_]:
     """Return which cells (8, 8) of a marker of the family 36h11 are light, its black border included."""
-    import cv2
-
     family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
     return np.asarray(cv2.aruco.generateImageMarker(family, number, BITS) > 127)
 
@@ -111,14 +118,9 @@ def project(plane: Array, points: Array) -> Array:
     return np.asarray(image[..., :2] / image[..., 2:])
 
 
-def homography(points: Array, picture: Array) -> Array:
-    """Return the homography (3, 3), last entry 1, that takes four points or more to their pictures (P, 2)."""
-    rows, right = [], []
-    for (x, y), (u, v) in zip(points.tolist(), picture.tolist(), strict=True):
-        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y], [0, 0, 0, x, y, 1, -v * x, -v * y]]
-        right += [u, v]
-    solved = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
-    return np.append(solved, 1.0).reshape(3, 3)
+def homography(picture: Array) -> Array:
+    """Return the homography (3, 3), last entry 1, that takes CORNERS to their pictures (4, 2)."""
+    return np.asarray(cv2.getPerspectiveTransform(CORNERS.astype(np.float32), picture.astype(np.float32)))
 
 
 def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) -> Fit:
@@ -133,14 +135,14 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
     """
     data = corners if camera is None else camera.undistorted(corners)
     if start is None:
-        plane = homography(CORNERS, data[0])
+        plane = homography(data[0])
         back = project(np.asarray(np.linalg.inv(plane)), data[1])
         edge = back[[1, 2]].mean(axis=0) - back[[0, 3]].mean(axis=0)
         pose = np.array([*back.mean(axis=0), math.atan2(edge[1], edge[0])])
     else:
         plane, pose = start.plane, start.pose.copy()
-    chart = _Free(plane) if camera is None else _Seen(plane, camera)
-    known = np.concatenate((chart.start, pose))
+    chart, known = (_free, (plane / plane[2, 2]).ravel()[:8]) if camera is None else _seen_by(camera, plane)
+    known = np.concatenate((known, pose))
     weigh = _independent(data)
     solved, jacobian, gap = _least_squares(chart, known, data, weigh)
     corner_gap = _residual(chart, solved, data)[0]
@@ -154,7 +156,7 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
     ratio, left = _size_ratio(jacobian, gap, freedom)
     return Fit(
         pose=solved[-3:],
-        plane=chart.plane(solved[:-3]),
+        plane=chart(solved[:-3]),
         rms=_rms(corner_gap),
         sd=np.sqrt(np.diag(covariance)[-3:]),
         size_ratio=ratio,
@@ -163,56 +165,39 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
     )
 
 
-class _Free:
-    """A plane seen by a camera that is not known: any homography."""
-
-    def __init__(self, plane: Array) -> None:
-        self.start = (plane / plane[2, 2]).ravel()[:8]
-
-    def plane(self, known: Array) -> Array:
-        """The homography of these unknowns."""
-        return np.append(known, 1.0).reshape(3, 3)
-
-    def derivative(self, known: Array) -> Array:
-        """Its derivative (3, 3, K)."""
-        return np.eye(9)[:, :8].reshape(3, 3, 8)
+#: From the unknowns (..., K) of a plane to its homographies (..., 3, 3).
+_Chart = Callable[[Array], Array]
 
 
-class _Seen:
-    """A plane seen by a known camera: rotation vector and place."""
-
-    STEP = 1e-6
-
-    def __init__(self, plane: Array, camera: Camera) -> None:
-        self.matrix = camera.matrix
-        frame = np.linalg.inv(self.matrix) @ plane
-        frame = (
-            frame
-            / math.sqrt(np.linalg.norm(frame[:, 0]) * np.linalg.norm(frame[:, 1]))
-            * np.sign(frame[2, 2])
-        )
-        turn = np.column_stack((frame[:, 0], frame[:, 1], np.cross(frame[:, 0], frame[:, 1])))
-        left, _, right = np.linalg.svd(turn)
-        self.turn = left @ right
-        self.start = np.array([0.0, 0.0, 0.0, *frame[:, 2]])
-
-    def plane(self, known: Array) -> Array:
-        """The homography of these unknowns: a small turn on top of the start, and the place."""
-        turn = Rotation.from_rotvec(known[:3]).as_matrix() @ self.turn
-        return np.asarray(self.matrix @ np.column_stack((turn[:, 0], turn[:, 1], known[3:6])))
-
-    def derivative(self, known: Array) -> Array:
-        """Its derivative (3, 3, K), by central differences."""
-        steps = self.STEP * np.eye(6)
-        return np.stack(
-            [(self.plane(known + s) - self.plane(known - s)) / (2 * self.STEP) for s in steps], axis=-1
-        )
+def _free(known: Array) -> Array:
+    """The planes seen by a camera that is not known: any homographies, by their first eight entries."""
+    last = np.ones((*known.shape[:-1], 1))
+    return np.concatenate((known, last), axis=-1).reshape(*known.shape[:-1], 3, 3)
 
 
-def _residual(chart: _Free | _Seen, known: Array, data: Array, ratio: float = 1.0) -> tuple[Array, Array]:
+def _seen_by(camera: Camera, plane: Array) -> tuple[_Chart, Array]:
+    """The chart of a plane seen by a known camera, by a small turn on top of that of `plane` and the place,
+    and the unknowns of `plane`."""
+    matrix = camera.matrix
+    frame = np.linalg.inv(matrix) @ plane
+    size = math.sqrt(np.linalg.norm(frame[:, 0]) * np.linalg.norm(frame[:, 1]))
+    frame *= np.sign(frame[2, 2]) / size
+    left, _, right = np.linalg.svd(np.column_stack((frame[:, :2], np.cross(frame[:, 0], frame[:, 1]))))
+    start = left @ right
+
+    def chart(known: Array) -> Array:
+        turn = Rotation.from_rotvec(known[..., :3]).as_matrix() @ start
+        return np.asarray(matrix @ np.stack((turn[..., 0], turn[..., 1], known[..., 3:]), axis=-1))
+
+    return chart, np.array([0.0, 0.0, 0.0, *frame[:, 2]])
+
+
+def _residual(chart: _Chart, known: Array, data: Array, ratio: float = 1.0) -> tuple[Array, Array]:
     """Residual (16,) [px] and its Jacobian (16, K + 4) in the plane, the pose and the ratio of the sides."""
     x, y, angle = known[-3:]
-    plane, slope = chart.plane(known[:-3]), chart.derivative(known[:-3])
+    steps = STEP * np.eye(known.size - 3)
+    plane, (ahead, back) = chart(known[:-3]), chart(known[:-3] + np.stack((steps, -steps)))
+    slope = (ahead - back) / (2.0 * STEP)
     cos, sin = math.cos(angle), math.sin(angle)
     own = ratio * CORNERS
     turned = own @ np.array([[cos, sin], [-sin, cos]])
@@ -223,8 +208,8 @@ def _residual(chart: _Free | _Seen, known: Array, data: Array, ratio: float = 1.
     by_image = np.zeros((8, 2, 3))
     by_image[:, 0, 0] = by_image[:, 1, 1] = 1.0 / image[:, 2]
     by_image[:, :, 2] = -place / image[:, 2:]
-    jacobian = np.zeros((8, 2, slope.shape[-1] + 4))
-    jacobian[:, :, :-4] = np.einsum("pab,bck,pc->pak", by_image, slope, homogeneous)
+    jacobian = np.zeros((8, 2, known.size + 1))
+    jacobian[:, :, :-4] = np.einsum("pab,kbc,pc->pak", by_image, slope, homogeneous)
     by_point = by_image[4:] @ plane[:, :2]
     jacobian[4:, :, -4:-2] = by_point
     jacobian[4:, :, -2] = np.einsum("pab,pb->pa", by_point, np.column_stack((-turned[:, 1], turned[:, 0])))
@@ -252,9 +237,7 @@ def _independent(corners: Array) -> Array:
     return matrix
 
 
-def _least_squares(
-    chart: _Free | _Seen, known: Array, data: Array, weigh: Array
-) -> tuple[Array, Array, Array]:
+def _least_squares(chart: _Chart, known: Array, data: Array, weigh: Array) -> tuple[Array, Array, Array]:
     """Levenberg and Marquardt's method; the solution, its Jacobian and residual."""
     gap, full = (weigh @ part for part in _residual(chart, known, data))
     damping = 1e-6

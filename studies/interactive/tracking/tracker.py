@@ -8,11 +8,11 @@ from typing import Any
 import cv2
 import numpy as np
 
-from studies.interactive.pivot.design import SIDE
-from studies.interactive.tracking import edges, planar
+from studies.interactive.design import SIDE
+from studies.interactive.tracking import planar, squares
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera
-from studies.interactive.tracking.shrinkage import Shrinkage
+from studies.interactive.tracking.squares import Shrinkage
 from studies.kinds import Array
 
 #: Residuals of the fit [px] from which it is doubted, and refused.
@@ -26,7 +26,7 @@ BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
 #: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
-CLEAR, KEPT = 0.6, edges.LEAST_SHARE
+CLEAR, KEPT = 0.6, 0.3
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -36,61 +36,8 @@ MARGIN = np.array(
 WHITEST, CLIPPED = 254, 0.5
 #: Difference of the sides that is named, and how many standard deviations it must be.
 ODD_SIZE, ODD_SIGMA = 0.01, 6.0
-
-
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Squares:
-    """Corners (4, 2) [px] by id, in the markers' order; ids that were seen twice; other ids."""
-
-    corners: Mapping[int, Array]
-    doubles: frozenset[int]
-    others: frozenset[int]
-
-
-class Detector:
-    """Squares of the family 36h11 with ids 0 and 1."""
-
-    def __init__(self) -> None:
-        cv2.setNumThreads(1)
-        family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-        self._detector = cv2.aruco.ArucoDetector(family)
-
-    def find(self, picture: Picture, *, whole: bool = False) -> _Squares:
-        """Return the squares in a grey picture; `whole` looks at all its pixels, for small markers."""
-        scale = 1 if whole else (4 if picture.shape[1] > WIDE else 2)
-        small = picture
-        if scale > 1:
-            size = picture.shape[1] // scale, picture.shape[0] // scale
-            small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-        found, ids, _ = self._detector.detectMarkers(small)
-        numbers = [] if ids is None else [int(i) for i in np.ravel(ids)]
-        corners = {}
-        for number, quad in zip(numbers, found, strict=True):
-            if number in (0, 1):
-                # the centre of the first small pixel lies between those of the first large ones
-                corners[number] = np.asarray(quad[0], dtype=float) * scale + (scale - 1) / 2
-        return _Squares(
-            corners=corners,
-            doubles=frozenset(n for n in (0, 1) if numbers.count(n) > 1),
-            others=frozenset(numbers) - {0, 1},
-        )
-
-
-def decoded(data: bytes) -> Picture:
-    """Return the grey picture of a JPEG."""
-    picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
-    return np.asarray(picture, dtype=np.uint8)
-
-
-def encoded(picture: Picture, quality: int = 90) -> bytes:
-    """Return a grey picture as a JPEG."""
-    done, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
-    assert done
-    return bytes(data.tobytes())
 
 
 @dataclass(eq=False)
@@ -113,7 +60,9 @@ class Tracker:
 
     def __init__(self, side: float = SIDE, camera: Camera | None = None) -> None:
         self.side, self.camera = side, camera
-        self._detector = Detector()
+        cv2.setNumThreads(1)
+        family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
+        self._detector = cv2.aruco.ArucoDetector(family)
         self._known: dict[int, _Known] = {}
         self._fit: planar.Fit | None = None
         self._shrinkage = Shrinkage()
@@ -121,70 +70,81 @@ class Tracker:
         self._mirrored = False
         self._tries = 0
 
+    def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
+        """Return the corners (4, 2) [px], in the markers' order, of the squares of the family 36h11 in a grey
+        picture by their ids; `whole` looks at all its pixels, for small markers."""
+        scale = 1 if whole else (4 if picture.shape[1] > WIDE else 2)
+        small = picture
+        if scale > 1:
+            size = picture.shape[1] // scale, picture.shape[0] // scale
+            small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        quads, ids, _ = self._detector.detectMarkers(small)
+        found: dict[int, list[Array]] = {}
+        for number, quad in zip([] if ids is None else map(int, np.ravel(ids)), quads, strict=True):
+            # the centre of the first small pixel lies between those of the first large ones
+            corners = np.asarray(quad[0], dtype=float) * scale + (scale - 1) / 2
+            found.setdefault(number, []).append(corners)
+        return found
+
     def see(self, picture: Picture, time: float) -> dict[str, Any]:
         """Return the event "seen" or "unseen" of a picture taken at `time` [s]; see `session`."""
-        squares = self._detector.find(picture)
-        if len(squares.corners) < 2 and not squares.doubles:
+        found = self.markers(picture)
+        if {0, 1} <= set(found) or _doubles(found):
+            self._tries = 0
+        else:
             self._tries += 1
             if not self._known or self._far() or self._tries % 5 == 0:  # look at every pixel, now and then
-                squares = self._detector.find(picture, whole=True)
-        else:
-            self._tries = 0
-        if squares.doubles:
-            return _unseen(f"duplicate-{min(squares.doubles)}")
-        quads, followed = self._quads(squares, time)
-        if set(quads) != {0, 1}:
-            return self._missing(picture, squares, quads, time)
+                found = self.markers(picture, whole=True)
+        if doubles := _doubles(found):
+            return _unseen(f"duplicate-{min(doubles)}")
+        read = {number: found[number][0] for number in (0, 1) if number in found}
+        quads = self._predicted(time) | read
+        if len(quads) < 2:
+            return self._missing(picture, set(found), set(quads), time)
         self._blind_since = None
-        return self._fitted(picture, quads, followed, time)
+        return self._fitted(picture, quads, {0, 1} - set(read), time)
 
     def _far(self) -> bool:
         """Whether a marker was too small, when last seen, for a part of the pixels."""
         sides = [np.hypot(*(known.corners[1] - known.corners[0])) for known in self._known.values()]
         return bool(min(sides) < FAR_PX)
 
-    def _quads(self, squares: _Squares, time: float) -> tuple[dict[int, Array], set[int]]:
-        """Corners of both squares, found or predicted, and which were predicted."""
-        quads, followed = dict(squares.corners), set()
-        for number in {0, 1} - set(quads):
-            known = self._known.get(number)
-            if known is not None and time - known.read <= FOLLOW:
-                quads[number] = known.corners + known.velocity * (time - known.time)
-                followed.add(number)
-        return quads, followed
+    def _predicted(self, time: float) -> dict[int, Array]:
+        """Where the corners of the squares that were read lately move to."""
+        return {
+            number: known.corners + known.velocity * (time - known.time)
+            for number, known in self._known.items()
+            if time - known.read <= FOLLOW
+        }
 
     def _fitted(
         self, picture: Picture, quads: dict[int, Array], followed: set[int], time: float
     ) -> dict[str, Any]:
         for _ in range(POWERS):  # the first pictures tell the power that their values are of light
             gamma = self._shrinkage.gamma
-            refined = edges.refine(picture, np.stack((quads[0], quads[1])), gamma)
-            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and refined.share[n].min() >= KEPT}
-            corners = self._shrinkage.taken_out(picture, refined.corners, lit)
+            refined, share = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
+            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and share[n].min() >= KEPT}
+            corners = self._shrinkage.taken_out(picture, refined, lit)
             if self._shrinkage.gamma == gamma:
                 break
         fit = self._fit_to(corners)
         torn = fit is None or fit.rms > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
-            predicted = {n: k for n, k in self._known.items() if time - k.read <= FOLLOW}
-            for number, known in predicted.items():
-                other = dict(quads)
-                other[number] = known.corners + known.velocity * (time - known.time)
-                again = edges.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
-                second = self._fit_to(self._shrinkage.taken_out(picture, again.corners, {}))
+            for number, predicted in self._predicted(time).items():
+                other = quads | {number: predicted}
+                again, kept = squares.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
+                second = self._fit_to(self._shrinkage.taken_out(picture, again, {}))
                 if second is not None and second.rms <= REFUSE_PX:
-                    refined, fit, followed, torn = again, second, {number}, False
+                    refined, share, fit, followed, torn = again, kept, second, {number}, False
                     break
-        if any((refined.share[n] < KEPT).any() for n in followed):
-            return _unseen(_lost(set(followed)))
+        if followed and (torn or any((share[n] < KEPT).any() for n in followed)):
+            return _unseen(_lost(followed))
         if fit is None or torn:
-            if followed:
-                return _unseen(_lost(followed))
             sized = fit is not None and fit.rms_sized < 0.5 * fit.rms and _odd_sizes(fit)
             return _unseen("sizes" if sized else "refused")
-        self._remember(refined.corners, followed, time)
+        self._remember(refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, refined, followed)
+        return self._seen(picture, fit, refined, share, followed)
 
     def _fit_to(self, corners: Array) -> planar.Fit | None:
         try:
@@ -203,7 +163,7 @@ class Tracker:
             self._known[number] = _Known(corners=now, velocity=velocity, time=time, read=read)
 
     def _seen(
-        self, picture: Picture, fit: planar.Fit, refined: edges.Refined, followed: set[int]
+        self, picture: Picture, fit: planar.Fit, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
         faults = []
         if _clipped(picture, fit) > CLIPPED:
@@ -212,12 +172,12 @@ class Tracker:
             faults.append("followed")
         if fit.rms > DOUBT_PX:
             faults.append("not-flat")
-        if (refined.share < CLEAR).any() and not followed:
+        if (share < CLEAR).any() and not followed:
             faults.append("blurred")
         if _odd_sizes(fit):
             faults.append("sizes")
         scale = np.array([self.side, self.side, 1.0])
-        size = np.hypot(*(refined.corners - np.roll(refined.corners, 1, axis=1)).reshape(-1, 2).T).min()
+        size = np.hypot(*(refined - np.roll(refined, 1, axis=1)).reshape(-1, 2).T).min()
         # an offset that is wrong changes the size of both squares, and with it all distances
         sized = np.abs(fit.pose) * [1.0, 1.0, 0.0] * (2.0 * self._shrinkage.sd / size)
         return {
@@ -227,25 +187,27 @@ class Tracker:
             "rms": fit.rms,
             "state": "followed" if followed else "found",
             "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
-            "quads": self._shrinkage.taken_out(picture, refined.corners, {}).tolist(),
+            "quads": self._shrinkage.taken_out(picture, refined, {}).tolist(),
             "faults": faults,
         }
 
-    def _missing(
-        self, picture: Picture, squares: _Squares, quads: dict[int, Array], time: float
-    ) -> dict[str, Any]:
+    def _missing(self, picture: Picture, found: set[int], quads: set[int], time: float) -> dict[str, Any]:
         """Why there is no pose."""
-        seen = set(quads)
-        if seen:
+        if quads:
             self._blind_since = None
-            return _unseen(_lost({0, 1} - seen))
-        if squares.others:
-            return _unseen("other-ids", ", ".join(str(n) for n in sorted(squares.others)))
+            return _unseen(_lost({0, 1} - quads))
+        if found:
+            return _unseen("other-ids", ", ".join(map(str, sorted(found))))
         if self._blind_since is None:
             self._blind_since, self._mirrored = time, False
         if time - self._blind_since >= BLIND and (self._mirrored or self._tries % 5 == 0):
-            self._mirrored = bool(self._detector.find(np.ascontiguousarray(picture[:, ::-1])).corners)
+            self._mirrored = not {0, 1}.isdisjoint(self.markers(np.ascontiguousarray(picture[:, ::-1])))
         return _unseen("mirrored" if self._mirrored else "lost-both")
+
+
+def _doubles(found: Mapping[int, list[Array]]) -> set[int]:
+    """Return the ids of ours that are seen twice."""
+    return {number for number in (0, 1) if len(found.get(number, ())) > 1}
 
 
 def _clipped(picture: Picture, fit: planar.Fit) -> float:

@@ -51,33 +51,31 @@ class Browser:
         path = executable()
         if path is None:
             raise FileNotFoundError(f"no browser: expected one of {', '.join(NAMES)} on the PATH")
-        self._folder = tempfile.TemporaryDirectory(prefix="browser-", ignore_cleanup_errors=True)
-        words = [path, *OPTIONS, f"--user-data-dir={self._folder.name}", f"--window-size={width},{height}"]
-        if film is not None:
-            words += ["--use-fake-device-for-media-stream", f"--use-file-for-fake-video-capture={film}"]
-        if hasattr(os, "geteuid") and os.geteuid() == 0:
-            words.append("--no-sandbox")  # its sandbox refuses to run for root
-        self._process = subprocess.Popen(
-            [*words, "about:blank"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
         self._number = 0
         self.console: list[str] = []
-        self._stack = ExitStack()
-        try:  # whatever fails from here on, the process must not stay
+        with ExitStack() as stack:  # whatever fails from here on, the process must not stay
+            self._folder = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix="browser-", ignore_cleanup_errors=True)
+            )
+            words = [path, *OPTIONS, f"--user-data-dir={self._folder}", f"--window-size={width},{height}"]
+            if film is not None:
+                words += ["--use-fake-device-for-media-stream", f"--use-file-for-fake-video-capture={film}"]
+            if hasattr(os, "geteuid") and os.geteuid() == 0:
+                words.append("--no-sandbox")  # its sandbox refuses to run for root
+            silent = subprocess.DEVNULL
+            self._process = subprocess.Popen([*words, "about:blank"], stdout=silent, stderr=silent)
+            stack.callback(self._end)
             socket = connect(self._page_address(), max_size=None, compression=None)
-            self._socket = self._stack.enter_context(socket)
+            self._socket = stack.enter_context(socket)
             for name in ("Page", "Runtime", "Log"):
                 self.call(f"{name}.enable")
             size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
             self.call("Emulation.setDeviceMetricsOverride", **size)
-        except BaseException:
-            self._stack.close()
-            self._end()
-            raise
+            self._stack = stack.pop_all()
 
     def _page_address(self) -> str:
         """The address of the page's debugging socket, which the browser writes into its folder."""
-        note, end = Path(self._folder.name) / "DevToolsActivePort", time.monotonic() + PATIENCE
+        note, end = Path(self._folder) / "DevToolsActivePort", time.monotonic() + PATIENCE
         while time.monotonic() < end:
             if self._process.poll() is not None:
                 raise RuntimeError(f"browser: ended at once with code {self._process.returncode}")
@@ -175,17 +173,13 @@ class Browser:
         return self
 
     def __exit__(self, *raised: object) -> None:
-        try:
-            self._stack.close()
-        finally:
-            self._end()
+        self._stack.close()
 
     def _end(self) -> None:
-        """End the process and remove its folder."""
+        """End the process."""
         self._process.terminate()
         try:
             self._process.wait(10.0)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        self._folder.cleanup()

@@ -4,6 +4,8 @@ import asyncio
 import logging
 import time
 from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
@@ -11,16 +13,19 @@ from numpy.linalg import LinAlgError
 from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.input import MOST_STEPS
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.recording import Player, Recorder, line
-from studies.interactive.pivot.session import Session
-from studies.interactive.pivot.view import DRIVES, curved
-from studies.interactive.tracking.tracker import Picture, Tracker
+from studies.interactive import presets
+from studies.interactive.bench import DRIVES
+from studies.interactive.input import MOST_STEPS
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
+from studies.interactive.recording import Player, Recorder
+from studies.interactive.session import Session
+from studies.interactive.tracking.edges import Picture
+from studies.interactive.tracking.films import Shot, Source
+from studies.interactive.tracking.planar import Camera
+from studies.interactive.tracking.tracker import Tracker
+from studies.interactive.view import curved
 from studies.interactive.web import protocol
-from studies.interactive.web.sources import Settings, Shot, Source
 
 LOG = logging.getLogger(__name__)
 
@@ -33,23 +38,43 @@ SHARE = 0.6
 SIDES = (0.01, 0.3)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What one server serves.
+
+    Attributes:
+        port: 0 for any; share: the address of this machine by which its network reaches the page too.
+        camera: "browser", "none", "film" or "server", which the page is told.
+        source: of every page's pictures, None where the page's camera or nothing sends them; keep: takes the
+            lines of a recording, of the first page that is open.
+    """
+
+    port: int = 0
+    share: str | None = None
+    camera: str = "browser"
+    source: Source | None = None
+    calibration: Camera | None = None
+    preset: str = "polymer"
+    keep: Callable[[str], None] | None = None
+
+
 class Connection:
     """Serves one socket from the first message to the last; that of the `first` page is recorded."""
 
     def __init__(self, socket: WebSocket, settings: Settings, *, first: bool) -> None:
         self._socket, self._settings = socket, settings
-        self._keep = settings.keep if first else None
         source = settings.source
         self.session = Session(settings.preset, lock_step=source is not None and source.lock_step)
         self._tracker = Tracker(camera=settings.calibration)
-        self._recorder: Recorder | None = None
+        self._recorders: dict[str, Recorder] = {}
+        if first and settings.keep is not None:
+            self._recorders["file"] = Recorder(self.session, settings.keep)
         self._begin, self._lock = time.monotonic(), asyncio.Lock()
-        self._pending: protocol.Sent | None = None
+        self._pending: tuple[int, float, Picture] | None = None
         self._late: dict[str, Any] | None = None
-        self._wake, self._moved = asyncio.Event(), asyncio.Event()
+        self._wake, self._room = asyncio.Event(), asyncio.Semaphore(IN_FLIGHT)
         self._last_picture = -1e9
         self._offset: float | None = None
-        self._shown, self._sent, self._seen_shown = 0, 0, asyncio.Event()
         self._player = Player()
         self._curved: Mechanics | None = None
         self._costs, self._send_ms = deque[float](maxlen=3), 0.0
@@ -57,12 +82,9 @@ class Connection:
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
         await self._say(self._welcome())
-        if self._keep is not None:
-            for text in Recorder(self.session).lines:
-                self._keep(text)
         await self._feed({"do": "tick"}, None)
         await self._show_curve(self.session)
-        workers = [asyncio.create_task(work()) for work in (self._ticks, self._pictures, self._poses)]
+        workers = [asyncio.create_task(work()) for work in (self._ticks, self._news)]
         if self._settings.source is not None:
             workers.append(asyncio.create_task(self._play(self._settings.source)))
         receiver = asyncio.create_task(self._receive())
@@ -101,7 +123,7 @@ class Connection:
             if event.get("do") == "pose":  # read on: only the newest counts, however long one takes
                 self._late = event
                 if meter.passes(time.monotonic(), protocol.KEPT):
-                    self._moved.set()
+                    self._wake.set()
                 continue
             if not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
@@ -114,13 +136,6 @@ class Connection:
                 await self._catch_up()
                 await self._text(event)
 
-    async def _poses(self) -> None:
-        """Solve the newest pose of those that came while the one before was solved."""
-        while True:
-            await self._moved.wait()
-            self._moved.clear()
-            await self._catch_up()
-
     async def _catch_up(self) -> None:
         """Take the newest pose, if it was not taken yet."""
         late, self._late = self._late, None
@@ -131,8 +146,7 @@ class Connection:
         seq = event.pop("seq", None)
         name = event["do"]
         if name == "shown":
-            self._shown += 1
-            self._seen_shown.set()
+            self._room.release()
         elif name == "live":
             self._player.end()
         elif self._player.on:
@@ -180,19 +194,17 @@ class Connection:
             await self._say({"kind": "curve", **curved(curve, mechanics.values["yield_strength"])})
 
     def _set_side(self, side_mm: object) -> None:
-        good = isinstance(side_mm, int | float) and not isinstance(side_mm, bool)
-        if not good or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:  # type: ignore[operator]
+        if not presets.finite(side_mm) or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:
             raise BadInput(f"side_mm: got {side_mm!r}, expected {SIDES[0] * 1e3:g} to {SIDES[1] * 1e3:g}")
-        self._tracker = Tracker(side=float(side_mm) / 1e3, camera=self._settings.calibration)  # type: ignore[arg-type]
+        self._tracker = Tracker(side=side_mm / 1e3, camera=self._settings.calibration)
 
     async def _record(self, on: bool) -> None:
         """Begin a recording, or end it and send its lines."""
         if on:
-            self._recorder = Recorder(self.session)
+            self._recorders["page"] = Recorder(self.session)
             await self._say({"kind": "recording", "on": True})
-        elif self._recorder is not None:
-            lines, self._recorder = self._recorder.lines, None
-            await self._say({"kind": "recording", "on": False, "lines": lines})
+        elif (ended := self._recorders.pop("page", None)) is not None:
+            await self._say({"kind": "recording", "on": False, "lines": ended.lines})
 
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
         """Give one event to the session and send its state, with how long sending the one before took."""
@@ -223,10 +235,8 @@ class Connection:
             self._costs.append(took / steps)
         elif not self.session.mechanics.moving:
             self._costs.clear()
-        if self._recorder is not None:
-            self._recorder.write(event, state)
-        if self._keep is not None:
-            self._keep(line(event, state))
+        for recorder in tuple(self._recorders.values()):
+            recorder.write(event, state)
         return {"kind": "state", **state, "solve_ms": 1e3 * took}
 
     async def _tracked(self, picture: Picture, captured: float) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -251,20 +261,22 @@ class Connection:
             if still and self.session.mechanics.moving and not self.session.paused:
                 await self._feed({"do": "tick"}, None)
 
-    async def _pictures(self) -> None:
-        """Track the newest picture of the page."""
+    async def _news(self) -> None:
+        """Solve the newest pose and track the newest picture of those that came meanwhile."""
         while True:
             await self._wake.wait()
             self._wake.clear()
+            await self._catch_up()
             sent, self._pending = self._pending, None
             if sent is None:
                 continue
+            seq, captured, picture = sent
             if self._player.on:
-                await self._say({"kind": "skipped", "seq": sent.seq})
+                await self._say({"kind": "skipped", "seq": seq})
                 continue
             self._last_picture = time.monotonic()
-            event, more = await self._tracked(sent.picture, sent.time)
-            await self._feed(event, sent.seq, **more)
+            event, more = await self._tracked(picture, captured)
+            await self._feed(event, seq, **more)
 
     async def _play(self, source: Source) -> None:
         """Track the pictures of a source and send each with its state, no faster than they are shown."""
@@ -278,13 +290,10 @@ class Connection:
                 await asyncio.Event().wait()  # the page stays open until it is closed
                 continue
             await self._player.over()
-            while self._sent - self._shown >= IN_FLIGHT:
-                self._seen_shown.clear()
-                await self._seen_shown.wait()
+            await self._room.acquire()
             self._last_picture = time.monotonic()
             event, more = await self._tracked(shot.picture, shot.time)
             head = {**await self._state_after(event), **more, "seq": shot.number}
-            self._sent += 1
             await self._socket.send_bytes(protocol.with_picture(head, shot.jpeg))
             due = max(due + 1.0 / source.rate, time.monotonic() - 0.5)
             await asyncio.sleep(max(0.0, due - time.monotonic()))

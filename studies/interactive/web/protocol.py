@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
+from studies.interactive.input import EVENTS
 
 VERSION = 1
 #: Longest text and picture that are taken [bytes], and the largest picture [px].
@@ -31,42 +32,16 @@ REPLAY, DESIGN = 2, 3
 #: of which only the newest counts: they never use up what a key or a button needs.
 RATE, BURST, KEPT = 120.0, 120.0, 20.0
 
-#: Event -> the fields it may have besides "do" and "seq".
-FIELDS: dict[str, frozenset[str]] = {
-    "hello": frozenset({"version", "token"}),
-    "setup": frozenset({"preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"}),
-    "pose": frozenset({"pose"}),
-    "seen": frozenset({"marker", "sd", "rms", "state", "plane", "quads", "faults"}),
-    "unseen": frozenset({"code", "text"}),
-    "tick": frozenset(),
-    "release": frozenset({"speed"}),
-    "catch": frozenset(),
-    "pause": frozenset(),
-    "resume": frozenset(),
-    "step": frozenset(),
-    "reset": frozenset(),
-    "parameter": frozenset({"name", "value", "part"}),
-    "preset": frozenset({"name", "values", "part"}),
-    "undo": frozenset(),
-    "redo": frozenset(),
-    "drive": frozenset({"by"}),
-    "solver": frozenset({"name", "sweeps"}),
-    "rest": frozenset(),
-    "record": frozenset({"on"}),
-    "size": frozenset({"side_mm"}),
-    "shown": frozenset(),
-    "save": frozenset(),
-    "live": frozenset(),
+#: Event -> the fields it may have besides "do" and "seq": those of the session, and the page's own.
+FIELDS: dict[str, tuple[str, ...]] = {
+    "hello": ("version", "token"),
+    **EVENTS,
+    "record": ("on",),
+    "size": ("side_mm",),
+    "shown": (),
+    "save": (),
+    "live": (),
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sent:
-    """A picture that the page sent: its number, time of capture [s] and grey levels."""
-
-    seq: int
-    time: float
-    picture: NDArray[np.uint8]
 
 
 def event(text: str) -> dict[str, Any]:
@@ -86,7 +61,7 @@ def event(text: str) -> dict[str, Any]:
     fields = FIELDS.get(str(content.get("do")))
     if fields is None:
         raise BadInput(f"do: got {str(content.get('do'))[:40]!r}, expected one of {', '.join(FIELDS)}")
-    odd = set(content) - fields - {"do", "seq"}
+    odd = set(content) - {*fields, "do", "seq"}
     if odd:
         raise BadInput(
             f"{min(odd)[:40]!r}: got an unknown field of {content['do']}, expected {sorted(fields)}"
@@ -108,8 +83,8 @@ def _refuse(constant: str) -> float:
     raise ValueError(constant)
 
 
-def sent_picture(data: bytes) -> Sent:
-    """Return the picture in a binary message.
+def sent_picture(data: bytes) -> tuple[int, float, NDArray[np.uint8]]:
+    """Return number, time of capture [s] and grey levels of the picture in a binary message.
 
     Raises:
         BadInput: a header or size that does not fit; one line.
@@ -127,7 +102,7 @@ def sent_picture(data: bytes) -> Sent:
     if not 0.0 <= time < 1e15:
         raise BadInput(f"picture: got time {time}, expected milliseconds")
     # a copy, for the tracker's kernels are compiled for arrays that may be written to
-    return Sent(seq=seq, time=time / 1e3, picture=levels.reshape(height, width).copy())
+    return seq, time / 1e3, levels.reshape(height, width).copy()
 
 
 def text(content: Mapping[str, Any]) -> str:

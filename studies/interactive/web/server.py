@@ -2,14 +2,13 @@
 shares it, at one address of the own network."""
 
 import asyncio
-import importlib.util
 import ipaddress
 import logging
+import mimetypes
 import socket as sockets
 import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
-from importlib.resources import files
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Self
@@ -17,23 +16,27 @@ from typing import Self
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from spline_model.reduced import pose
 from studies.errors import BadInput
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.session import Session
+from studies.interactive.motion import SOLVERS
+from studies.interactive.session import Session
+from studies.interactive.tracking.films import demo_film
+from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
-from studies.interactive.web.connection import Connection
-from studies.interactive.web.sources import Settings
+from studies.interactive.web.connection import Connection, Settings
 
 LOG = logging.getLogger(__name__)
+# a machine may know scripts by another kind, which browsers refuse
+mimetypes.add_type("text/javascript", ".js")
 
-#: Kinds of the page's files.
-KINDS = {".html": "text/html; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".css": "text/css"}
+#: The page's files.
+PAGE = Path(__file__).parent / "page"
 #: Closing codes: bad message, no right, too many.
 BAD, FORBIDDEN, FULL = 4400, 4403, 4429
 LAST_PORT = 65535
@@ -53,8 +56,8 @@ class Server:
         self._uvicorn: uvicorn.Server | None = None
         self._app = Starlette(
             routes=[
-                Route("/", self._file),
-                Route("/page/{name}", self._file),
+                Route("/", self._index),
+                Mount("/page", StaticFiles(directory=PAGE)),
                 Route("/markers.pdf", self._sheet),
                 WebSocketRoute("/ws", self._socket),
             ]
@@ -151,13 +154,8 @@ class Server:
             self._uvicorn.should_exit = True
         self._thread.join(10.0)
 
-    async def _file(self, request: Request) -> Response:
-        name = request.path_params.get("name", "index.html")
-        known = {path.name: path for path in (files("studies.interactive.web") / "page").iterdir()}
-        suffix = "." + name.rpartition(".")[2]
-        if name not in known or suffix not in KINDS:
-            return PlainTextResponse("not found", status_code=404)
-        return Response(known[name].read_bytes(), media_type=KINDS[suffix])
+    async def _index(self, request: Request) -> Response:
+        return FileResponse(PAGE / "index.html")
 
     async def _sheet(self, request: Request) -> Response:
         from studies.interactive.tracking.sheet import sheet  # matplotlib, for who asks for it
@@ -235,11 +233,8 @@ def warm_up() -> None:
 
 
 def _enter_kernels() -> None:
-    """Enter what a session calls.
-
-    A pivot is held, turned, released, caught and squeezed until it buckles; a picture is tracked where OpenCV
-    is there.
-    """
+    """Enter what a session calls: a pivot is held, turned, released, caught and squeezed until it buckles; a
+    picture is tracked."""
     session = Session()
     for name in SOLVERS:
         events = (
@@ -255,9 +250,4 @@ def _enter_kernels() -> None:
         )
         for event in events:
             session.feed({**event, "t": 0.0})
-    if importlib.util.find_spec("cv2") is None:
-        return
-    from studies.interactive.tracking.painter import demo_film
-    from studies.interactive.tracking.tracker import Tracker
-
     Tracker().see(demo_film().picture(0), 0.0)

@@ -10,8 +10,8 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from studies.errors import BadInput
-from studies.interactive.pivot.input import Event
-from studies.interactive.pivot.session import Session
+from studies.interactive.input import Event
+from studies.interactive.session import Session
 
 #: Characters of the hash that marks a state.
 MARK = 16
@@ -21,11 +21,6 @@ def mark(state: Mapping[str, Any]) -> str:
     """Return a hash of a state: equal for states that are equal digit by digit."""
     text = json.dumps(state, sort_keys=True, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()[:MARK]
-
-
-def line(event: Mapping[str, Any], state: Mapping[str, Any]) -> str:
-    """Return one line of a session file."""
-    return json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n"
 
 
 def _events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
@@ -54,13 +49,14 @@ def replay(lines: Iterable[str], session: Session | None = None) -> Iterator[tup
 
 
 class Recorder:
-    """Keeps a session's events as lines, up to a number of characters; begins with a session made anew."""
+    """Gives a session's events as lines to `keep`, or keeps them up to a number of characters; begins with a
+    session made anew."""
 
     MOST = 20_000_000
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, keep: Callable[[str], object] | None = None) -> None:
         self.lines: list[str] = []
-        self._size = 0
+        self._keep, self._size = keep, 0
         start = session.setup()
         self.write(start, session.feed(start))
 
@@ -71,8 +67,10 @@ class Recorder:
 
     def write(self, event: Mapping[str, Any], state: Mapping[str, Any]) -> None:
         """Keep one event and the mark of the state after it."""
-        if not self.full:
-            text = line(event, state)
+        text = json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n"
+        if self._keep is not None:
+            self._keep(text)
+        elif not self.full:
             self.lines.append(text)
             self._size += len(text)
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from studies.errors import BadInput
-from studies.interactive.pivot import presets
-from studies.interactive.pivot.input import MOST_STEPS, Event
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
-from studies.interactive.pivot.presets import STEP
-from studies.interactive.pivot.view import DRIVES, SPRUNG, Instant, shown
+from studies.interactive import presets
+from studies.interactive.bench import DRIVES, SPRUNG, Bench
+from studies.interactive.input import EVENTS, MOST_STEPS, Event
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
+from studies.interactive.presets import STEP
+from studies.interactive.view import SENTENCES, shown
 from studies.kinds import Array
 
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
@@ -28,7 +28,7 @@ OFF_PATH = 0.02
 SLOWED, MOST_SWEEPS = 0.9, 1000
 
 
-class Session(Instant):
+class Session(Bench):
     """The state machine behind the page.
 
     Args:
@@ -37,7 +37,7 @@ class Session(Instant):
     """
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
-        self._begin(preset, presets.preset(preset).values(), lock_step)
+        self.begin(preset, presets.preset(preset).values(), lock_step)
         self._settle()
 
     def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
@@ -47,28 +47,29 @@ class Session(Instant):
             BadInput: an event that is none; the session is as it was.
         """
         event = Event(event)
-        name = event.get("do")
-        action = ACTIONS.get(name) if isinstance(name, str) else None
-        if action is None:
-            raise BadInput(f"do: got {name!r}, expected one of {', '.join(ACTIONS)}")
-        time = event.number("t")
-        self.warnings.begin()
-        action(self, event, time)
+        action, time = getattr(self, f"_{event.choice('do', EVENTS)}"), event.number("t")
+        self.warnings = {}
+        action(event, time)
         self.time = time
         self.readings.take(self.mechanics, None if self.spread is None else self.ways @ self.spread)
         if not self.mechanics.resolved:
-            self.warnings.say("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
+            self._warn("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
         if self.mechanics.moving and not self.paused and self.clock.pace < SLOWED:
             real = "real time" if self.mechanics.step == STEP else "the time scale"
-            self.warnings.say("slowed", f"runs at {self.clock.pace:.1g} of {real}")
+            self._warn("slowed", f"runs at {self.clock.pace:.1g} of {real}")
         return shown(self)
+
+    def _warn(self, code: str, detail: str = "") -> None:
+        """Add a fault, once; `detail` stands behind its sentence in brackets."""
+        sentence = SENTENCES.get(code, SENTENCES["lost"])
+        self.warnings[code] = f"{sentence[:-1]} ({detail})." if detail else sentence
 
     def setup(self) -> dict[str, Any]:
         """Return the event that makes a new session of this one's settings."""
         return {
             "do": "setup",
             "t": self.time,
-            "preset": self.bench.preset,
+            "preset": self.preset,
             "values": dict(self.mechanics.values),
             "drive": self.drive,
             "solver": self.solver,
@@ -83,10 +84,10 @@ class Session(Instant):
         sweeps = event.whole("sweeps", MOST_SWEEPS)
         rest, values = event.three("rest"), presets.checked(event.mapping("values"))
         preset = event.choice("preset", (*presets.PRESETS, presets.OWN))
-        self._begin(preset, values, event.get("lock_step") is not False)
+        self.begin(preset, values, event.get("lock_step") is not False)
         self.drive, self.solver, self.sweeps = drive, solver, sweeps
         if not np.array_equal(rest, self.placing.rest):
-            self.bench.set_rest(rest)
+            self.set_rest(rest)
         self._settle()
 
     # -- poses ---------------------------------------------------------------------------------------------
@@ -102,17 +103,17 @@ class Session(Instant):
         marker = event.three("marker")
         self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
         self.sight.setdefault("state", "found")
-        self._marker = marker
+        self.marker = marker
         for code in event.words("faults"):
-            self.warnings.say(code)
-        if self._frame(event, time) or self.paused:
+            self._warn(code)
+        if self._tick(event, time) or self.paused:
             return
         body = self.placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - self.placing.centre), body[2]])
         if self.placing.looks_swapped(marker):
-            self.warnings.say("swapped")
-        elif not self._hand.believes(time, pose):
-            self.warnings.say("jump")
+            self._warn("swapped")
+        elif not self.hand.believes(time, pose):
+            self._warn("jump")
         else:
             self.spread = self.placing.spread(event.three("sd"), body[2]) if "sd" in event else None
             self._to(pose, time)
@@ -120,14 +121,10 @@ class Session(Instant):
     def _unseen(self, event: Event, time: float) -> None:
         """A frame without a pose: the last one is held, and why is said."""
         self.sight = {"state": "lost", **{key: event[key] for key in ("plane", "quads") if key in event}}
-        self.warnings.say(str(event.get("code", "lost")), str(event.get("text", "")))
-        self._frame(event, time)
+        self._warn(str(event.get("code", "lost")), str(event.get("text", "")))
+        self._tick(event, time)
 
-    def _tick(self, event: Event, time: float) -> None:
-        """A frame's time has passed without a camera."""
-        self._frame(event, time)
-
-    def _frame(self, event: Event, time: float) -> bool:
+    def _tick(self, event: Event, time: float) -> bool:
         """Advance the released body by a frame, by no more steps than there is room for; False while it is
         held."""
         room = event.whole("room", MOST_STEPS) if "room" in event else MOST_STEPS
@@ -143,11 +140,11 @@ class Session(Instant):
             return
         far = math.hypot(pose[0], pose[1]) / self.mechanics.values["length"]
         if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
-            self.warnings.say("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
+            self._warn("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
             return
         self.wanted = pose
         self._hold()
-        self._hand.add(time, self.wanted)
+        self.hand.add(time, self.wanted)
 
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
@@ -158,13 +155,13 @@ class Session(Instant):
         else:
             reached = mechanics.hold(target) if self.drive == "pose" else mechanics.turn(float(target[2]))
         if reached < 1.0:
-            self.warnings.say("no-equilibrium", f"{100 * reached:.0f} % of the way")
+            self._warn("no-equilibrium", f"{100 * reached:.0f} % of the way")
         elif self.drive == "rotation":
             self._hand_is_here(turn=self.wanted[2])
         elif self.sight["state"] != "none":
             gap = mechanics.curve.gap(self.wanted)
             if gap > OFF_PATH * mechanics.values["length"]:
-                self.warnings.say("off-path", f"{1e3 * gap:.1f} mm")
+                self._warn("off-path", f"{1e3 * gap:.1f} mm")
 
     def _settle(self) -> None:
         """A load moves the body from where the strips are at rest."""
@@ -181,7 +178,7 @@ class Session(Instant):
     def _release(self, event: Event, time: float) -> None:
         if self.mechanics.moving:
             return
-        velocity = self._hand.velocity if event.get("speed") == "hand" else np.zeros(3)
+        velocity = self.hand.velocity if event.get("speed") == "hand" else np.zeros(3)
         self._let_go(velocity / self.mechanics.values["time_scale"], time)
 
     def _let_go(self, velocity: Array, time: float) -> None:
@@ -193,9 +190,9 @@ class Session(Instant):
         if not self.mechanics.moving:
             return
         if not self.mechanics.catch():
-            self.warnings.say("no-catch")
+            self._warn("no-catch")
             return
-        self._hand.forget()
+        self.hand.forget()
         turn = float(self.mechanics.snapshot.pose[2])
         self._hand_is_here(turn)
         self.wanted[2] = turn + math.remainder(self.wanted[2] - turn, math.tau)
@@ -204,7 +201,7 @@ class Session(Instant):
     def _advance(self, steps: int) -> None:
         done = self.mechanics.advance(steps) if steps else 0.0
         if steps and not done:
-            self.warnings.say("stopped")
+            self._warn("stopped")
             self.paused = True
             return
         self.clock.count(steps, done, self.mechanics.values["time_scale"])
@@ -226,30 +223,28 @@ class Session(Instant):
         self.mechanics.reset()
         self.wanted, self.paused = np.zeros(3), False
         self.clock.begin(None)
-        self._hand.forget()
+        self.hand.forget()
         self._settle()
 
     # -- settings ------------------------------------------------------------------------------------------
 
     def _parameter(self, event: Event, time: float) -> None:
-        (preset, values), before = self.bench.design, self.mechanics
+        (preset, values), before = self.design, self.mechanics
         changed = {**values, str(event.get("name")): event.get("value")}
-        self.bench.change(preset, changed, part=event.get("part") is True)
+        self.change(preset, changed, part=event.get("part") is True)
         self._rebuilt(before, time)
 
     def _preset(self, event: Event, time: float) -> None:
         before, given, name = self.mechanics, dict(event.mapping("values")), event.get("name")
         known = {} if name == presets.OWN and given else presets.preset(name).values()
-        self.bench.change(str(name), known | given, part=event.get("part") is True)
+        self.change(str(name), known | given, part=event.get("part") is True)
         self._rebuilt(before, time)
 
     def _undo(self, event: Event, time: float) -> None:
-        before = self.mechanics
-        self._rebuilt(before, time) if self.bench.undo() else self.warnings.say("empty", "to undo")
+        before, name = self.mechanics, event["do"]
+        self._rebuilt(before, time) if self.swap(back=name == "undo") else self._warn("empty", f"to {name}")
 
-    def _redo(self, event: Event, time: float) -> None:
-        before = self.mechanics
-        self._rebuilt(before, time) if self.bench.redo() else self.warnings.say("empty", "to redo")
+    _redo = _undo
 
     def _rebuilt(self, before: Mechanics, time: float) -> None:
         """Another design goes on where the former one is, held or swinging; its time begins."""
@@ -259,7 +254,7 @@ class Session(Instant):
             self._let_go(before.snapshot.velocity, time)
             return
         if before.moving:
-            self.warnings.say("swing-ended")
+            self._warn("swing-ended")
         self.clock.begin(None)
         self._hold()
 
@@ -278,18 +273,8 @@ class Session(Instant):
 
     def _rest(self, event: Event, time: float) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""
-        if self._marker is None or self.sight["state"] == "lost":
-            self.warnings.say("no-rest")
+        if self.marker is None or self.sight["state"] == "lost":
+            self._warn("no-rest")
             return
-        self.bench.set_rest(self._marker)
+        self.set_rest(self.marker)
         self._reset(event, time)
-
-
-#: What an event may do.
-ACTIONS = {
-    name: getattr(Session, f"_{name}")
-    for name in (
-        *("setup", "pose", "seen", "unseen", "tick", "release", "catch", "pause", "resume", "step", "reset"),
-        *("parameter", "preset", "undo", "redo", "drive", "solver", "rest"),
-    )
-}

@@ -1,13 +1,15 @@
-"""The released pivot, step after step: sequential impulses (section 4.1) in all their forms, and the
-energy-consistent integrator."""
+"""What moves the body: an elastic hand or a load, to where strips, spring and load balance; and, released,
+step after step, sequential impulses (section 4.1) in all their forms, or the energy-consistent integrator."""
 
 import math
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from spline_model.compile import compile_scene
 from spline_model.effects import StripDamping
+from spline_model.held import HeldPivot, HeldState
 from spline_model.impulses.solver import Run
 from spline_model.motion.energy_consistent import Stepper
 from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
@@ -22,6 +24,9 @@ from studies.kinds import Array
 SMALLEST_PART = 2.0**-6
 #: Part of its stability limit that a step of the printed form has, and most of them for one of the frame's.
 STABLE_PART, MOST_PARTS = 0.8, 1000
+#: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and
+#: the force that is none, over EI / L^2.
+MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
 #: Solvers by the name that the user chooses. The first is what one begins with.
 SOLVERS = {
     f"{form} {way}": f"{title}, {formed}"
@@ -46,30 +51,6 @@ class _Moving(NamedTuple):
     iterations: int
 
 
-class Motion(Protocol):
-    """A solver that was started from a state; `longest`: step [s] that it can take."""
-
-    longest: float
-
-    def advance(self, steps: int, step: float) -> float:
-        """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
-        good state being kept."""
-
-    def state(self) -> _Moving:
-        """Return the present state."""
-
-
-def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
-    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
-
-    sweeps: most of them for one linear system, where there are any.
-    """
-    if solver == "energy":
-        return _Energy(pivot, z, v)
-    form, way = solver.split()
-    return _Impulses(pivot, z, v, form, way, sweeps)
-
-
 class _Energy:
     """The energy-consistent integrator, one call a frame."""
 
@@ -81,7 +62,8 @@ class _Energy:
         self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
 
     def advance(self, steps: int, step: float) -> float:
-        """Take steps, halved at need down to SMALLEST_PART."""
+        """Take `steps` steps of `step` seconds, halved at need down to SMALLEST_PART; returns the time done
+        [s], 0 where the solver fails, the last good state being kept."""
         stepper = self._stepper
         before, kept = int(stepper.counters[NEWTON]), stepper.kept()
         for _ in range(steps):
@@ -114,7 +96,7 @@ class _Impulses:
             self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
 
     def advance(self, steps: int, step: float) -> float:
-        """Take steps; where one must be cut below its least part, none counts."""
+        """As of the other; where a step must be cut below its least part, none counts."""
         solver, begin = self._solver, self._out.state
         parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
         step, steps = min(step / parts, self.longest), steps * parts
@@ -132,3 +114,79 @@ class _Impulses:
         out = self._out
         energies = out.kinetic_energy, out.strain_energy, self._dissipated
         return _Moving(out.state.z, out.state.v, *energies, out.counters[self._count])
+
+
+#: A solver that was started from a state; `longest`: step [s] that it can take.
+Motion = _Energy | _Impulses
+
+
+def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
+    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
+
+    sweeps: most of them for one linear system, where there are any.
+    """
+    if solver == "energy":
+        return _Energy(pivot, z, v)
+    form, way = solver.split()
+    return _Impulses(pivot, z, v, form, way, sweeps)
+
+
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """A spring of some stiffness [N/m] from the body's centre to `pose` (3,), and a dead `load` (3,) on it.
+
+    The turn, where the body `turns` freely, is measured by the way of a point at `length` [m].
+    """
+
+    pose: Array
+    stiffness: float
+    length: float
+    turns: bool
+    load: Array
+
+    def balanced(self, held: HeldPivot, state: HeldState, least: float) -> tuple[HeldState | None, int]:
+        """Return the state in which no force is out of balance, sought from the held `state` on, None where
+        none is found, and the iterations; `least`: the size of forces [N]."""
+        work = 0
+        for _ in range(MOST_PULLS):
+            force, tangent = self._force(state)
+            far = self.stiffness * math.dist(self.pose[:2], state.pose[:2])
+            if np.linalg.norm(force) <= BALANCED * (least + far):
+                return state, work
+            values, ways = np.linalg.eigh(tangent)
+            step = -ways @ ((ways.T @ force) / np.abs(values))
+            step *= min(1.0, LONGEST_PULL * self.length / max(float(np.linalg.norm(step)), 1e-300))
+            state, used = self._lower(held, state, step)
+            work += used
+            if used == 0:
+                break
+        return None, work
+
+    def _lower(self, held: HeldPivot, state: HeldState, step: Array) -> tuple[HeldState, int]:
+        """Return the state after a step of the pose, or the part of it that lowers the energy, or the force;
+        and the iterations, 0 where no part does."""
+        known, before = held.unknowns, self._energy(state)
+        least = np.linalg.norm(self._force(state)[0])
+        for halved in range(HALVINGS):
+            x, y, turn = 0.5**halved * np.append(step, np.zeros(3 - len(step)))
+            pose = state.pose + np.array([x, y, turn / self.length])
+            found = held.hold(float(pose[0]), float(pose[1]), float(pose[2]))
+            lower = found.solved and self._energy(found) < before
+            if lower or (found.solved and np.linalg.norm(self._force(found)[0]) < least):
+                return found, max(1, found.iterations)
+            held.restore(known)
+        return state, 0
+
+    def _force(self, state: HeldState) -> tuple[Array, Array]:
+        """Return the force that is out of balance, (2,) or (3,) where the body turns, and its derivative."""
+        unit, spring = np.array([1.0, 1.0, 1.0 / self.length]), self.stiffness * np.array([1.0, 1.0, 0.0])
+        count = 3 if self.turns else 2
+        force = (state.force - self.load + spring * (state.pose - self.pose)) * unit
+        tangent = (state.tangent + np.diag(spring)) * np.outer(unit, unit)
+        return force[:count], tangent[:count, :count]
+
+    def _energy(self, state: HeldState) -> float:
+        """Return the energy of strips, spring and load [J]."""
+        away = state.pose[:2] - self.pose[:2]
+        stored = state.bending_energy + state.axial_energy + 0.5 * self.stiffness * float(away @ away)
+        return stored - float(self.load[:2] @ away)

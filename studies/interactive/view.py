@@ -6,20 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.sequential_impulse import SWEEPS
-from studies.interactive.pivot.bench import Bench
-from studies.interactive.pivot.design import Curve, Placing, Reading, scales
-from studies.interactive.pivot.input import Clock, Hand, Readings
-from studies.interactive.pivot.mechanics import Mechanics
-from studies.interactive.pivot.motion import SOLVERS
+from studies.interactive.bench import SPRUNG, Bench
+from studies.interactive.design import Curve, scales
 from studies.kinds import Array
 
 #: Least spread that is written, over its value.
 FINEST = 1e-4
 #: What lies below this part of a design's own scale is round-off, and written as nought.
 ROUND_OFF = 1e-6
-#: Energies of a state, by the names that its snapshot has for them.
-ENERGIES = ("strain", "kinetic", "potential", "dissipated", "lost")
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -35,15 +29,15 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
     value = 0.0 if abs(value) < least else value
     if spread is None:
         value = float(f"{value:.3g}")
-        scale, prefix = _prefix(abs(value), unit)
+        scale, prefix = _prefix(abs(value))
         return f"{value / scale + 0.0:.4g} {prefix}{unit}"
     spread = float(f"{max(spread, FINEST * abs(value)):.2g}")
-    scale, prefix = _prefix(max(abs(value), spread), unit)
+    scale, prefix = _prefix(max(abs(value), spread))
     places = max(0, 1 - math.floor(math.log10(spread / scale))) if spread > 0.0 else 2
     return f"{fixed(value / scale, places)} ± {spread / scale:.{places}f} {prefix}{unit}"
 
 
-def _prefix(size: float, unit: str) -> tuple[float, str]:
+def _prefix(size: float) -> tuple[float, str]:
     if size == 0.0:
         return 1.0, ""
     return next((pair for pair in PREFIXES if size >= pair[0]), PREFIXES[-1])
@@ -63,7 +57,8 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
     of_yield = state["stress"]["of_yield"]
     percent = 100.0 * of_yield if of_yield > ROUND_OFF else 0.0
-    energy = {name: quantity(state["energy"][name], "J", least["energy"]) for name in ENERGIES}
+    energies = [(name, value) for name, value in state["energy"].items() if name != "start"]
+    energy = {name: quantity(value, "J", least["energy"]) for name, value in energies}
     return energy | {
         "rotation": fixed(math.degrees(turn), 2)
         + ("" if sd is None else f" ± {math.degrees(sd[2]):.2f}")
@@ -92,13 +87,6 @@ def _sentence(state: Mapping[str, Any], texts: Mapping[str, str]) -> str:
     return f"Held at {angle}°{pause}: moment {texts['moment']}, stress {stress} % of yield."
 
 
-#: What the hand holds: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
-#: alone; the whole pose.
-DRIVES = ("grip", "pull", "rotation", "pose")
-SPRUNG = ("grip", "pull")
-#: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
-#: that spread where a pointer shows the place [m].
-FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: Fault -> the sentence that explains it and says what to do.
 SENTENCES = {
     "lost": "A marker is not seen: show both markers whole, flat and lit.",
@@ -144,142 +132,61 @@ def curved(curve: Curve, strength: float) -> dict[str, Any]:
     }
 
 
-class _Warnings:
-    """The faults of one event by code, each said once."""
-
-    def __init__(self) -> None:
-        self.said: dict[str, str] = {}
-
-    def begin(self) -> None:
-        """Forget those of the last event."""
-        self.said = {}
-
-    def say(self, code: str, detail: str = "") -> None:
-        """Add a fault; `detail` stands behind its sentence in brackets."""
-        sentence = SENTENCES.get(code, SENTENCES["lost"])
-        self.said[code] = f"{sentence[:-1]} ({detail})." if detail else sentence
-
-
-class Instant:
-    """A session between two events: its design, its time, what holds the body, and what is to be said."""
-
-    def _begin(self, preset: str, values: Mapping[str, object], lock_step: bool) -> None:
-        """Everything as at the start, with these settings."""
-        self.bench, self.clock = Bench(preset, values), Clock(lock_step=lock_step)
-        self.warnings = _Warnings()
-        self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
-        self.sweeps, self.paused, self.time = SWEEPS, False, 0.0
-        self.sight: dict[str, Any] = {"state": "none"}
-        self.spread: Array | None = None
-        self.wanted = np.zeros(3)
-        self._marker: Array | None = None
-        self._hand = Hand()
-        self.readings = Readings()
-
-    @property
-    def grip(self) -> float:
-        """Stiffness of the spring from the centre to where the hand is seen [N/m]: a finger's, in series with
-        one that turns what the camera cannot tell into no more force than the strips' bending hides."""
-        spread = POINTER if self.spread is None else float(np.linalg.norm(self.spread[:2], axis=1).max())
-        return 1.0 / (1.0 / FINGER + spread / (SHARE * scales(self.mechanics.values)["force"]))
-
-    @property
-    def ways(self) -> Array:
-        """Pose of the body over that of the hand (3, 3), as it is held, to first order."""
-        tangent, rigid = self.mechanics.snapshot.tangent, np.eye(3)
-        if self.drive == "pose" or tangent is None:
-            return rigid
-        spring = self.grip * np.diag([1.0, 1.0, 0.0])
-        if self.drive == "pull":
-            return np.asarray(np.linalg.solve(tangent + spring, spring))
-        spring = spring[:2, :2] if self.drive == "grip" else np.zeros((2, 2))
-        rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
-        return rigid
-
-    @property
-    def mechanics(self) -> Mechanics:
-        """The present design at work."""
-        return self.bench.mechanics
-
-    @property
-    def placing(self) -> Placing:
-        """Where its markers sit."""
-        return self.bench.placing
-
-
-def shown(session: Instant) -> dict[str, Any]:
+def shown(bench: Bench) -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
-    mechanics, now = session.mechanics, session.mechanics.snapshot
-    values, moving = mechanics.values, mechanics.moving
+    mechanics, placing, now = bench.mechanics, bench.placing, bench.mechanics.snapshot
+    values, moving, sd = mechanics.values, mechanics.moving, bench.readings.sd
     state: dict[str, Any] = {
-        "t": session.time,
+        "t": bench.time,
         "mode": "released" if moving else "held",
-        "paused": session.paused,
-        "preset": session.bench.preset,
+        "paused": bench.paused,
+        "preset": bench.preset,
         "values": values,
-        "drive": session.drive,
-        "solver": session.solver,
-        "sweeps": session.sweeps,
-        "steps": session.clock.steps,
-        "simulated": session.clock.simulated,
+        "drive": bench.drive,
+        "solver": bench.solver,
+        "sweeps": bench.sweeps,
+        "steps": bench.clock.steps,
+        "simulated": bench.clock.simulated,
         "iterations": now.iterations,
-        "sight": session.sight,
+        "sight": bench.sight,
         "scale": scales(values),
-        **_body(session),
-        **_strips(now.reading, values["yield_strength"]),
-        "energy": {
-            **{name: getattr(now, name) for name in ENERGIES},
-            "start": mechanics.begun if moving else None,
-        },
-        "placing": _placing(session),
-        "warnings": [{"code": code, "text": text} for code, text in session.warnings.said.items()],
-    }
-    state["texts"] = _readout(state, session.readings.mean(now))
-    state["status"] = _sentence(state, state["texts"])
-    return state
-
-
-def _body(session: Instant) -> dict[str, Any]:
-    """Where the body is, how it moves, what holds it, and how sure that is."""
-    now, placing, sd = session.mechanics.snapshot, session.placing, session.readings.sd
-    held_by_spring = session.drive in SPRUNG and not session.mechanics.moving
-    return {
         "pose": _plain(now.pose),
         "displacement": [*_plain(now.pose[:2] - placing.centre), float(now.pose[2])],
-        "wanted": _plain(session.wanted),
+        "wanted": _plain(bench.wanted),
         "centre_shift": placing.crossing_shift(now.pose),
         "velocity": _plain(now.velocity),
         "centre": None if now.centre is None else list(now.centre),
         "force": _plain(now.force),
         "stiffness": now.stiffness,
-        "grip": session.grip if held_by_spring else None,
+        "grip": bench.grip if bench.drive in SPRUNG and not moving else None,
         "sd": None if sd is None else _plain(sd),
-        "force_sd": _force_sd(session),
+        "force_sd": _force_sd(bench),
+        "shape": _plain(now.shape),
+        "stress": _stress(now.stress, values["yield_strength"]),
+        "energy": now.energy | {"start": mechanics.begun if moving else None},
+        "placing": {
+            "ground": _plain(placing.ground),
+            "marker": _plain(placing.marker(now.pose)),
+            "clamps": _plain(mechanics.pivot.clamp_points),
+            "centre": _plain(placing.centre),
+        },
+        "warnings": [{"code": code, "text": text} for code, text in bench.warnings.items()],
     }
+    state["texts"] = _readout(state, bench.readings.mean(now))
+    state["status"] = _sentence(state, state["texts"])
+    return state
 
 
-def _strips(reading: Reading, strength: float) -> dict[str, Any]:
-    """Shapes of the strips, and their stress over their strength [Pa]."""
-    strip, place = np.unravel_index(int(np.argmax(reading.stress)), reading.stress.shape)
-    largest = float(reading.stress[strip, place])
-    stress = {
+def _stress(stress: Array, strength: float) -> dict[str, Any]:
+    """The largest stress (2, P) of the strips, where it is, and all of it, over their strength [Pa]."""
+    strip, place = np.unravel_index(int(np.argmax(stress)), stress.shape)
+    largest = float(stress[strip, place])
+    return {
         "max": largest,
         "of_yield": largest / strength,
         "strip": int(strip),
         "place": int(place),
-        "along": _plain(np.round(reading.stress / strength, 4)),
-    }
-    return {"shape": _plain(reading.shape), "stress": stress}
-
-
-def _placing(session: Instant) -> dict[str, Any]:
-    """Places of markers, clamps and body at rest."""
-    placing, pivot = session.placing, session.mechanics.pivot
-    return {
-        "ground": _plain(placing.ground),
-        "marker": _plain(placing.marker(session.mechanics.snapshot.pose)),
-        "clamps": _plain(pivot.clamp_points),
-        "centre": _plain(pivot.centre),
+        "along": _plain(np.round(stress / strength, 4)),
     }
 
 
@@ -288,10 +195,10 @@ def _plain(array: Array) -> Any:
     return np.asarray(array, dtype=float).tolist()
 
 
-def _force_sd(session: Instant) -> list[float | None] | None:
+def _force_sd(bench: Bench) -> list[float | None] | None:
     """Standard deviations of force, moment and stiffness; none of forces that are nought by make."""
-    sd = session.readings.force_sd
+    sd = bench.readings.force_sd
     if sd is None:
         return None
     known: list[float | None] = [value if np.isfinite(value) else None for value in sd.tolist()]
-    return [None, None, *known[2:]] if session.drive == "rotation" else known
+    return [None, None, *known[2:]] if bench.drive == "rotation" else known

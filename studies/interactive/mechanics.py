@@ -12,21 +12,9 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
 from spline_model.pivot import BODY, STRIPS
-from studies.interactive.pivot.design import (
-    PLACES,
-    REACH,
-    Curve,
-    Reading,
-    build,
-    free_stiffness,
-    free_turn,
-    pole,
-    read,
-    scales,
-)
-from studies.interactive.pivot.motion import Motion, motion
-from studies.interactive.pivot.presets import STEP
-from studies.interactive.pivot.pull import Pull
+from studies.interactive.design import PLACES, REACH, Curve, build, read, scales
+from studies.interactive.motion import Motion, Pull, motion
+from studies.interactive.presets import STEP
 from studies.kinds import Array
 
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
@@ -47,27 +35,24 @@ class Snapshot:
 
     Attributes:
         pose: x, y, theta of the body (3,); velocity (3,), zero while held.
-        reading: shapes, stresses and strains of the strips.
+        shape (2, P, 2) [m], stress (2, P) [Pa]: of the strips, as `design.read` says.
         force: what holds the body (3,) [N, N, N m], zero when released; tangent (3, 3) its derivative or
             None.
         stiffness: rotational, with the body's centre free [N m/rad], None when released.
-        strain, kinetic, potential, dissipated, lost: energies [J], potential of the load from rest on,
-            dissipated by the strips' damping, lost to the steps' own.
+        energy: by what has it [J]: strain, kinetic, potential of the load from rest on, dissipated by the
+            strips' damping, lost to the steps' own.
         centre: the instantaneous centre of rotation, None where the body does not turn.
         iterations: of Newton's method.
     """
 
     pose: Array
     velocity: Array = field(default_factory=lambda: np.zeros(3))
-    reading: Reading
+    shape: Array
+    stress: Array
     force: Array = field(default_factory=lambda: np.zeros(3))
     tangent: Array | None = None
     stiffness: float | None = None
-    strain: float
-    kinetic: float = 0.0
-    potential: float
-    dissipated: float = 0.0
-    lost: float = 0.0
+    energy: dict[str, float]
     centre: tuple[float, float] | None
     iterations: int
 
@@ -120,13 +105,13 @@ class Mechanics:
 
         Where no equilibrium follows from the last state, a way from rest is tried: first turned, then pushed.
         """
-        state = self._held.hold(float(pose[0]), float(pose[1]), float(pose[2]))
+        state = self._held.hold(*pose)
         work = state.iterations
         if not state.solved:
             known, reached = self._held.unknowns, state.reached
             self._held.reset()
             self._held.turn(float(pose[2]))
-            state = self._held.hold(float(pose[0]), float(pose[1]), float(pose[2]))
+            state = self._held.hold(*pose)
             work += state.iterations
             if not state.solved:
                 self._held.restore(known)
@@ -171,7 +156,7 @@ class Mechanics:
         known, here, total = self._held.unknowns, self.snapshot, 0.0
         for way in PART * ways.T:
             state = self._held.hold(*(here.pose + way))
-            change = free_stiffness(state.tangent) - (here.stiffness or 0.0) if state.solved else math.nan
+            change = _free_stiffness(state.tangent) - (here.stiffness or 0.0) if state.solved else math.nan
             total += (change / PART) ** 2
             self._held.restore(known)
         return math.sqrt(total)
@@ -185,7 +170,7 @@ class Mechanics:
             if other.turn(float(angle)) < 1.0 and rows:
                 break
             now = other.snapshot
-            shift, stress = now.pose[:2] - self.pivot.centre, now.reading.stress.max()
+            shift, stress = now.pose[:2] - self.pivot.centre, now.stress.max()
             rows.append([now.pose[2], *shift, now.force[2], stress])
         table = np.array(rows)
         return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
@@ -226,13 +211,9 @@ class Mechanics:
 
     def catch(self) -> bool:
         """Hold the moving body where it is; False, and still moving, where no static state is found there."""
-        pose = self.snapshot.pose.copy()
-        known = self._held.unknowns
-        if self.hold(pose) < 1.0:
-            self._held.restore(known)
-            return False
-        self._motion = None
-        return True
+        caught = self.hold(self.snapshot.pose.copy()) == 1.0
+        self._motion = None if caught else self._motion
+        return caught
 
     def _rates(self, velocity: Array) -> Array:
         """Velocities of all coordinates (Q,) when the body moves with `velocity` through static states."""
@@ -253,16 +234,23 @@ class Mechanics:
         return float(self._load[:2] @ (self.pivot.centre - pose[:2]))
 
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
-        way = free_turn(state.tangent)
+        shape, stress = read(self.values, self._held.control_points)
+        energy = {
+            "strain": state.bending_energy + state.axial_energy,
+            "kinetic": 0.0,
+            "potential": self._potential(state.pose),
+            "dissipated": 0.0,
+            "lost": 0.0,
+        }
         return Snapshot(
             pose=state.pose,
-            reading=read(self.values, self._held.control_points),
+            shape=shape,
+            stress=stress,
             force=state.force - self._load,
             tangent=state.tangent,
-            stiffness=free_stiffness(state.tangent),
-            strain=state.bending_energy + state.axial_energy,
-            potential=self._potential(state.pose),
-            centre=pole(state.pose, way, 0.0),
+            stiffness=_free_stiffness(state.tangent),
+            energy=energy,
+            centre=_pole(state.pose, _free_turn(state.tangent), 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
 
@@ -270,16 +258,40 @@ class Mechanics:
         now, layout = moving.state(), self._system.layout
         pose, velocity = now.z[layout.body(BODY)].copy(), now.v[layout.body(BODY)].copy()
         points = np.stack([now.z[layout.strip(name)].reshape(-1, 2) for name in STRIPS])
-        potential = self._potential(pose)
+        shape, stress = read(self.values, points)
+        energy = {
+            "strain": now.strain,
+            "kinetic": now.kinetic,
+            "potential": self._potential(pose),
+            "dissipated": now.dissipated,
+        }
         return Snapshot(
             pose=pose,
             velocity=velocity,
-            reading=read(self.values, points),
-            strain=now.strain,
-            kinetic=now.kinetic,
-            potential=potential,
-            dissipated=now.dissipated,
-            lost=self.begun - now.strain - now.kinetic - now.dissipated - potential,
-            centre=pole(pose, velocity, LEAST_TURN / self.step),
+            shape=shape,
+            stress=stress,
+            energy=energy | {"lost": self.begun - sum(energy.values())},
+            centre=_pole(pose, velocity, LEAST_TURN / self.step),
             iterations=now.iterations,
         )
+
+
+def _pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
+    """Return the instantaneous centre of a body at `pose` (3,) with `velocity` (3,) [m], None below `least`
+    rad/s."""
+    vx, vy, omega = velocity
+    if not abs(omega) > least:
+        return None
+    return float(pose[0] - vy / omega), float(pose[1] + vx / omega)
+
+
+def _free_turn(tangent: Array) -> Array:
+    """Return the velocity (3,) of a body that is turned at 1 rad/s by a moment alone, from its tangent (3,
+    3)."""
+    shift = -np.linalg.solve(tangent[:2, :2], tangent[:2, 2])
+    return np.array([shift[0], shift[1], 1.0])
+
+
+def _free_stiffness(tangent: Array) -> float:
+    """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
+    return float(tangent[2] @ _free_turn(tangent))

@@ -3,7 +3,7 @@ it, and where its markers sit."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -21,6 +21,11 @@ SLIDE_STIFFNESS = 1000.0
 #: Places along a strip where its shape and stress are given, as fractions of its length.
 STATIONS = np.linspace(0.0, 1.0, 25)
 
+#: What a pivot is built from, by the names of the parameters.
+GIVEN = (
+    *("length", "inclination", "crossing_ratio", "thickness", "width", "youngs_modulus", "density"),
+    *("body_mass", "body_moment_of_inertia"),
+)
 POISSON_RATIO = 0.3
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
@@ -40,35 +45,16 @@ def scene(
 
 def build(values: Mapping[str, float], *, loaded: bool = False) -> Pivot:
     """Return the pivot of the parameters, in SI units, and what acts on it but for its load."""
-    thickness, width = values["thickness"], values["width"]
     effects, parameters = scene(values, loaded=loaded)
+    given: dict[str, Any] = {name: values[name] for name in GIVEN}
     return cross_axis_pivot(
-        length=values["length"],
-        inclination=values["inclination"],
-        crossing_ratio=values["crossing_ratio"],
-        area=width * thickness,
-        second_moment_of_area=width * thickness**3 / 12.0,
-        youngs_modulus=values["youngs_modulus"],
+        **given,
         poisson_ratio=POISSON_RATIO,
-        density=values["density"],
-        body_mass=values["body_mass"],
-        body_moment_of_inertia=values["body_moment_of_inertia"],
         effects=effects,
         parameters=parameters,
         control_points=CONTROL_POINTS,
         slide_stiffness=SLIDE_STIFFNESS,
     )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Reading:
-    """What the control points of both strips tell; P stations.
-
-    shape (2, P, 2) [m]; stress (2, P): largest in the section [Pa], |N| / A + |M| / W.
-    """
-
-    shape: Array
-    stress: Array
 
 
 @cache
@@ -84,9 +70,9 @@ def _tables() -> tuple[list[Array], Array, Array]:
     return shapes, basis.evaluate((u + 1.0) / 2.0, 1), spread
 
 
-def read(values: Mapping[str, float], points: Array) -> Reading:
-    """Return the reading of the control points (2, n, 2) [m] of a design's strips, by the constitutive laws
-    of both models.
+def read(values: Mapping[str, float], points: Array) -> tuple[Array, Array]:
+    """Return shape (2, P, 2) [m] and stress (2, P), largest in the section [Pa], |N| / A + |M| / W, at P
+    stations of a design's strips with control points (2, n, 2) [m], by the constitutive laws of both models.
 
     Exact for the discretised strip: material curvature times E h / 2, and the stretch projected on the axial
     modes times E; leaves out what the clamps' fillets add.
@@ -97,8 +83,7 @@ def read(values: Mapping[str, float], points: Array) -> Reading:
     curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / values["length"]
     stretch = np.linalg.norm(slope @ points, axis=-1) / values["length"] - 1.0
     axial = stretch @ spread.T
-    stress = values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * values["thickness"] / 2.0)
-    return Reading(shape=shape, stress=stress)
+    return shape, values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * values["thickness"] / 2.0)
 
 
 #: Rotation up to which it is known [rad], and at how many places.
@@ -142,27 +127,6 @@ def scales(values: Mapping[str, float]) -> dict[str, float]:
     return {"moment": bending, "force": bending / length, "energy": bending, "stress": stress}
 
 
-def pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
-    """Return the instantaneous centre of a body at `pose` (3,) with `velocity` (3,) [m], None below `least`
-    rad/s."""
-    vx, vy, omega = velocity
-    if not abs(omega) > least:
-        return None
-    return float(pose[0] - vy / omega), float(pose[1] + vx / omega)
-
-
-def free_turn(tangent: Array) -> Array:
-    """Return the velocity (3,) of a body that is turned at 1 rad/s by a moment alone, from its tangent (3,
-    3)."""
-    shift = -np.linalg.solve(tangent[:2, :2], tangent[:2, 2])
-    return np.array([shift[0], shift[1], 1.0])
-
-
-def free_stiffness(tangent: Array) -> float:
-    """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
-    return float(tangent[2] @ free_turn(tangent))
-
-
 #: Distance of the ground's marker from the clamped plate it is glued to [m], as on the printed sheet.
 STANDOFF = 0.045
 #: Side of the black square [m], as printed.
@@ -199,40 +163,37 @@ class Placing:
     crossing: Array
 
     @classmethod
-    def of(cls, pivot: Pivot) -> "Placing":
-        """Return the printed sheet's placing for a design."""
+    def of(cls, pivot: Pivot, rest: Array | None = None) -> "Placing":
+        """Return the placing for a design of markers as on the printed sheet, or at `rest` (3,)."""
         ground = pivot.clamp_points[:, 0].mean(axis=0) - np.array([0.0, STANDOFF])
-        start, along = pivot.clamp_points[:, 0], pivot.clamp_points[:, 1] - pivot.clamp_points[:, 0]
-        crossing = (
-            start[0]
-            + along[0] * np.linalg.solve(np.column_stack((along[0], -along[1])), start[1] - start[0])[0]
-        )
-        return cls(ground=ground, rest=np.array(PRINTED), centre=pivot.centre, crossing=crossing)
+        start, end = pivot.clamp_points[0]
+        crossing = start + pivot.crossing_reach[0] * (end - start)
+        rest = np.array(PRINTED) if rest is None else rest
+        return cls(ground=ground, rest=rest, centre=pivot.centre, crossing=crossing)
+
+    @property
+    def _arm(self) -> Array:
+        """From marker 1 to the body's centre (2,) [m], at rest."""
+        return self.centre - self.ground - self.rest[:2]
 
     def crossing_shift(self, body: Array) -> float:
         """Return how far [m] the body's point that lies in the strips' crossing at rest is from there."""
         return float(np.hypot(*(body[:2] + turned(body[2], self.crossing - self.centre) - self.crossing)))
 
-    def with_rest(self, marker: Array) -> "Placing":
-        """Return the placing of markers that stand at `marker` (3,) when the pivot is at rest."""
-        return replace(self, rest=np.array(marker, dtype=float))
-
     def body(self, marker: Array, near: float = 0.0) -> Array:
         """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
         from `near`."""
         angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
-        arm = self.centre - self.ground - self.rest[:2]
-        return np.array([*(self.ground + marker[:2] + turned(angle, arm)), angle])
+        return np.array([*(self.ground + marker[:2] + turned(angle, self._arm)), angle])
 
     def marker(self, body: Array) -> Array:
         """Return the pose (3,) of marker 1 in marker 0's frame for the body's pose."""
-        arm = self.centre - self.ground - self.rest[:2]
-        return np.array([*(body[:2] - self.ground - turned(body[2], arm)), body[2] + self.rest[2]])
+        return np.array([*(body[:2] - self.ground - turned(body[2], self._arm)), body[2] + self.rest[2]])
 
     def spread(self, sd: Array, turn: float) -> Array:
         """Return the body's pose over those of the marker's x, y and turn (3, 3), in standard deviations, at
         the body's turn [rad]."""
-        arm = turned(turn, self.centre - self.ground - self.rest[:2])
+        arm = turned(turn, self._arm)
         return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]], [0.0, 0.0, 1.0]]) * sd
 
     def looks_swapped(self, marker: Array) -> bool:

@@ -5,19 +5,25 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TypeGuard
 
 from spline_model.modes import natural_frequencies
 from studies.cases.design import as_toml, document_of
 from studies.cases.effects import Effects
 from studies.cases.keys import MATERIALS
+from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
 from studies.errors import BadInput
-from studies.interactive.pivot.design import POISSON_RATIO, build, scene
+from studies.interactive.design import GIVEN, POISSON_RATIO, build, scene
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
 STEPS_A_FRAME = 4
+
+
+def finite(value: object) -> TypeGuard[float]:
+    """Return whether a value is a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 @dataclass(frozen=True)
@@ -45,12 +51,11 @@ class _Parameter:
         Raises:
             BadInput: not a finite number between low and high; one line.
         """
-        good = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        if not good or not self.low <= value <= self.high:  # type: ignore[operator]
-            low, high = self.low * self.per_si, self.high * self.per_si
-            got = f"{float(value) * self.per_si:g}" if good else repr(value)  # type: ignore[arg-type]
-            raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
-        return float(value)  # type: ignore[arg-type]
+        if finite(value) and self.low <= value <= self.high:
+            return float(value)
+        low, high = self.low * self.per_si, self.high * self.per_si
+        got = f"{value * self.per_si:g}" if finite(value) else repr(value)
+        raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
 
 
 _DEGREE = math.radians(1.0)
@@ -96,18 +101,8 @@ class _Preset:
     def values(self) -> dict[str, float]:
         """Return all parameters of the design by name, in SI units."""
         problem = named_case(self.case)
-        thickness = math.sqrt(12.0 * problem.second_moment_of_area / problem.area)
-        values = {
-            "thickness": thickness,
-            "width": problem.area / thickness,
-            "yield_strength": self.yield_strength,
-            "relaxation_time": self.relaxation_time,
-            "load": self.load,
-            "time_scale": self.time_scale,
-        }
-        return {
-            name: values[name] if name in values else float(getattr(problem, name)) for name in PARAMETERS
-        }
+        given = problem.rectangle() | asdict(self)
+        return {name: given[name] if name in given else float(getattr(problem, name)) for name in PARAMETERS}
 
 
 PRESETS: dict[str, _Preset] = {
@@ -177,15 +172,11 @@ def values_of(text: str) -> dict[str, float]:
 
 def as_case(values: Mapping[str, float]) -> str:
     """Return the text of the case file of a design, which the other commands read."""
-    width, thickness = values["width"], values["thickness"]
     names, tables = scene(values)
-    given: dict[str, Any] = {
-        name: values[name] for name in PARAMETERS if name not in ("relaxation_time", "load", "time_scale")
-    }
+    given: dict[str, Any] = {name: values[name] for name in (*GIVEN, "yield_strength")}
     problem = Problem(
         **given,
-        area=width * thickness,
-        second_moment_of_area=width * thickness**3 / 12.0,
+        **of_sides(values["width"], values["thickness"]),
         poisson_ratio=POISSON_RATIO,
         rotation=math.radians(45),
         increments=45,

@@ -10,9 +10,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.errors import BadInput
-from studies.interactive.pivot.mechanics import Mechanics, Snapshot
-from studies.interactive.pivot.presets import STEP, STEPS_A_FRAME
+from studies.interactive.mechanics import Mechanics, Snapshot
+from studies.interactive.presets import STEP, STEPS_A_FRAME, finite
 from studies.kinds import Array
+
+#: What an event may do, each a method of the session, and the fields that the page may say of it.
+EVENTS: dict[str, tuple[str, ...]] = {
+    "setup": ("preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"),
+    "pose": ("pose",),
+    "seen": ("marker", "sd", "rms", "state", "plane", "quads", "faults"),
+    "unseen": ("code", "text"),
+    "tick": (),
+    "release": ("speed",),
+    "catch": (),
+    "pause": (),
+    "resume": (),
+    "step": (),
+    "reset": (),
+    "parameter": ("name", "value", "part"),
+    "preset": ("name", "values", "part"),
+    "undo": (),
+    "redo": (),
+    "drive": ("by",),
+    "solver": ("name", "sweeps"),
+    "rest": (),
+}
 
 
 class Event(dict[str, Any]):
@@ -22,7 +44,7 @@ class Event(dict[str, Any]):
     def number(self, key: str) -> float:
         """Return a finite number."""
         value = self.get(key)
-        if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
+        if not finite(value):
             raise BadInput(f"{key}: got {value!r}, expected a finite number")
         return float(value)
 

@@ -1,0 +1,183 @@
+"""Sub-pixel corners of dark squares: a line through each edge, corners where lines meet. Pixel centres are
+whole.
+
+A lens blurs light and the camera encodes it, by about the power 1/2.2: edges of encoded values lie too far
+in the dark. What is left of that by another camera, by clipped light and by ink that spreads is one offset of
+all edges, told by those of both polarities. The black square around a marker becomes too small and the light
+cells within it too large: between its own corners, which are too close by twice the offset, an edge of cells
+across u (-1/2 to 1/2, towards its light side) is found 1 - 2 u times the offset off. Least squares over all
+edges of the cells give it.
+"""
+
+import math
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from studies.interactive.tracking.edges import Picture, edges
+from studies.interactive.tracking.planar import homography, project
+from studies.kinds import Array
+
+Cells = NDArray[np.bool_]
+
+#: Half length of the profiles in successive passes [px], and the share of the side that keeps them inside the
+#: black border.
+REACHES = (4.5, 3.0, 3.5)
+SHARE = 0.095
+LEAST_REACH = 1.5
+#: Places of the corners after and before those of a square.
+AFTER, BEFORE = [1, 2, 3, 0], [3, 0, 1, 2]
+#: Power of a camera's values that light is: of those that encode it, as nearly all do.
+GAMMA = 2.2
+#: Half length of the profiles across the edges of cells, and what is left out at the ends of such an edge,
+#: over the side of a cell.
+REACH, END = 0.45, 0.25
+#: Profiles an edge of cells, which is a few pixels long.
+STATIONS = 12
+#: Least share of good stations of an edge of cells.
+LEAST_OF_CELLS = 0.5
+#: Offset [px] over the step to another power, damped: one that is too large by one makes 0.55; from which one
+#: on it is made; powers that cameras have.
+BY_POWER, OTHER, POWERS = 0.7, 0.04, (1.0, 3.0)
+#: Difference of the offsets of cells and of the square around them that no picture tells [px]: what is left
+#: of it on films of powers from 1 to 1/2.4 and blurs from 0.5 to 1.6 px.
+APART = 0.01
+#: Pictures over which the offset is averaged: it is the camera's own, and changes slowly. After as many only
+#: one in EVERY is looked at, for a fifth of all time went there; the average reaches as far back as before.
+PICTURES, EVERY = 50, 5
+
+
+def refine(picture: Picture, quads: Array, gamma: float = GAMMA) -> tuple[Array, Array]:
+    """Return the corners (Q, 4, 2) [px] of the squares near `quads`, in their order, and the share (Q, 4) of
+    good stations of their edges, of a lost one 0.
+
+    Args:
+        gamma: power of the picture's values that light is.
+    """
+    corners = np.array(quads, dtype=float)
+    share, last = np.zeros(corners.shape[:2]), len(REACHES) - 1
+    for k, reach in enumerate(REACHES):
+        corners, share = _pass(picture, corners, reach, k == 0, k == last, gamma)
+    return corners, share
+
+
+def _pass(
+    picture: Picture, corners: Array, reach: float, first: bool, last: bool, gamma: float
+) -> tuple[Array, Array]:
+    """One pass over the edges of squares (Q, 4, 2)."""
+    end = corners[:, AFTER]
+    side = np.sqrt(np.sum((end - corners) ** 2, axis=-1))
+    half = np.minimum(reach, np.maximum(LEAST_REACH, SHARE * side.min(axis=1)))
+    normal = -_normal(corners, end, corners.mean(axis=1, keepdims=True))
+    lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
+    found = edges(picture, lines, half.repeat(4), gamma, first=first, last=last).reshape(-1, 4, 3)
+    p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
+    crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
+    gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
+    lost = ~(gap <= 2.0 * reach)
+    share = np.where(lost | lost[:, AFTER], 0.0, found[..., 2])
+    return np.where(lost[..., None], corners, crossing), share
+
+
+def _normal(p: Array, q: Array, place: Array) -> Array:
+    """Unit normals (..., 2) of the lines from p to q that point to where `place` is."""
+    along = (q - p) / np.sqrt(np.sum((q - p) ** 2, axis=-1, keepdims=True))
+    normal = np.stack((along[..., 1], -along[..., 0]), axis=-1)
+    return np.asarray(normal * np.sign(np.sum(normal * (place - p), axis=-1, keepdims=True)))
+
+
+def _crossings(p: Array, q: Array, r: Array, s: Array) -> Array:
+    """Where the lines p q and r s meet, each (Q, 4, 2)."""
+    d, e = q - p, s - r
+    cross = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
+    gap = r - p
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = (gap[..., 0] * e[..., 1] - gap[..., 1] * e[..., 0]) / cross
+        return np.asarray(p + t[..., None] * d)
+
+
+class Shrinkage:
+    """The offset [px] of one camera, from picture to picture, and the power of its values that light is.
+
+    sd: standard deviation of the offset [px].
+    """
+
+    def __init__(self) -> None:
+        self.offset: float | None = None
+        self.gamma = GAMMA
+        self.sd = 0.0
+        self._pictures = 0
+        self._since = 0
+
+    def taken_out(self, picture: Picture, corners: Array, cells: dict[int, Cells]) -> Array:
+        """Return corners (Q, 4, 2) of dark squares with the offset taken out; cells by the place in Q."""
+        self._since += bool(cells)
+        settled = self._pictures == PICTURES
+        looked = {} if settled and self._since < EVERY else cells
+        found = [_offset(picture, corners[place], each, self.gamma) for place, each in looked.items()]
+        weight = sum(each for _, each, _ in found)
+        if weight > 0.0:
+            now = sum(offset * each for offset, each, _ in found) / weight
+            self._since, self._pictures = 0, min(self._pictures + 1, PICTURES)
+            count = PICTURES // EVERY if settled else self._pictures
+            scatter = max(each for _, _, each in found)
+            self.sd = math.hypot(scatter / math.sqrt(weight * count), APART)
+            before = now if self.offset is None else self.offset
+            self.offset = before + (now - before) / count
+        if self.offset is None:
+            return corners
+        moved = _grown(corners, self.offset)
+        gamma = min(max(self.gamma + self.offset / BY_POWER, POWERS[0]), POWERS[1])
+        if abs(self.offset) > OTHER and gamma != self.gamma:
+            self.offset, self.gamma, self._pictures = None, gamma, 0
+        return moved
+
+
+def _grown(corners: Array, offset: float) -> Array:
+    """Return squares (Q, 4, 2) whose edges lie further out by `offset` [px]."""
+    after = corners[:, AFTER] - corners
+    after /= np.sqrt(np.sum(after**2, axis=-1, keepdims=True))
+    before = after[:, BEFORE]
+    # a corner moves by t before - s after where both edges move by the offset: t = s = offset / sin(angle)
+    sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+    return np.asarray(corners + offset * (before - after) / np.abs(sine)[..., None])
+
+
+def _offset(picture: Picture, corners: Array, cells: Cells, gamma: float) -> tuple[float, float, float]:
+    """Return the offset [px] by the cells (C, C), light or not, of a square, its weight, 0 for none, and the
+    standard deviation of an edge [px]."""
+    side = float(np.hypot(*(np.roll(corners, -1, axis=0) - corners).T).min())
+    half = min(REACHES[-1], REACH * side / len(cells))
+    if half < LEAST_REACH:
+        return 0.0, 0.0, 0.0
+    across, places = _edges_of_cells(cells.tobytes())
+    p, q, lit = project(homography(corners), places)
+    lines = np.stack((p, q, _normal(p, q, lit)))
+    found = edges(picture, lines, np.full(len(p), half), gamma, stations=STATIONS)
+    kept = found[:, 2] >= LEAST_OF_CELLS
+    if kept.sum() < 2:
+        return 0.0, 0.0, 0.0
+    slope, gaps = 2.0 * across[kept] - 1.0, found[kept, :2].mean(axis=1)
+    weight = float(slope @ slope)
+    offset = float(slope @ gaps) / weight
+    return offset, weight, float(np.sqrt(np.mean((gaps - offset * slope) ** 2)))
+
+
+@cache
+def _edges_of_cells(cells: bytes) -> tuple[Array, Array]:
+    """Return u (E,) towards the light of the edges of cells, and both their ends and a place in the light
+    (3, E, 2), in sides."""
+    count = math.isqrt(len(cells))
+    grid = np.frombuffer(cells, dtype=bool).reshape(count, count).astype(int)
+    across, places = list[float](), list[Array]()
+    for turned in (False, True):  # lines along y, then along x
+        for j, kinds in enumerate(np.diff(grid.T if turned else grid, axis=1).T, start=1):
+            at, starts = j / count - 0.5, np.flatnonzero(np.diff(kinds, prepend=0))
+            for i, stop in zip(starts, np.append(starts[1:], count), strict=True):
+                if kinds[i]:
+                    y, low = 0.5 - (i + END) / count, 0.5 - (stop - END) / count
+                    place = np.array([(at, y), (at, low), (at + 0.1 * kinds[i], 0.5 * (y + low))])
+                    across.append(at * kinds[i])
+                    places.append(-place[:, ::-1] if turned else place)
+    return np.array(across), np.stack(places, axis=1)
