@@ -105,7 +105,7 @@ def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
             return np.nan
         tangent = ReducedTangent.of(work)
         eigenvalue, modes[t] = tangent.eigenpair(number)
-        return eigenvalue
+        return eigenvalue if abs(eigenvalue) > tangent.grain else 0.0
 
     t = _zero(value)
     point = None if t is None else bracket.at(t)
@@ -225,6 +225,11 @@ class ReducedTangent:
         free = null_space(constraints / norms) if len(constraints) else np.eye(count)
         below = int((np.diag(between) > 0.0).sum())
         return cls(stiffness=free.T @ stiffness @ free, free=free, below=below)
+
+    @property
+    def grain(self) -> float:
+        """Round-off of an eigenvalue: of long B-splines it exceeds a thousandth of their softest mode's."""
+        return float(np.finfo(float).eps * np.abs(self.stiffness).sum(axis=0).max())
 
     def eigenpair(self, number: int) -> tuple[float, Array]:
         """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
