@@ -39,7 +39,7 @@ COMMANDS: dict[str, str] = {
     "compile": "compile the kernels of both models, once",
     "readme": "rewrite the tables of README.md and docs/ from the results",
 }
-#: Commands that are no `main` of a module of their name in `studies.commands` -> module, or module:function.
+#: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
 PLACES: dict[str, str] = {
     "markers": "studies.commands.interactive:markers",
     "calibrate": "studies.commands.interactive:calibrate",
