@@ -1,5 +1,6 @@
 """For all tests: no kernel of a source which is gone, one hash a source, and what a refusal looks like."""
 
+import gc
 from collections.abc import Callable, Iterator
 from functools import cache
 
@@ -10,9 +11,16 @@ from studies.record import store
 from studies.record.files import forget_stale
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Drop compiled kernels of a former source, once, before the processes that run the tests begin."""
-    forget_stale()
+    if not hasattr(config, "workerinput"):
+        forget_stale()
+
+
+def pytest_collection_finish() -> None:
+    """Keep what was imported and collected out of every later collection of garbage."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

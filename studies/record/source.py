@@ -61,7 +61,7 @@ _VERSIONED = {"ctx", "kind", "type_comment", "type_params"}
 class _Definition:
     """One definition: a text that is equal for equal code, and what stands in it.
 
-    `chains` are its dotted names, `said` the names of attributes and the words of its strings; `entries` are
+    `chains` are its dotted names that begin in this repository, `said` the names of attributes and the words of its strings; `entries` are
     those of a table by its keys, or the methods of a class but for those that Python calls; where a class has
     a base of another library it is open: that may call any of them.
     """
@@ -134,7 +134,11 @@ def _definition(nodes: list[ast.stmt], module: str, ours: Set[str]) -> _Definiti
     return _Definition(
         module=module,
         code=_canonical(own),
-        chains=frozenset(chain for node in walked if id(node) not in inner and (chain := _chain(node))),
+        chains=frozenset(
+            chain
+            for node in walked
+            if id(node) not in inner and (chain := _chain(node)).partition(".")[0] in ours
+        ),
         said=frozenset(attributes).union(WORD.findall("\n".join(texts))),
         entries={key: _definition(value, module, ours) for key, value in entries.items()},
         is_class=is_class,
@@ -216,6 +220,7 @@ class _Reach:
         self.by_name = BY_NAME if said is not None else ()
         self.tables: dict[str, dict[str, _Definition]] = {}
         self.waiting: list[_Definition] = []
+        self.named: set[tuple[str, str]] = set()
         module, _, constant = module.partition(":")
         if self._module(module) is None:
             raise FileNotFoundError(f"module {module}: no such module in this repository")
@@ -226,8 +231,10 @@ class _Reach:
         while self.waiting or self._entries():
             definition = self.waiting.pop()
             self.said |= definition.said
-            for chain in definition.chains:
-                self._name(definition.module, chain)
+            named = {(definition.module, chain) for chain in definition.chains} - self.named
+            self.named |= named
+            for module, chain in named:
+                self._name(module, chain)
 
     def _module(self, name: str) -> _Module | None:
         """Return a module of this repository that can influence numbers; None for any other name."""

@@ -81,6 +81,7 @@ def test_order_of_the_integrators(integrator: str) -> None:
     hold(f"fe_order_{integrator.replace('-', '_')}", error)
 
 
+@pytest.mark.slow
 def test_small_release_swings_at_the_linear_frequency() -> None:
     """Let go from 0.001 rad the pivot swings at the first frequency of the linearised lumped system."""
     linear = natural_frequencies(pivot(), count=1, mass="lumped").frequency[0]

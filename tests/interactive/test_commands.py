@@ -78,6 +78,7 @@ def test_figure_is_left_as_it_is_without_the_extra(without):
     assert list(without["folder"].iterdir()) == []
 
 
+@pytest.mark.slow
 def test_interrupt_ends_the_server():
     """Requirement: the address with its token is printed, and Ctrl-C ends the server with exit code 0."""
     pytest.importorskip("cv2", reason="the extra `interactive` is not installed")

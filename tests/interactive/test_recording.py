@@ -76,6 +76,7 @@ def test_a_changed_event_is_noticed():
     assert not all(good for _, good in replay(lines))
 
 
+@pytest.mark.slow
 def test_the_command_replays_in_another_process(tmp_path):
     """Requirement: `--replay` gives the recorded states in a new process without the extra's packages."""
     path = tmp_path / "session.jsonl"

@@ -50,7 +50,13 @@ FILMS = {
 }
 
 
-@pytest.mark.parametrize("name", FILMS)
+#: Films that take seconds to track.
+LONG = ("hard", "wide")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in FILMS]
+)
 def test_pose_of_a_film(name):
     """Requirement: every frame is found, and the rms errors stay below 0.05 deg and 0.08 mm with the camera
     known, its lens bent or not, 0.06 deg and 0.10 mm without, 0.12 deg and 0.20 mm with blur and noise
@@ -82,6 +88,7 @@ def test_tracking_gates_have_teeth(name, monkeypatch):
             gates.check(f"tracking_{name}_{quantity}", rms(values))
 
 
+@pytest.mark.slow
 def test_corners_have_no_bias():
     """Requirement: refined corners lie neither to a side nor in- or outwards of the true ones by 0.01 px."""
     optics, gaps, outward = Optics(gamma=1.0), [], []
@@ -118,7 +125,7 @@ def fingers(radius, free=3):
     return film(frames=24, fingers=lambda k: on_corner(k, radius) if k >= free else ())
 
 
-@pytest.mark.parametrize("radius", [0.010, 0.015])
+@pytest.mark.parametrize("radius", [0.010, pytest.param(0.015, marks=pytest.mark.slow)])
 def test_finger_on_a_corner(radius):
     """Requirement: after three free frames a finger over a corner leaves a pose in 95 % of 21, as good as
     ever."""

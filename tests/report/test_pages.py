@@ -7,6 +7,9 @@ import pytest
 from report.build import OUTPUT, typeset
 from studies.record.source import ROOT
 
+#: One process makes the content and the pages for all tests of the report.
+pytestmark = pytest.mark.xdist_group("report")
+
 #: Of a page of A4 [pt]: nothing is nearer to the edge than the running lines leave.
 CLEAR = 40.0
 #: Share of the page that at least is not white.

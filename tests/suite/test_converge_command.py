@@ -64,6 +64,7 @@ def test_count_that_reaches_an_accuracy_in_the_stress(short):
     assert (path[1], all_four[1]) == ("5", ">")
 
 
+@pytest.mark.slow
 def test_a_mechanism_is_refined_too(command, tmp_path):
     """A driven mechanism has its errors, with the torque that is none at rest, and orders of the elements."""
     words = ["converge", "four_bar_of_flexures", "--control-points", "4:5", "--elements", "5:20"]
