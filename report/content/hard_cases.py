@@ -51,8 +51,9 @@ def _outcomes(family: str, model: str = DEFAULT) -> Stored:
     return Stored(GROUP + family, "outcomes", model=model)
 
 
+@lru_cache(maxsize=1)
 def _all(results: Results) -> pd.DataFrame:
-    """Return model, family and kind of end of every case that a model was asked."""
+    """Return model, family and kind of end of every case that a model was asked; twenty facts are made of it."""
     tables = (results.table(GROUP + family, "outcomes").assign(family=family) for family in FAMILIES)
     every = pd.concat(tables)
     return every.assign(kind=kinds(every))
