@@ -27,7 +27,6 @@ JUMP = 1e-3
 path to another one."""
 NO_PART = 1e-6
 """Part of a mode's largest entry below which bodies have none in it."""
-MOST_TRIALS = 60
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,33 +163,36 @@ def _sense(system: System, moved: Array) -> float:
 
 
 def _zero(value: Callable[[float], float]) -> float | None:
-    """Where a function on [0, 1] goes through zero, by bisection and Illinois' rule.
+    """Where a function on [0, 1] goes through zero: inverse quadratic interpolation, or bisection where the
+    last three values are not those of a smooth monotonic function, as at a kink of the softest eigenvalue
+    (Chandrupatla, Advances in Engineering Software 28 (1997) 145-149).
 
     None where it is not found, or where the sign changes in a jump: then there is no zero.
     """
-    a, b, fa, fb = 0.0, 1.0, value(0.0), value(1.0)
+    a, b, fa, fb = 1.0, 0.0, value(1.0), value(0.0)
     if not fa * fb < 0.0:
         return None
     small, nothing = (part * min(abs(fa), abs(fb)) for part in (FINE, JUMP))
-    kept, least = 0, np.inf
-    for trial in range(MOST_TRIALS):
-        t = 0.5 * (a + b) if trial % 3 == 2 else (a * fb - b * fa) / (fb - fa)
+    share, failed = 0.5, False
+    while abs(b - a) >= FINE and min(abs(fa), abs(fb)) > small:
+        t = a + share * (b - a)
         ft = value(t)
         if not np.isfinite(ft):  # close to the point Newton may fail: elsewhere, or the nearer end
-            t = 0.5 * (a + b)
-            ft = value(t)
-        if not np.isfinite(ft):
-            t, least = (a, abs(fa)) if abs(fa) < abs(fb) else (b, abs(fb))
-            break
-        if abs(ft) <= small or b - a < FINE:
-            least = abs(ft)
-            break
-        if ft * fa > 0.0:
-            a, fa = t, ft
-            fb, kept = (0.5 * fb if kept == 1 else fb), 1
-        else:
-            b, fb = t, ft
-            fa, kept = (0.5 * fa if kept == 2 else fa), 2
+            if failed or share == 0.5:
+                break
+            share, failed = 0.5, True
+            continue
+        failed = False
+        c, fc = a, fa
+        if ft * fa < 0.0:
+            c, fc, b, fb = b, fb, a, fa
+        a, fa = t, ft
+        place, height = (a - b) / (c - b), (fa - fb) / (fc - fb)
+        share = 0.5
+        if height**2 < place and (1.0 - height) ** 2 < 1.0 - place:
+            share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+            share = min(max(share, FINE), 1.0 - FINE)
+    t, least = (a, abs(fa)) if abs(fa) < abs(fb) else (b, abs(fb))
     return t if least <= nothing else None
 
 
