@@ -20,6 +20,24 @@ class BaselineFailed(RuntimeError):
     """A baseline did not reach the end of its path or motion; one line that says where it stopped."""
 
 
+@dataclass(eq=False, kw_only=True)
+class Baseline:
+    """A model that is compared: it has `static_path(problem, rotations, **settings)` and
+    `release(problem, *, start, duration, step, **settings)`, and what these return can be timed.
+
+    Attributes:
+        model: its name.
+        sheared: whether its strips shear.
+    """
+
+    model: str
+    sheared: bool = False
+
+    def installed(self) -> bool:
+        """Return whether it can be asked, as all that need no other code."""
+        return True
+
+
 @dataclass(frozen=True, kw_only=True)
 class Followed:
     """What path and motion of any model say of how they came about.

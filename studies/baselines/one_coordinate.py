@@ -19,6 +19,7 @@ from numba import njit
 from numpy.polynomial import chebyshev
 
 from studies.baselines.answer import (
+    Baseline,
     SolvedMotion,
     SolvedPath,
     checked_release,
@@ -57,15 +58,10 @@ Law = Callable[[Array], State]
 
 
 @dataclass(eq=False, kw_only=True)
-class Surrogate:
-    """A model whose only coordinate is the rotation, as a baseline: its name, and the law of a pivot."""
+class Surrogate(Baseline):
+    """A model whose only coordinate is the rotation, by the law of a pivot."""
 
-    model: str
     law_of: Callable[[Problem], Law]
-
-    def installed(self) -> bool:
-        """Return True: the model is of this package."""
-        return True
 
     def static_path(self, problem: Problem, rotations: Any) -> SolvedPath:
         """Return the path through `rotations` (S,) [rad], the first of which is 0.

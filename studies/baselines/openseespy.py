@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import (
+    Baseline,
     BaselineFailed,
     SolvedMotion,
     SolvedPath,
@@ -39,7 +40,6 @@ from studies.baselines.answer import (
 )
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -64,10 +64,8 @@ def _loaded() -> Any:
 
 
 @dataclass(eq=False, kw_only=True)
-class _OpenSees:
-    """OpenSees as a baseline: its name."""
-
-    model: str = "openseespy frame"
+class _OpenSees(Baseline):
+    """OpenSees as a baseline."""
 
     def installed(self) -> bool:
         """Return whether OpenSees can be imported."""
@@ -184,7 +182,8 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     element = 1
     for strip in range(2):
         first = BODY + 1 + strip * (elements + 1)
-        for number, place in enumerate(_places(at_rest.root[strip], at_rest.tip[strip], elements)):
+        places = np.linspace(at_rest.root[strip], at_rest.tip[strip], elements + 1)
+        for number, place in enumerate(places):
             ops.node(first + number, *map(float, place))
         ops.fix(first, 1, 1, 1)
         for node in range(first, first + elements):
@@ -193,10 +192,6 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
         ops.element("elasticBeamColumn", element, BODY, first + elements, *link, 1)
         element += 1
     return ops
-
-
-def _places(root: Array, tip: Array, elements: int) -> Array:
-    return np.asarray(root + np.linspace(0.0, 1.0, elements + 1)[:, None] * (tip - root))
 
 
 def _driven(problem: Problem, asked: dict[str, Any], increment: float, *, moving: bool) -> Any:
@@ -238,4 +233,4 @@ def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
     ops.algorithm("Newton")
 
 
-openseespy_frame = _OpenSees()
+openseespy_frame = _OpenSees(model="openseespy frame")

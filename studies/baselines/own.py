@@ -19,6 +19,7 @@ from spline_model.reduced.model import at_rest
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.answer import (
+    Baseline,
     BaselineFailed,
     SolvedMotion,
     SolvedPath,
@@ -35,16 +36,11 @@ RECORDS = 2500
 FINE = ("leapfrog", "central-difference")
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Own:
-    """A model as a baseline: its name; keywords in `settings` are those of its discretisation."""
+@dataclass(eq=False, kw_only=True)
+class _Own(Baseline):
+    """A model as a baseline; keywords in `settings` are those of its discretisation."""
 
-    model: str
     discretised: Callable[..., Settings]
-
-    def installed(self) -> bool:
-        """Return True: the model is this repository's."""
-        return True
 
     def static_path(self, problem: Problem, rotations: Any, **settings: Any) -> SolvedPath:
         """Drive the body through equal `rotations` (S,) [rad], the first of which is 0.
