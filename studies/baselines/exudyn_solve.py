@@ -24,7 +24,6 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import (
-    Baseline,
     BaselineFailed,
     SolvedMotion,
     SolvedPath,
@@ -33,6 +32,7 @@ from studies.baselines.answer import (
     checked_rotations,
     clocked,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.kinds import Array
 

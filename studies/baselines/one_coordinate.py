@@ -19,13 +19,13 @@ from numba import njit
 from numpy.polynomial import chebyshev
 
 from studies.baselines.answer import (
-    Baseline,
     SolvedMotion,
     SolvedPath,
     checked_release,
     checked_rotations,
     clocked,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.kinds import Array
 

@@ -28,7 +28,6 @@ from typing import Any
 import numpy as np
 
 from studies.baselines.answer import (
-    Baseline,
     BaselineFailed,
     SolvedMotion,
     SolvedPath,
@@ -38,6 +37,7 @@ from studies.baselines.answer import (
     clocked,
     geometry_of,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 

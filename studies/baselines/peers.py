@@ -20,11 +20,9 @@ from studies.baselines.exudyn_strips import exudyn_ancf
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.variants import (
     AS_DELIVERED,
-    ELEMENTS,
     EXUDYN,
     HINT,
     OPENSEES,
-    SPLINE,
     SURROGATE,
     kept,
     missing,
@@ -34,6 +32,7 @@ from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look
+from studies.work_precision.series import ELEMENTS, SPLINE
 
 GROUPS = (ELEMENTS, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
 

@@ -8,31 +8,25 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release
-from studies.answers.reference import RECORDS, limit_of_swings, sampled
+from studies.answers.reference import RECORDS, Reference, limit_of_swings, sampled
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.baselines.answer import Followed, SolvedPath
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import spline
-from studies.baselines.variants import (
-    WITH_SHEAR,
-    WITHOUT_SHEAR,
-    Variant,
-    release_variants,
-    static_variants,
-    tried,
-)
+from studies.baselines.variant import Baseline, Variant
+from studies.baselines.variants import NAMES, STATIC, SWINGS, WITH_SHEAR, WITHOUT_SHEAR, tried
 from studies.cases.problem import Problem
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.work_precision.members import limit_of_theory, path_errors
+from studies.work_precision.limits import limit_of_theory, path_errors
 
 Rows = list[dict[str, Any]]
 
 #: Control points of the limit without shear, and those whose difference is its uncertainty.
 REFINED, CHECK = 14, 12
 #: Finest settings of the other codes, for the limits that they tend to by themselves.
-FINEST: dict[Any, dict[str, Any]] = {
+FINEST: dict[Baseline, dict[str, Any]] = {
     exudyn_ancf: {"elements": 64, "relative_tolerance": 1e-9},
     exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
     openseespy_frame: {"elements": 320, "tolerance": 1e-14},
@@ -44,7 +38,7 @@ PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
 WORK = ("unknowns", "newton_iterations", "factorisations")
 
 
-def errors_of(path: SolvedPath, limit: SolvedPath) -> dict[str, float]:
+def errors_of(path: SolvedPath, limit: SolvedPath | Reference) -> dict[str, float]:
     """Return the largest errors over a path, the torque's at its end, and the worst of both."""
     found = path_errors(path, limit)
     largest = {name: found[f"error_{name}"] for name in ("trajectory", "torque")}
@@ -56,7 +50,7 @@ def _rotations(problem: Problem) -> Array:
     return np.linspace(0.0, problem.rotation, problem.increments + 1)
 
 
-def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath], Rows]:
+def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath | Reference], Rows]:
     """Return the limit of either theory, and rows of how certain they are and how far they are apart.
 
     Without shear it is a refined spline; with shear that of this repository's Reissner elements.
@@ -74,7 +68,7 @@ def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath], Rows]:
     for module, settings in FINEST.items():
         if not module.installed():
             continue
-        theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
+        theory = WITH_SHEAR if module.sheared else WITHOUT_SHEAR
         path = module.static_path(problem, turns, **settings)
         away = errors_of(path, found[theory])
         told.append((f"{module.model}, {settings['elements']} elements", theory, away))
@@ -84,19 +78,18 @@ def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath], Rows]:
     ]
 
 
-def compared_paths(problem: Problem, against: dict[str, SolvedPath]) -> tuple[Rows, Rows]:
+def compared_paths(problem: Problem, against: Mapping[str, SolvedPath | Reference]) -> tuple[Rows, Rows]:
     """Return errors and work, and times, a row a variant."""
     turns = _rotations(problem)
 
     def solve(variant: Variant) -> tuple[dict[str, Any], Followed]:
-        path = variant.module.static_path(problem, turns, **variant.settings)
+        path = variant.baseline.static_path(problem, turns, **variant.settings)
         work = {name: path.work.get(name, np.nan) for name in WORK}
-        found = errors_of(path, against[variant.theory])
-        counts = (variant.settings.get(name) for name in ("elements", "control_points"))
-        fineness = next((float(count) for count in counts if count), np.nan)  # a closed form has none
+        found = errors_of(path, against[NAMES[variant.theory]])
+        fineness = float(variant.count) if variant.settings else np.nan  # a closed form has none
         return found | {"fineness": fineness} | work, path
 
-    return tried(static_variants(), solve, PATH_ERRORS, judged="worst", repeat=REPEAT)
+    return tried(STATIC, solve, PATH_ERRORS, judged="worst", repeat=REPEAT)
 
 
 #: The same of the swing.
@@ -144,18 +137,19 @@ def compared_swings(
     """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
 
     def solve(variant: Variant) -> tuple[dict[str, Any], Followed]:
-        motion = variant.module.release(
+        motion = variant.baseline.release(
             problem,
             start=problem.rotation,
             duration=formulations.DURATION,
             **variant.settings,
         )
-        unsure = float(uncertainty[variant.theory])
+        theory = NAMES[variant.theory]
+        unsure = float(uncertainty[theory])
         work = {name: motion.work.get(name, np.nan) for name in ("steps", "newton_iterations")}
         rotation = CubicSpline(motion.time, motion.rotation)(formulations.INSTANTS)
-        apart = float(np.abs(rotation - against[variant.theory]).max())
+        apart = float(np.abs(rotation - against[theory]).max())
         step = variant.settings["step"]
         errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": step, "fineness": -step}
         return errors | work, motion
 
-    return tried(release_variants(), solve, SWING_ERRORS, judged="rotation_rad", repeat=1)
+    return tried(SWINGS, solve, SWING_ERRORS, judged="rotation_rad", repeat=1)

@@ -1,11 +1,6 @@
-"""Baselines by name, what this machine lacks of them, and which settings of theirs a comparison tries.
-
-Each is an object or a module with `model` (its name), `installed()`, `static_path(problem, rotations,
-**settings)` and `release(problem, *, start, duration, step, **settings)`; what these return can be timed.
-"""
+"""Baselines by name, what this machine lacks of them, and which settings of theirs a comparison tries."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -18,14 +13,16 @@ from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements as own_elements
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
+from studies.baselines.variant import Baseline, Variant, grid
 from studies.engine.study import lacking
 from studies.work_precision import equal_error
+from studies.work_precision.series import ELEMENTS, SPLINE
 
 #: Models of which the rotation is the only coordinate, those whose beams have others that are eliminated, and
 #: other codes.
 PSEUDO_RIGID = {each.model: each for each in (linear_pivot, pin_joint, four_bar)}
 SURROGATES = PSEUDO_RIGID | {each.model: each for each in (constraint_model, chained_constraint_model)}
-PEERS: dict[str, Any] = {each.model: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
+PEERS: dict[str, Baseline] = {each.model: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
 
 #: What to do about a peer that is not there.
 HINT = "not installed: python -m pip install '.[peers]'"
@@ -39,10 +36,11 @@ def missing() -> str:
 
 #: Theories of the rod: the limit that a model tends to.
 WITHOUT_SHEAR, WITH_SHEAR = "without shear", "with shear"
+NAMES = {"material": WITHOUT_SHEAR, "shear": WITH_SHEAR}
 
 #: Group of a ratio -> modules, and the solver settings that count for it.
 EXUDYN, AS_DELIVERED, OPENSEES = "Exudyn", "Exudyn as delivered", "OpenSees"
-SPLINE, ELEMENTS, SURROGATE = "spline", "finite elements", "surrogates"
+SURROGATE = "surrogates"
 
 #: Passes through all variants, far apart in time: what else the machine does lasts longer than one variant.
 PASSES = 3
@@ -50,111 +48,72 @@ PASSES = 3
 SLOW = 2.0
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Variant:
-    """One setting of one model.
+#: Settings of the static path.
+STATIC = (
+    *grid(spline, SPLINE, control_points=range(4, 11)),
+    *grid(own_elements, ELEMENTS, elements=(4, 5, 10, 20, 40, 80, 160, 320)),
+    *(variant for each in SURROGATES.values() for variant in grid(each, SURROGATE)),
+    *grid(exudyn_ancf, EXUDYN, elements=(2, 4, 6, 8, 12, 16, 24, 40), relative_tolerance=(1e-5, 1e-6, 1e-8)),
+    *grid(
+        exudyn_exact, EXUDYN,
+        elements=(1, 2, 3, 4, 6, 8, 12, 16, 20, 24), relative_tolerance=(1e-5, 1e-6, 1e-8),
+    ),
+    *grid(exudyn_ancf, EXUDYN, elements=(4, 8, 16, 24, 40), integration=(1, 2), relative_tolerance=(1e-6,)),
+    *grid(exudyn_ancf, AS_DELIVERED, elements=(4, 8, 16, 40), solver=("as delivered",)),
+    *grid(exudyn_exact, AS_DELIVERED, elements=(2, 4, 8, 20), solver=("as delivered",)),
+    *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40, 80, 160), tolerance=(1e-8, 1e-10)),
+)  # fmt: skip
 
-    Attributes:
-        module: a baseline.
-        group: under which its times are compared.
-        theory: of its rod.
-        settings: keywords; label: the same as a text.
-    """
+#: Steps of implicit schemes [s], and what a leapfrog is stable with: control points and steps.
+STEPS = (2e-4, 1e-4, 5e-5, 2e-5)
+LEAPS = ((5, 5e-6), (6, 5e-6), (6, 2.5e-6), (7, 4e-6), (8, 2.5e-6), (8, 1.25e-6), (9, 2e-6))
+#: Exudyn's spectral radius, and the tolerance of its iterations.
+DAMPED = ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5))
 
-    module: Any
-    group: str
-    theory: str
-    settings: Mapping[str, Any] = field(default_factory=dict)
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return str(self.module.model)
-
-    @property
-    def label(self) -> str:
-        """The settings as a text."""
-        return " ".join(f"{name}={_short(value)}" for name, value in self.settings.items())
-
-
-def _short(value: Any) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def static_variants() -> list[Variant]:
-    """Return the settings of the static path."""
-    found = [_variant(spline, SPLINE, control_points=n) for n in range(4, 11)]
-    found += [_variant(own_elements, ELEMENTS, elements=n) for n in (4, 5, 10, 20, 40, 80, 160, 320)]
-    found += [_variant(each, SURROGATE) for each in SURROGATES.values()]
-    for tolerance in (1e-5, 1e-6, 1e-8):
-        for elements in (2, 4, 6, 8, 12, 16, 24, 40):
-            found.append(_ancf(elements, relative_tolerance=tolerance))
-        for elements in (1, 2, 3, 4, 6, 8, 12, 16, 20, 24):
-            found.append(_exact(elements, relative_tolerance=tolerance))
-    for integration in (1, 2):
-        for elements in (4, 8, 16, 24, 40):
-            found.append(_ancf(elements, integration=integration, relative_tolerance=1e-6))
-    found += [_variant(exudyn_ancf, AS_DELIVERED, elements=n, solver="as delivered") for n in (4, 8, 16, 40)]
-    found += [_variant(exudyn_exact, AS_DELIVERED, elements=n, solver="as delivered") for n in (2, 4, 8, 20)]
-    return found + [
-        _variant(openseespy_frame, OPENSEES, elements=n, tolerance=tolerance)
-        for n in (5, 10, 20, 40, 80, 160)
-        for tolerance in (1e-8, 1e-10)
-    ]
-
-
-def release_variants() -> list[Variant]:
-    """Return the settings of the release."""
-    found = [
-        _variant(spline, SPLINE, control_points=n, integrator=integrator, step=step)
-        for n in (5, 6, 7, 8)
-        for integrator in ("energy", "generalised-alpha")
-        for step in (2e-4, 1e-4, 5e-5, 2e-5)
-    ]
-    found += [_variant(spline, SPLINE, control_points=n, integrator="explicit", step=2e-6) for n in (6, 7, 8)]
-    found += [
-        _variant(spline, SPLINE, control_points=n, integrator="leapfrog", step=step)
-        for n, step in ((5, 5e-6), (6, 5e-6), (6, 2.5e-6), (7, 4e-6), (8, 2.5e-6), (8, 1.25e-6), (9, 2e-6))
-    ]
-    found += [
-        _variant(own_elements, ELEMENTS, elements=n, integrator=integrator, step=step)
-        for integrator, step in (
-            ("central-difference", 2e-5),
-            ("generalised-alpha", 1e-4),
-            ("generalised-alpha", 5e-5),
+#: Settings of the release.
+SWINGS = (
+    *grid(
+        spline, SPLINE,
+        control_points=(5, 6, 7, 8), integrator=("energy", "generalised-alpha"), step=STEPS,
+    ),
+    *grid(spline, SPLINE, control_points=(6, 7, 8), integrator=("explicit",), step=(2e-6,)),
+    *(
+        variant
+        for n, step in LEAPS
+        for variant in grid(spline, SPLINE, control_points=(n,), integrator=("leapfrog",), step=(step,))
+    ),
+    *(
+        variant
+        for integrator, steps in (("central-difference", (2e-5,)), ("generalised-alpha", (1e-4, 5e-5)))
+        for variant in grid(
+            own_elements, ELEMENTS, elements=(5, 10, 16, 24), integrator=(integrator,), step=steps
         )
-        for n in (5, 10, 16, 24)
-    ]
-    found += [_variant(each, SURROGATE, step=1e-5) for each in SURROGATES.values()]
-    for radius, tolerance in ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5)):
-        options = {"spectral_radius": radius, "relative_tolerance": tolerance}
-        for step in (2e-4, 1e-4, 5e-5, 2e-5):
-            found += [_ancf(elements, step=step, **options) for elements in (3, 4, 5, 6, 8)]
-            found += [_exact(elements, step=step, **options) for elements in (2, 3, 4, 6)]
+    ),
+    *(variant for each in SURROGATES.values() for variant in grid(each, SURROGATE, step=(1e-5,))),
+    *(
+        variant
+        for radius, tolerance in DAMPED
+        for each, meshes in ((exudyn_ancf, (3, 4, 5, 6, 8)), (exudyn_exact, (2, 3, 4, 6)))
+        for variant in grid(
+            each, EXUDYN,
+            elements=meshes, step=STEPS, spectral_radius=(radius,), relative_tolerance=(tolerance,),
+        )
+    ),
     # do still shorter steps keep the smaller errors?
-    found += [
-        _ancf(elements, step=step, spectral_radius=0.9, relative_tolerance=1e-5)
-        for elements in (8, 12)
-        for step in (1e-5, 5e-6)
-    ]
-    return found + [
-        _variant(openseespy_frame, OPENSEES, elements=n, step=step)
-        for n in (10, 20, 40)
-        for step in (1e-4, 5e-5, 2e-5)
-    ]
+    *grid(
+        exudyn_ancf, EXUDYN,
+        elements=(8, 12), step=(1e-5, 5e-6), spectral_radius=(0.9,), relative_tolerance=(1e-5,),
+    ),
+    *grid(openseespy_frame, OPENSEES, elements=(10, 20, 40), step=(1e-4, 5e-5, 2e-5)),
+)  # fmt: skip
 
 
-def _variant(module: Any, group: str, **settings: Any) -> Variant:
-    theory = WITH_SHEAR if module is exudyn_exact else WITHOUT_SHEAR
-    return Variant(module=module, group=group, theory=theory, settings=settings)
-
-
-def _ancf(elements: int, **settings: Any) -> Variant:
-    return _variant(exudyn_ancf, EXUDYN, elements=elements, **settings)
-
-
-def _exact(elements: int, **settings: Any) -> Variant:
-    return _variant(exudyn_exact, EXUDYN, elements=elements, **settings)
+def _label(variant: Variant) -> str:
+    """Return the settings of a variant as a text."""
+    return " ".join(
+        f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+        for name, value in variant.settings.items()
+    )
 
 
 def tried(
@@ -178,9 +137,9 @@ def tried(
     solved: dict[Variant, Followed] = {}
     seconds: dict[Variant, list[float]] = {}
     for variant in variants:
-        row: dict[str, Any] = {"model": variant.model, "group": variant.group, "variant": variant.label}
-        row |= {"theory": variant.theory, "reason": ""}
-        if not variant.module.installed():
+        row: dict[str, Any] = {"model": variant.baseline.model, "group": variant.series}
+        row |= {"variant": _label(variant), "theory": NAMES[variant.theory], "reason": ""}
+        if not variant.baseline.installed():
             row |= {"variant": "", "status": "not installed", "reason": HINT} | nothing
             rows += [row] if row not in rows else []
             continue
@@ -195,7 +154,7 @@ def tried(
     for _ in range(1, PASSES):
         for variant in again:
             seconds[variant] += solved[variant].seconds(repeat)
-    return rows, [{"model": v.model, "variant": v.label} | spread(seconds[v]) for v in solved]
+    return rows, [{"model": v.baseline.model, "variant": _label(v)} | spread(seconds[v]) for v in solved]
 
 
 def _compared(

@@ -16,7 +16,8 @@ from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
 from studies.baselines.tasks import errors_of
-from studies.baselines.variants import PEERS, Variant, kept, spread, tried
+from studies.baselines.variant import grid
+from studies.baselines.variants import PEERS, kept, spread, tried
 from studies.cases.problem import named_case
 from studies.errors import BadInput
 from tests import gates
@@ -171,7 +172,7 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     """Requirement: a code that is absent is a row of the study, with what to do."""
     module = PEERS[name]
     monkeypatch.setattr(module, "installed", lambda: False)
-    asked = [Variant(module=module, group="x", theory="y", settings={"elements": n}) for n in (1, 2)]
+    asked = grid(module, "x", elements=(1, 2))
     rows, times = tried(asked, None, ["worst"], judged="worst", repeat=1)
     assert [(row["status"], row["model"]) for row in rows] == [("not installed", name)]
     assert rows[0]["reason"] == "not installed: python -m pip install '.[peers]'"
@@ -201,7 +202,7 @@ def test_failed_variant_keeps_its_row():
     def fails(variant):
         raise BaselineFailed("stopped at 0.1 rad")
 
-    rows, times = tried(variants.static_variants()[:1], fails, ["worst"], judged="worst", repeat=1)
+    rows, times = tried(variants.STATIC[:1], fails, ["worst"], judged="worst", repeat=1)
     assert (rows[0]["status"], rows[0]["reason"]) == ("failed", "stopped at 0.1 rad")
     assert math.isnan(rows[0]["worst"])
     assert times == []
