@@ -97,7 +97,7 @@ def _placed(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Strips:
+class _Strips:
     """Two strips of one length between the ground and a body, with `count` beams each; lengths over L.
 
     Attributes:
@@ -226,13 +226,13 @@ class Strips:
         return total
 
 
-def guide(apart: float, slenderness: float, count: int) -> Strips:
+def guide(apart: float, slenderness: float, count: int) -> _Strips:
     """Return the strips of a parallelogram along x, pushed where they end.
 
     Args:
         apart: [L]. slenderness: L over the thickness [1]. count: beams a strip.
     """
-    return Strips(
+    return _Strips(
         root=np.array([[0.0, 0.5 * apart], [0.0, -0.5 * apart]]),
         direction=np.array([[1.0, 0.0], [1.0, 0.0]]),
         centre=np.array([1.0, 0.0]),
@@ -246,7 +246,7 @@ def with_beams(count: int) -> Callable[[Problem], Law]:
 
     def law_of(problem: Problem) -> Law:
         at_rest, length = geometry_of(problem), problem.length
-        strips = Strips(
+        strips = _Strips(
             root=at_rest.root / length,
             direction=at_rest.direction,
             centre=at_rest.centre / length,
@@ -258,7 +258,7 @@ def with_beams(count: int) -> Callable[[Problem], Law]:
     return law_of
 
 
-def _state(problem: Problem, strips: Strips, p: Array) -> State:
+def _state(problem: Problem, strips: _Strips, p: Array) -> State:
     """Return the pivot at rotations (S,)."""
     y, slope = strips.turned(p)
     energy, gradient, hessian = strips.assembled(y)

@@ -22,17 +22,14 @@ from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
+from studies.paper.formulations import DURATION, INSTANTS
 from studies.work_precision.equal_error import diagram, digits, finer, less
 from studies.work_precision.limits import at, counted, motion_errors
 from studies.work_precision.series import MOVING_LOOKS, SPLINE, other_swings, own_swings
 from studies.work_precision.work import MOVED_WORK
 
-DURATION = 0.05
-INSTANTS = np.linspace(0.0, DURATION, 501)
 #: The reference: leapfrog splines by control points and step [s], the coarser one first.
 REFERENCE = {14: 4e-7, 16: 3e-7}
-#: An error is shown where it is this many times that of the reference.
-MARGIN = 10.0
 #: Errors of the rotation [rad] at which models are compared.
 TARGETS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
 #: The error at which the paper's comparison is made [rad].
@@ -124,11 +121,9 @@ STUDY = Study(
         "work_precision_dynamics": lambda tables: diagram(
             tables,
             QUANTITIES,
-            margin=MARGIN,
             rank="rank",
             styles=MOVING_LOOKS,
             part="steps",
-            width=9.5,
         )
     },
     missing=missing,

@@ -50,12 +50,12 @@ MESHES: dict[Baseline, dict[str, tuple[int, ...]]] = {
     openseespy_frame: {"elements": (10, 20, 40, 80)},
 }
 #: Steps [s] and elements a strip of their motions.
-STEPS: dict[Baseline, tuple[tuple[float, ...], dict[str, tuple[int, ...]]]] = {
-    linear_pivot: ((1e-4,), {}),
-    pin_joint: ((1e-4,), {}),
-    four_bar: ((1e-4,), {}),
-    exudyn_ancf: ((2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6), {"elements": (4, 8)}),
-    openseespy_frame: ((1e-4, 5e-5, 2e-5), {"elements": (20,)}),
+STEPS: dict[Baseline, dict[str, tuple[float, ...]]] = {
+    linear_pivot: {"step": (1e-4,)},
+    pin_joint: {"step": (1e-4,)},
+    four_bar: {"step": (1e-4,)},
+    exudyn_ancf: {"step": (2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6), "elements": (4, 8)},
+    openseespy_frame: {"step": (1e-4, 5e-5, 2e-5), "elements": (20,)},
 }
 
 
@@ -99,9 +99,9 @@ def own_swings(scale: float = 1.0) -> list[Variant]:
 
 def other_swings(scale: float = 1.0) -> list[Variant]:
     """Return those of the surrogates and other codes that are installed, all steps times `scale` [1]."""
+    there = ((each, axes) for each, axes in STEPS.items() if each.installed())
     return [
         variant
-        for each, (steps, axes) in STEPS.items()
-        if each.installed()
-        for variant in grid(each, each.model, step=[scale * step for step in steps], **axes)
+        for each, axes in there
+        for variant in grid(each, each.model, **axes | {"step": tuple(scale * s for s in axes["step"])})
     ]

@@ -32,8 +32,6 @@ from studies.work_precision.limits import THEORIES, Limit, counted, limit_of_the
 from studies.work_precision.series import ELEMENTS, LOOKS, SPLINE, other_paths, own_paths
 from studies.work_precision.work import ELEMENT_FORCES, STRIPS, WORK, work_of
 
-#: An error is shown where it is this many times that of its reference.
-MARGIN = 10.0
 ERRORS = ("error_trajectory", "error_torque")
 #: Errors at which models are compared.
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
@@ -250,11 +248,9 @@ STUDY = Study(
         "work_precision_statics": lambda tables: diagram(
             tables,
             {name: f"error of the {name} [1]" for name in ("trajectory", "torque", "stiffness")},
-            margin=MARGIN,
             rank="count",
             styles=LOOKS,
             part="increments",
-            width=9.5,
         ),
         "work_precision_scaling": _scaling_figure,
     },
