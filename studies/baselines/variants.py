@@ -1,12 +1,14 @@
-"""Baselines by name, what this machine lacks of them, and which settings of theirs a comparison tries."""
+"""Baselines by name, what this machine lacks of them, which settings of theirs a comparison tries, and how:
+errors of path and swing against the limit of each theory, and times."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.interpolate import CubicSpline
 
-from studies.baselines.answer import BaselineFailed, Followed
+from studies.answers.reference import Reference
+from studies.baselines.answer import BaselineFailed, Followed, SolvedPath
 from studies.baselines.constraint_model import chained_constraint_model, constraint_model
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
@@ -14,8 +16,12 @@ from studies.baselines.own import elements as own_elements
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.baselines.variant import Baseline, Variant, grid
-from studies.engine.study import lacking
+from studies.cases.problem import Problem
+from studies.engine.study import Row, lacking
+from studies.kinds import Array
+from studies.paper import formulations
 from studies.work_precision import equal_error
+from studies.work_precision.limits import WITH_SHEAR, WITHOUT_SHEAR, errors_of
 from studies.work_precision.series import ELEMENTS, SPLINE
 
 #: Models of which the rotation is the only coordinate, those whose beams have others that are eliminated, and
@@ -35,7 +41,6 @@ def missing() -> str:
 
 
 #: Theories of the rod: the limit that a model tends to.
-WITHOUT_SHEAR, WITH_SHEAR = "without shear", "with shear"
 NAMES = {"material": WITHOUT_SHEAR, "shear": WITH_SHEAR}
 
 #: Group of a ratio -> modules, and the solver settings that count for it.
@@ -116,14 +121,60 @@ def _label(variant: Variant) -> str:
     )
 
 
+#: Rows of errors and work, and those of times.
+Tried = tuple[list[Row], list[Row]]
+#: Timed solves of a path in a pass.
+REPEAT = 5
+
+PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
+WORK = ("unknowns", "newton_iterations", "factorisations")
+SWING_ERRORS = ("rotation_rad", "uncertainty_rad", "step_s", "fineness")
+
+
+def compared_paths(problem: Problem, against: Mapping[str, SolvedPath | Reference]) -> Tried:
+    """Return errors and work, and times, a row a variant."""
+    turns = np.linspace(0.0, problem.rotation, problem.increments + 1)
+
+    def solve(variant: Variant) -> tuple[Row, Followed]:
+        path = variant.baseline.static_path(problem, turns, **variant.settings)
+        work = {name: path.work.get(name, np.nan) for name in WORK}
+        found = errors_of(path, against[NAMES[variant.theory]])
+        fineness = float(variant.count) if variant.settings else np.nan  # a closed form has none
+        return found | {"fineness": fineness} | work, path
+
+    return tried(STATIC, solve, PATH_ERRORS, judged="worst", repeat=REPEAT)
+
+
+def compared_swings(problem: Problem, against: dict[str, Array], uncertainty: Mapping[str, float]) -> Tried:
+    """Return errors with the uncertainty of their limit and work, and times, a row a variant."""
+
+    def solve(variant: Variant) -> tuple[Row, Followed]:
+        motion = variant.baseline.release(
+            problem,
+            start=problem.rotation,
+            duration=formulations.DURATION,
+            **variant.settings,
+        )
+        theory = NAMES[variant.theory]
+        unsure = float(uncertainty[theory])
+        work = {name: motion.work.get(name, np.nan) for name in ("steps", "newton_iterations")}
+        rotation = CubicSpline(motion.time, motion.rotation)(formulations.INSTANTS)
+        apart = float(np.abs(rotation - against[theory]).max())
+        step = variant.settings["step"]
+        errors = {"rotation_rad": apart, "uncertainty_rad": unsure, "step_s": step, "fineness": -step}
+        return errors | work, motion
+
+    return tried(SWINGS, solve, SWING_ERRORS, judged="rotation_rad", repeat=1)
+
+
 def tried(
     variants: Sequence[Variant],
-    solve: Callable[[Variant], tuple[dict[str, Any], Followed]],
+    solve: Callable[[Variant], tuple[Row, Followed]],
     errors: Iterable[str],
     *,
     judged: str,
     repeat: int,
-) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+) -> Tried:
     """Return the rows of the physics, and those of the times: median and quartiles of all runs.
 
     What is not installed has one row, and what fails keeps its own, both without errors.
@@ -133,11 +184,11 @@ def tried(
         judged: the error at which times are compared; repeat: timed runs in a pass [1].
     """
     nothing = dict.fromkeys(errors, np.nan)
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     solved: dict[Variant, Followed] = {}
     seconds: dict[Variant, list[float]] = {}
     for variant in variants:
-        row: dict[str, Any] = {"model": variant.baseline.model, "group": variant.series}
+        row: Row = {"model": variant.baseline.model, "group": variant.series}
         row |= {"variant": _label(variant), "theory": NAMES[variant.theory], "reason": ""}
         if not variant.baseline.installed():
             row |= {"variant": "", "status": "not installed", "reason": HINT} | nothing
@@ -157,9 +208,7 @@ def tried(
     return rows, [{"model": v.baseline.model, "variant": _label(v)} | spread(seconds[v]) for v in solved]
 
 
-def _compared(
-    rows: list[dict[str, Any]], seconds: Mapping[Variant, Sequence[float]], error: str
-) -> Iterator[Variant]:
+def _compared(rows: list[Row], seconds: Mapping[Variant, Sequence[float]], error: str) -> Iterator[Variant]:
     """Yield the variants whose times may stand in a comparison: none of their model is as accurate and much
     faster."""
     if not seconds:

@@ -2,21 +2,35 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
-from studies.answers.reference import MESHES, QUANTITIES, Reference, errors, limit_of
-from studies.answers.settings import FeSettings
+from studies.answers.reference import (
+    MESHES,
+    QUANTITIES,
+    RECORDS,
+    Reference,
+    errors,
+    limit_of,
+    limit_of_swings,
+    sampled,
+)
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.baselines.answer import Followed, SolvedMotion, SolvedPath
+from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import spline
+from studies.baselines.variant import Baseline
 from studies.cases.design import Design
+from studies.cases.problem import Problem
 from studies.kinds import Array
+from studies.paper import formulations
 
 #: Names of columns of work in the counters of a baseline, where they differ.
 THEIRS = {"iterations": "newton_iterations"}
@@ -113,3 +127,88 @@ def motion_errors(motion: Any, rotation: Array, instants: Array) -> dict[str, fl
     exact = swing_frequency(instants, rotation).value
     values = (float(gap.max()), float(gap[-1]), abs(frequency / exact - 1.0))
     return dict(zip(MOTION_ERRORS, values, strict=True))
+
+
+def errors_of(path: SolvedPath, limit: SolvedPath | Reference) -> dict[str, float]:
+    """Return the largest errors over a path, the torque's at its end, and the worst of both."""
+    found = path_errors(path, limit)
+    largest = {name: found[f"error_{name}"] for name in ("trajectory", "torque")}
+    return largest | {"torque_at_end": found["end_torque"], "worst": max(largest.values())}
+
+
+#: Theories of the rod in the comparison with other codes.
+WITHOUT_SHEAR, WITH_SHEAR = "without shear", "with shear"
+#: Control points of the limit without shear, and those whose difference is its uncertainty.
+REFINED, CHECK = 14, 12
+#: Finest settings of the other codes, for the limits that they tend to by themselves.
+FINEST: dict[Baseline, dict[str, Any]] = {
+    exudyn_ancf: {"elements": 64, "relative_tolerance": 1e-9},
+    exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
+    openseespy_frame: {"elements": 320, "tolerance": 1e-14},
+}
+
+
+def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath | Reference], list[dict[str, Any]]]:
+    """Return the limit of either theory, and rows of how certain they are and how far they are apart.
+
+    Without shear it is a refined spline; with shear that of this repository's Reissner elements.
+    """
+    turns = np.linspace(0.0, problem.rotation, problem.increments + 1)
+    refined = spline.static_path(problem, turns, control_points=REFINED)
+    check = spline.static_path(problem, turns, control_points=CHECK)
+    reissner = limit_of_theory(problem, "shear")
+    found = {WITHOUT_SHEAR: refined, WITH_SHEAR: reissner.path}
+    told = [
+        ("uncertainty", WITHOUT_SHEAR, errors_of(check, refined)),
+        ("uncertainty", WITH_SHEAR, reissner.uncertainty),
+        ("difference of the theories", "", errors_of(refined, reissner.path)),
+    ]
+    for module, settings in FINEST.items():
+        if not module.installed():
+            continue
+        theory = WITH_SHEAR if module.sheared else WITHOUT_SHEAR
+        path = module.static_path(problem, turns, **settings)
+        away = errors_of(path, found[theory])
+        told.append((f"{module.model}, {settings['elements']} elements", theory, away))
+    return found, [
+        {"what": what, "theory": theory, "trajectory": errors["trajectory"], "torque": errors["torque"]}
+        for what, theory, errors in told
+    ]
+
+
+#: The same of the swing.
+SWING_REFINED, SWING_CHECK = 10, 8
+#: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
+SHEAR_MESHES = (36, 54, 81, 121)
+#: What the other codes' rods with shear have beside it.
+ROTARY = "section_rotary_inertia"
+
+
+def swing_limits(problem: Problem) -> tuple[dict[str, Array], list[dict[str, Any]]]:
+    """Return the rotation of either theory at the common instants, with rows of how certain they are."""
+    refined, check = (
+        sampled(formulations.resolved(SplineSettings(control_points=n)), formulations.INSTANTS).rotation
+        for n in (SWING_REFINED, SWING_CHECK)
+    )
+    with_rotary = replace(problem, effects=problem.effects.renamed([*problem.effects.names, ROTARY]))
+    reissner = limit_of_swings(
+        [
+            answer_release(
+                with_rotary,
+                FeSettings(elements=n, element="reissner"),
+                duration=formulations.DURATION,
+                records=RECORDS,
+            )
+            for n in SHEAR_MESHES
+        ],
+        formulations.INSTANTS,
+    )
+    told = (
+        ("uncertainty", WITHOUT_SHEAR, np.abs(check - refined)),
+        ("uncertainty", WITH_SHEAR, reissner.uncertainty),
+        ("difference of the theories", "", np.abs(reissner.swing.rotation - refined)),
+    )
+    rows = [
+        {"what": what, "theory": theory, "rotation_rad": float(error.max())} for what, theory, error in told
+    ]
+    return {WITHOUT_SHEAR: refined, WITH_SHEAR: reissner.swing.rotation}, rows

@@ -9,17 +9,17 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import peers, tasks, variants
+from studies.baselines import peers, variants
 from studies.baselines.answer import BaselineFailed, SolvedPath
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
-from studies.baselines.tasks import errors_of
 from studies.baselines.variant import grid
 from studies.baselines.variants import PEERS, kept, spread, tried
 from studies.cases.problem import named_case
 from studies.errors import BadInput
+from studies.work_precision.limits import errors_of, path_limits
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
@@ -186,9 +186,9 @@ def test_study_runs_without_other_codes(monkeypatch):
 
     for module in (exudyn_ancf, exudyn_exact, openseespy_frame):
         monkeypatch.setattr(module, "installed", lambda: False)
-    monkeypatch.setattr(tasks, "REPEAT", 1)
-    limits, theories = tasks.path_limits(CASE)
-    rows, times = tasks.compared_paths(CASE, limits)
+    monkeypatch.setattr(variants, "REPEAT", 1)
+    limits, theories = path_limits(CASE)
+    rows, times = variants.compared_paths(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
     assert {row["status"] for row in rows} == {"converged", "not installed"}
     found = peers._ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
