@@ -19,9 +19,8 @@ acceleration of the body at the release to be given. The timed call is `analyze`
 import ctypes
 import importlib.util
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -94,12 +93,8 @@ class _OpenSees(Baseline):
         if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
             raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
         asked = {"elements": elements, "tolerance": tolerance}
-
-        def prepare() -> Callable[[], Any]:
-            ops = _driven(problem, asked, float(increments[0]), moving=False)
-            return lambda: ops.analyze(len(increments))
-
-        ops = _driven(problem, asked, float(increments[0]), moving=False)
+        ready = partial(_driven, problem, asked, float(increments[0]), moving=False)
+        ops = ready()
         states, iterations = [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
@@ -112,12 +107,8 @@ class _OpenSees(Baseline):
             centre=geometry_of(problem).centre + answer[:, :2],
             torque=answer[:, 2],
             stiffness=np.full(len(turns), np.nan),
-            again=clocked(prepare),
-            work={
-                "unknowns": ops.systemSize(),
-                "newton_iterations": iterations,
-                "factorisations": iterations,
-            },
+            again=clocked(lambda: partial(ready().analyze, len(increments))),
+            work=_work(ops, iterations),
         )
 
     def release(
@@ -140,13 +131,9 @@ class _OpenSees(Baseline):
             BadInput: a setting out of range. BaselineFailed: no convergence.
         """
         steps = checked_release(start, duration, step)
-        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha, "step_s": duration / steps}
-
-        def prepare() -> Callable[[], Any]:
-            ops = _let_go(problem, asked, start)
-            return lambda: ops.analyze(steps, duration / steps)
-
-        ops = _let_go(problem, asked, start)
+        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha}
+        ready = partial(_let_go, problem, asked, start)
+        ops = ready()
         rotation, iterations = np.full(steps + 1, start), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
@@ -156,14 +143,17 @@ class _OpenSees(Baseline):
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
             rotation=rotation,
-            again=clocked(prepare),
-            work={
-                "unknowns": ops.systemSize(),
-                "newton_iterations": iterations,
-                "factorisations": iterations,
-                "steps": steps,
-            },
+            again=clocked(lambda: partial(ready().analyze, steps, duration / steps)),
+            work=_work(ops, iterations) | {"steps": steps},
         )
+
+
+def _work(ops: Any, iterations: int) -> dict[str, int]:
+    return {
+        "unknowns": ops.systemSize(),
+        "newton_iterations": iterations,
+        "factorisations": iterations,
+    }
 
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:

@@ -15,9 +15,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.baselines.exudyn_strips import exudyn_ancf
-from studies.baselines.openseespy import openseespy_frame
-from studies.baselines.variants import (
+from studies.baselines.compared import (
     AS_DELIVERED,
     EXUDYN,
     HINT,
@@ -28,6 +26,8 @@ from studies.baselines.variants import (
     kept,
     missing,
 )
+from studies.baselines.exudyn_strips import exudyn_ancf
+from studies.baselines.openseespy import openseespy_frame
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level

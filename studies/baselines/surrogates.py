@@ -20,10 +20,10 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.baselines import pseudo_rigid
 from studies.baselines.answer import SolvedPath
+from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
 from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model, guide
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
-from studies.baselines.variants import PSEUDO_RIGID, SURROGATES
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array

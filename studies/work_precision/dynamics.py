@@ -16,9 +16,9 @@ import pandas as pd
 from studies.answers.adapters import answer_release
 from studies.answers.metrics import swing_frequency
 from studies.answers.settings import SplineSettings
+from studies.baselines.compared import missing
 from studies.baselines.own import FINE_RECORDS
 from studies.baselines.variant import Variant, ranked
-from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array

@@ -1,4 +1,7 @@
-"""The limit that each theory tends to, and the errors and work of what models answer."""
+"""The limit that each theory tends to, and the errors and work of what models answer.
+
+`path_limits` and `swing_limits` are those of the comparison with other codes.
+"""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -171,8 +174,8 @@ def path_limits(problem: Problem) -> tuple[dict[str, SolvedPath | Reference], li
         away = errors_of(path, found[theory])
         told.append((f"{module.model}, {settings['elements']} elements", theory, away))
     return found, [
-        {"what": what, "theory": theory, "trajectory": errors["trajectory"], "torque": errors["torque"]}
-        for what, theory, errors in told
+        {"what": what, "theory": theory, "trajectory": off["trajectory"], "torque": off["torque"]}
+        for what, theory, off in told
     ]
 
 

@@ -19,9 +19,9 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.reference import QUANTITIES
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.baselines.compared import missing
 from studies.baselines.own import spline
 from studies.baselines.variant import Variant
-from studies.baselines.variants import missing
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.record.marks import Slope

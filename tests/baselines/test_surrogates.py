@@ -9,6 +9,7 @@ import pytest
 from studies.baselines import constraint_model as beams
 from studies.baselines import one_coordinate, pseudo_rigid, surrogates
 from studies.baselines.answer import SolvedMotion, SolvedPath, geometry_of
+from studies.baselines.compared import SURROGATES
 from studies.baselines.constraint_model import (
     chained_constraint_model,
     constraint_model,
@@ -24,7 +25,6 @@ from studies.baselines.pseudo_rigid import (
     small_angle_stiffness,
     spring,
 )
-from studies.baselines.variants import SURROGATES
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.errors import BadInput
