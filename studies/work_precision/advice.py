@@ -93,11 +93,11 @@ def advise_motion(problem: Design, error: float, progress: Progress = silent) ->
     instants = np.linspace(0.0, duration, INSTANTS)
     integrator = _integrator(problem, duration)
     rotations = []
-    for done, n in enumerate(REFERENCE):
-        progress(done, total)
-        limit = spline.swing(problem, duration, control_points=n, integrator=integrator)
+    for finest in grid(spline, "reference", control_points=REFERENCE, integrator=(integrator,)):
+        progress(len(rotations), total)
+        limit: Any = finest.swing(problem, duration)
         if not limit.converged:
-            raise NoReference(f"reference with {n} control points: {limit.message}")
+            raise NoReference(f"reference with {finest.count} control points: {limit.message}")
         rotations.append(at(limit, np.minimum(instants, limit.time[-1])))
     uncertainty = float(np.abs(rotations[0] - rotations[1]).max()) / start
     rows: list[dict[str, Any]] = []
