@@ -13,7 +13,7 @@ from studies.baselines.own import spline
 from studies.baselines.variant import grid, ranked
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.kinds import Progress
+from studies.kinds import Array, Progress
 from studies.record.progress import silent
 from studies.work_precision import series
 from studies.work_precision.equal_error import coarsest, worst
@@ -92,7 +92,7 @@ def advise_motion(problem: Design, error: float, progress: Progress = silent) ->
     total = len(REFERENCE) + len(tried)
     instants = np.linspace(0.0, duration, INSTANTS)
     integrator = _integrator(problem, duration)
-    rotations = []
+    rotations: list[Array] = []
     for finest in grid(spline, "reference", control_points=REFERENCE, integrator=(integrator,)):
         progress(len(rotations), total)
         limit: Any = finest.swing(problem, duration)
