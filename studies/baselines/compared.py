@@ -43,7 +43,7 @@ def missing() -> str:
 #: Theories of the rod: the limit that a model tends to.
 NAMES = {"material": WITHOUT_SHEAR, "shear": WITH_SHEAR}
 
-#: Group of a ratio -> modules, and the solver settings that count for it.
+#: What times are compared under, beside the splines and elements of the suite.
 EXUDYN, AS_DELIVERED, OPENSEES = "Exudyn", "Exudyn as delivered", "OpenSees"
 SURROGATE = "surrogates"
 
