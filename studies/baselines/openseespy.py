@@ -172,7 +172,8 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     element = 1
     for strip in range(2):
         first = BODY + 1 + strip * (elements + 1)
-        places = np.linspace(at_rest.root[strip], at_rest.tip[strip], elements + 1)
+        way = at_rest.tip[strip] - at_rest.root[strip]
+        places = at_rest.root[strip] + np.linspace(0.0, 1.0, elements + 1)[:, None] * way
         for number, place in enumerate(places):
             ops.node(first + number, *map(float, place))
         ops.fix(first, 1, 1, 1)
