@@ -93,13 +93,11 @@ def _error_of(name: str) -> Callable[[Array, Array], Array]:
     return trajectory_error if name == "trajectory" else relative_error
 
 
-def errors(answer: Response, against: Reference) -> dict[str, Array]:
-    """Return the errors of `answer` by `QUANTITIES`, (S,) of the states that it reached: of the trajectory
-    >= 0, the others signed [1]."""
-    return {
-        name: _error_of(name)(getattr(answer, array), getattr(against, array))
-        for name, array in ARRAYS.items()
-    }
+def errors(answer: Any, against: Any) -> dict[str, Array]:
+    """Return the errors of a path, of any model, by those of `QUANTITIES` that both give, (S,) of the states
+    that it reached: of the trajectory >= 0, the others signed [1]."""
+    pairs = {name: (getattr(answer, array), getattr(against, array)) for name, array in ARRAYS.items()}
+    return {name: _error_of(name)(*pair) for name, pair in pairs.items() if all(v is not None for v in pair)}
 
 
 def largest_errors(answer: Response, against: Reference) -> dict[str, float]:

@@ -28,13 +28,16 @@ class Followed:
         work: counters of the solve, by kind; "unknowns" is the size of its system.
         again: solves once more and returns the time of the increments or steps alone [s]: without set-up,
             without the static path to a release, and without reading the answer.
-        solve_s: median of such times [s], NaN of what was not timed.
+        solve_s: median of such times [s], NaN of what was not timed; repeats: how many these are [1].
+        wall_s: time of the whole answer [s], NaN if unknown.
         status: "converged" or how it ended; message: why and where or when it stopped.
     """
 
     work: Mapping[str, float]
     again: Callable[[], float] = lambda: math.nan
     solve_s: float = math.nan
+    repeats: int = 0
+    wall_s: float = math.nan
     status: str = "converged"
     message: str = ""
 
@@ -60,7 +63,7 @@ class Followed:
 
     def timed(self, repeat: int) -> Self:
         """Return the same with its median time."""
-        return replace(self, solve_s=float(np.median(self.seconds(repeat))))
+        return replace(self, solve_s=float(np.median(self.seconds(repeat))), repeats=repeat)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +76,6 @@ class SolvedPath(Followed):
         torque: (S,) driving torque on the body [N m].
         stiffness: (S,) its derivative by the rotation [N m / rad]; NaN where the model does not give it.
         max_stress: (S,) largest at the strips' outer fibres [Pa]; None where the model does not give it.
-        wall_s: time of the whole answer [s], NaN if unknown.
     """
 
     rotation: Array
@@ -81,7 +83,6 @@ class SolvedPath(Followed):
     torque: Array
     stiffness: Array
     max_stress: Array | None = None
-    wall_s: float = math.nan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,12 +92,10 @@ class SolvedMotion(Followed):
     Attributes:
         time: (T,) [s].
         rotation: (T,) of the body [rad].
-        repeats: number of runs whose median time is `solve_s` [1].
     """
 
     time: Array
     rotation: Array
-    repeats: int = 1
 
 
 def checked_rotations(rotations: Any) -> Array:

@@ -19,7 +19,7 @@ What the timing leaves out and what was tried on Table 1, for the whole path of 
 import importlib.util
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from studies.baselines.answer import (
     checked_rotations,
     clocked,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
@@ -63,19 +64,12 @@ class System:
     reaction: int
 
 
-class _Strips(Protocol):
-    """A frozen dataclass of how strips are discretised, which refuses what it cannot be."""
-
-    def system(self, problem: Problem) -> System:
-        """Return the pivot with such strips in Exudyn."""
-
-
 @dataclass(eq=False, kw_only=True)
-class Exudyn:
-    """A kind of strip as a baseline: its name; keywords in `settings` are those of the strips."""
+class Exudyn(Baseline):
+    """A kind of strip as a baseline; keywords in `settings` are those of `system_of`, which makes it of a
+    pivot, and refuses what it cannot be."""
 
-    model: str
-    strips: Callable[..., _Strips]
+    system_of: Callable[..., System]
 
     def installed(self) -> bool:
         """Return whether Exudyn can be imported."""
@@ -99,9 +93,9 @@ class Exudyn:
         Raises:
             BadInput: a setting out of range. BaselineFailed: no convergence.
         """
-        strips, turns = self.strips(**settings), checked_rotations(rotations)
+        turns = checked_rotations(rotations)
         checked_choice("solver", solver, SOLVERS)
-        system = strips.system(problem)
+        system = self.system_of(problem, **settings)
         asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
         solved = _driven(system, asked, turns)
         centre, torque = _path(system)
@@ -135,8 +129,8 @@ class Exudyn:
         Raises:
             BadInput: a setting out of range. BaselineFailed: no convergence.
         """
-        strips, steps = self.strips(**settings), checked_release(start, duration, step)
-        system = strips.system(problem)
+        steps = checked_release(start, duration, step)
+        system = self.system_of(problem, **settings)
         _hold_at(system, start)
         moving = _dynamic(system, duration, steps, relative_tolerance, spectral_radius)
         solver = system.exu.MainSolverImplicitSecondOrder()

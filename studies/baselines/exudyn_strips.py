@@ -32,7 +32,6 @@ import contextlib
 import io
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -111,41 +110,32 @@ def _hold(items: Any, mbs: Any, zero: int, node: int, coordinate: int) -> None:
     mbs.AddObject(items.CoordinateConstraint(markerNumbers=[zero, marker]))
 
 
-@dataclass(frozen=True)
-class _Cables:
-    """Strips of ANCF cables: elements a strip [1]; integration: rule, 0, 1 or 2."""
+def _cables(problem: Problem, *, elements: int = 8, integration: int = 0) -> System:
+    """Return the pivot with so many ANCF cables a strip [1]; integration: rule, 0, 1 or 2."""
+    checked_count("elements", elements, 1)
+    checked_choice("integration", integration, (0, 1, 2))
 
-    elements: int = 8
-    integration: int = 0
-
-    def __post_init__(self) -> None:
-        checked_count("elements", self.elements, 1)
-        checked_choice("integration", self.integration, (0, 1, 2))
-
-    def system(self, problem: Problem) -> System:
-        """Return the pivot with such strips in Exudyn."""
-
-        def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
-            places = root + np.linspace(0.0, problem.length, self.elements + 1)[:, None] * direction
-            nodes = [
-                mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[*place, *direction]))
-                for place in places
-            ]
-            for pair in pairwise(nodes):
-                mbs.AddObject(
-                    items.ObjectANCFCable2D(
-                        length=problem.length / self.elements,
-                        massPerLength=problem.density * problem.area,
-                        bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
-                        axialStiffness=problem.youngs_modulus * problem.area,
-                        nodeNumbers=list(pair),
-                        useReducedOrderIntegration=self.integration,
-                    )
+    def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
+        places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
+        nodes = [
+            mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[*place, *direction]))
+            for place in places
+        ]
+        for pair in pairwise(nodes):
+            mbs.AddObject(
+                items.ObjectANCFCable2D(
+                    length=problem.length / elements,
+                    massPerLength=problem.density * problem.area,
+                    bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
+                    axialStiffness=problem.youngs_modulus * problem.area,
+                    nodeNumbers=list(pair),
+                    useReducedOrderIntegration=integration,
                 )
-            _clamp(items, mbs, zero, nodes[0], direction)
-            return nodes[-1], float(np.arctan2(direction[1], direction[0]))
+            )
+        _clamp(items, mbs, zero, nodes[0], direction)
+        return nodes[-1], float(np.arctan2(direction[1], direction[0]))
 
-        return _system_of(problem, strip)
+    return _system_of(problem, strip)
 
 
 def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None:
@@ -166,51 +156,38 @@ def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None
     )
 
 
-@dataclass(frozen=True)
-class _Beams:
-    """Strips of exact beams: elements a strip, nodes of an element, 2 or 3, and a factor on k G A [1]."""
+def _beams(
+    problem: Problem, *, elements: int = 4, nodes: int = 3, shear_stiffness_factor: float = 1.0
+) -> System:
+    """Return the pivot with so many exact beams a strip, of 2 or 3 nodes each, and a factor on k G A [1]."""
+    checked_count("elements", elements, 1)
+    checked_choice("nodes", nodes, (2, 3))
+    modulus, spans = problem.youngs_modulus, nodes - 1
+    shear_modulus = modulus / (2.0 * (1.0 + problem.poisson_ratio))
 
-    elements: int = 4
-    nodes: int = 3
-    shear_stiffness_factor: float = 1.0
-
-    def __post_init__(self) -> None:
-        checked_count("elements", self.elements, 1)
-        checked_choice("nodes", self.nodes, (2, 3))
-
-    def system(self, problem: Problem) -> System:
-        """Return the pivot with such strips in Exudyn."""
-        modulus = problem.youngs_modulus
-        shear_modulus = modulus / (2.0 * (1.0 + problem.poisson_ratio))
-        spans = self.nodes - 1
-
-        def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
-            along = np.linspace(0.0, problem.length, spans * self.elements + 1)
-            numbers = [
-                mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*(root + s * direction), 0.0]))
-                for s in along
-            ]
-            for first in range(0, spans * self.elements, spans):
-                mbs.AddObject(
-                    items.ObjectBeamGeometricallyExact2D(
-                        length=problem.length / self.elements,
-                        massPerLength=problem.density * problem.area,
-                        crossSectionInertia=problem.density * problem.second_moment_of_area,
-                        bendingStiffness=modulus * problem.second_moment_of_area,
-                        axialStiffness=modulus * problem.area,
-                        shearStiffness=self.shear_stiffness_factor
-                        * SHEAR_CORRECTION
-                        * shear_modulus
-                        * problem.area,
-                        nodeNumbers=numbers[first : first + self.nodes],
-                    )
+    def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
+        numbers = [
+            mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*(root + s * direction), 0.0]))
+            for s in np.linspace(0.0, problem.length, spans * elements + 1)
+        ]
+        for first in range(0, spans * elements, spans):
+            mbs.AddObject(
+                items.ObjectBeamGeometricallyExact2D(
+                    length=problem.length / elements,
+                    massPerLength=problem.density * problem.area,
+                    crossSectionInertia=problem.density * problem.second_moment_of_area,
+                    bendingStiffness=modulus * problem.second_moment_of_area,
+                    axialStiffness=modulus * problem.area,
+                    shearStiffness=shear_stiffness_factor * SHEAR_CORRECTION * shear_modulus * problem.area,
+                    nodeNumbers=numbers[first : first + nodes],
                 )
-            for coordinate in range(3):
-                _hold(items, mbs, zero, numbers[0], coordinate)
-            return numbers[-1], 0.0
+            )
+        for coordinate in range(3):
+            _hold(items, mbs, zero, numbers[0], coordinate)
+        return numbers[-1], 0.0
 
-        return _system_of(problem, strip)
+    return _system_of(problem, strip)
 
 
-exudyn_ancf = Exudyn(model="exudyn ancf", strips=_Cables)
-exudyn_exact = Exudyn(model="exudyn exact", strips=_Beams)
+exudyn_ancf = Exudyn(model="exudyn ancf", system_of=_cables)
+exudyn_exact = Exudyn(model="exudyn exact", sheared=True, system_of=_beams)

@@ -11,7 +11,8 @@ body's place.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -24,6 +25,7 @@ from studies.baselines.answer import (
     checked_rotations,
     clocked,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
@@ -34,66 +36,49 @@ ROUND_OFF = 1e-14
 MARGIN = 0.01
 
 
-class Law(Protocol):
-    """A surrogate of one pivot; p is (S,) [rad]."""
-
-    def centre(self, p: Array) -> Array:
-        """Return the centre of mass of the body (S, 2) [m]."""
-
-    def energy(self, p: Array) -> Array:
-        """Return V (S,) [J]."""
-
-    def torque(self, p: Array) -> Array:
-        """Return V' (S,) [N m]."""
-
-    def stiffness(self, p: Array) -> Array:
-        """Return V'' (S,) [N m / rad]."""
-
-    def inertia(self, p: Array) -> Array:
-        """Return M (S,) [kg m^2]."""
-
-
 @dataclass(frozen=True, kw_only=True)
-class _Series:
-    """Chebyshev series of M, M' and V' in p / reach."""
+class State:
+    """A surrogate of one pivot at S rotations p.
 
-    reach: float
-    inertia: Array
-    inertia_rate: Array
+    Attributes:
+        centre: centre of mass of the body (S, 2) [m].
+        energy, torque, stiffness: V (S,) [J], V' [N m] and V'' [N m / rad].
+        inertia: M (S,) [kg m^2].
+    """
+
+    centre: Array
+    energy: Array
     torque: Array
+    stiffness: Array
+    inertia: Array
+
+
+#: A surrogate of one pivot: what it is at rotations (S,) [rad].
+Law = Callable[[Array], State]
 
 
 @dataclass(eq=False, kw_only=True)
-class Surrogate:
-    """A model whose only coordinate is the rotation, as a baseline: its name, and the law of a pivot."""
+class Surrogate(Baseline):
+    """A model whose only coordinate is the rotation, by the law of a pivot."""
 
-    model: str
     law_of: Callable[[Problem], Law]
-
-    def installed(self) -> bool:
-        """Return True: the model is of this package."""
-        return True
 
     def static_path(self, problem: Problem, rotations: Any) -> SolvedPath:
         """Return the path through `rotations` (S,) [rad], the first of which is 0.
 
-        Timed is the evaluation of place, V' and V''.
+        Timed is the evaluation of the states.
 
         Raises:
             BadInput: a pivot outside the model's range.
         """
         law, turns = self.law_of(problem), checked_rotations(rotations)
-
-        def evaluate() -> tuple[Array, Array, Array]:
-            return law.centre(turns), law.torque(turns), law.stiffness(turns)
-
-        centre, torque, stiffness = evaluate()
+        found = law(turns)
         return SolvedPath(
             rotation=turns,
-            centre=centre,
-            torque=torque,
-            stiffness=stiffness,
-            again=clocked(lambda: evaluate),
+            centre=found.centre,
+            torque=found.torque,
+            stiffness=found.stiffness,
+            again=clocked(lambda: partial(law, turns)),
             work={"unknowns": 1},
         )
 
@@ -106,13 +91,8 @@ class Surrogate:
             BadInput: a pivot outside the model's range.
         """
         law, steps = self.law_of(problem), checked_release(start, duration, step)
-        series = _series_of(law, abs(start) or 1.0)
         states = np.empty((steps + 1, 2))
-        tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
-
-        def run() -> None:
-            integrate(start, duration / steps, states, *tables)
-
+        run = partial(integrate, start, duration / steps, states, *_series_of(law, abs(start) or 1.0))
         run()
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
@@ -122,23 +102,20 @@ class Surrogate:
         )
 
 
-def _series_of(law: Law, amplitude: float) -> _Series:
-    """Return the series of a law for swings up to an amplitude [rad]."""
+def _series_of(law: Law, amplitude: float) -> tuple[float, Array, Array, Array]:
+    """Return the reach for swings up to an amplitude [rad], and series of M, M' and V' in p / reach."""
     reach = (1.0 + MARGIN) * amplitude
     u = np.asarray(chebyshev.chebpts1(DEGREE + 1), dtype=float)
+    found = law(reach * u)
 
-    def fitted(values: Callable[[Array], Array]) -> Array:
-        terms = np.asarray(chebyshev.chebfit(u, values(reach * u), DEGREE), dtype=float)
+    def fitted(values: Array) -> Array:
+        terms = np.asarray(chebyshev.chebfit(u, values, DEGREE), dtype=float)
         kept = np.flatnonzero(np.abs(terms) > ROUND_OFF * np.abs(terms).max())
         return terms[: kept[-1] + 1]
 
-    inertia = fitted(law.inertia)
-    return _Series(
-        reach=reach,
-        inertia=inertia,
-        inertia_rate=np.asarray(chebyshev.chebder(inertia), dtype=float) / reach,
-        torque=fitted(law.torque),
-    )
+    inertia = fitted(found.inertia)
+    rate = np.asarray(chebyshev.chebder(inertia), dtype=float) / reach
+    return reach, inertia, rate, fitted(found.torque)
 
 
 @njit(cache=True)

@@ -19,9 +19,8 @@ acceleration of the body at the release to be given. The timed call is `analyze`
 import ctypes
 import importlib.util
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +36,9 @@ from studies.baselines.answer import (
     clocked,
     geometry_of,
 )
+from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -64,10 +63,8 @@ def _loaded() -> Any:
 
 
 @dataclass(eq=False, kw_only=True)
-class _OpenSees:
-    """OpenSees as a baseline: its name."""
-
-    model: str = "openseespy frame"
+class _OpenSees(Baseline):
+    """OpenSees as a baseline."""
 
     def installed(self) -> bool:
         """Return whether OpenSees can be imported."""
@@ -96,12 +93,8 @@ class _OpenSees:
         if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
             raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
         asked = {"elements": elements, "tolerance": tolerance}
-
-        def prepare() -> Callable[[], Any]:
-            ops = _driven(problem, asked, float(increments[0]), moving=False)
-            return lambda: ops.analyze(len(increments))
-
-        ops = _driven(problem, asked, float(increments[0]), moving=False)
+        ready = partial(_driven, problem, asked, float(increments[0]), moving=False)
+        ops = ready()
         states, iterations = [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
@@ -114,12 +107,8 @@ class _OpenSees:
             centre=geometry_of(problem).centre + answer[:, :2],
             torque=answer[:, 2],
             stiffness=np.full(len(turns), np.nan),
-            again=clocked(prepare),
-            work={
-                "unknowns": ops.systemSize(),
-                "newton_iterations": iterations,
-                "factorisations": iterations,
-            },
+            again=clocked(lambda: partial(ready().analyze, len(increments))),
+            work=_work(ops, iterations),
         )
 
     def release(
@@ -142,13 +131,9 @@ class _OpenSees:
             BadInput: a setting out of range. BaselineFailed: no convergence.
         """
         steps = checked_release(start, duration, step)
-        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha, "step_s": duration / steps}
-
-        def prepare() -> Callable[[], Any]:
-            ops = _let_go(problem, asked, start)
-            return lambda: ops.analyze(steps, duration / steps)
-
-        ops = _let_go(problem, asked, start)
+        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha}
+        ready = partial(_let_go, problem, asked, start)
+        ops = ready()
         rotation, iterations = np.full(steps + 1, start), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
@@ -158,14 +143,17 @@ class _OpenSees:
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
             rotation=rotation,
-            again=clocked(prepare),
-            work={
-                "unknowns": ops.systemSize(),
-                "newton_iterations": iterations,
-                "factorisations": iterations,
-                "steps": steps,
-            },
+            again=clocked(lambda: partial(ready().analyze, steps, duration / steps)),
+            work=_work(ops, iterations) | {"steps": steps},
         )
+
+
+def _work(ops: Any, iterations: int) -> dict[str, int]:
+    return {
+        "unknowns": ops.systemSize(),
+        "newton_iterations": iterations,
+        "factorisations": iterations,
+    }
 
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
@@ -184,7 +172,9 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     element = 1
     for strip in range(2):
         first = BODY + 1 + strip * (elements + 1)
-        for number, place in enumerate(_places(at_rest.root[strip], at_rest.tip[strip], elements)):
+        way = at_rest.tip[strip] - at_rest.root[strip]
+        places = at_rest.root[strip] + np.linspace(0.0, 1.0, elements + 1)[:, None] * way
+        for number, place in enumerate(places):
             ops.node(first + number, *map(float, place))
         ops.fix(first, 1, 1, 1)
         for node in range(first, first + elements):
@@ -193,10 +183,6 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
         ops.element("elasticBeamColumn", element, BODY, first + elements, *link, 1)
         element += 1
     return ops
-
-
-def _places(root: Array, tip: Array, elements: int) -> Array:
-    return np.asarray(root + np.linspace(0.0, 1.0, elements + 1)[:, None] * (tip - root))
 
 
 def _driven(problem: Problem, asked: dict[str, Any], increment: float, *, moving: bool) -> Any:
@@ -238,4 +224,4 @@ def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
     ops.algorithm("Newton")
 
 
-openseespy_frame = _OpenSees()
+openseespy_frame = _OpenSees(model="openseespy frame")

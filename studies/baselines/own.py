@@ -26,25 +26,28 @@ from studies.baselines.answer import (
     checked_rotations,
     clocked,
 )
+from studies.baselines.variant import Baseline, repeats_of
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
+from studies.work_precision.work import work_of, work_of_motion
 
 #: Records of a motion, some 50 of every period of the strips' own oscillations.
 RECORDS = 2500
+#: Records of a motion whose errors are told: the strips' own oscillations, some 40 times as fast as the
+#: swing, need so many for cubic interpolation to err by less than 1e-6 rad (1000 leave 8e-5 rad).
+FINE_RECORDS = 4000
+#: Records of one that is timed: these are read out by each model in its own way and are no part of it.
+TIMED_RECORDS = 50
 #: Schemes whose steps are far shorter than what happens between two records.
 FINE = ("leapfrog", "central-difference")
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Own:
-    """A model as a baseline: its name; keywords in `settings` are those of its discretisation."""
+@dataclass(eq=False, kw_only=True)
+class _Own(Baseline):
+    """A model as a baseline; keywords in `settings` are those of its discretisation."""
 
-    model: str
     discretised: Callable[..., Settings]
-
-    def installed(self) -> bool:
-        """Return True: the model is this repository's."""
-        return True
 
     def static_path(self, problem: Problem, rotations: Any, **settings: Any) -> SolvedPath:
         """Drive the body through equal `rotations` (S,) [rad], the first of which is 0.
@@ -88,6 +91,34 @@ class _Own:
         if not motion.converged:
             raise BaselineFailed(f"{self.model}: {motion.message}")
         return SolvedMotion.of(motion, again=lambda: asked().solve_s, work=motion.counters)
+
+    def path(
+        self, problem: Design, repeat: int, *, accuracy: float | None = None, **settings: Any
+    ) -> SolvedPath:
+        """Return the path of a case, with counted work, as far as it was followed.
+
+        Args:
+            repeat: timed solves [1]; accuracy: that a spline finds its own control points for.
+        """
+        free = {} if accuracy is None else {"control_points": None}
+        chosen: Any = self.discretised(**free | settings)
+        answer = answer_static(problem, chosen, repeat=repeat, accuracy=accuracy)
+        found = replace(chosen, **{name: answer.settings[name] for name in free})
+        return SolvedPath.of(answer, repeats=repeat, work=work_of(found, answer.counters))
+
+    def swing(self, problem: Design, duration: float, **settings: Any) -> SolvedMotion:
+        """Return the motion of a case for `duration` [s], with counted work; `integrator` and `step` [s] are
+        the model's own unless they are given."""
+        given = {name: settings.pop(name, None) for name in ("integrator", "step")}
+        chosen = self.discretised(**settings)
+        released = partial(answer_release, problem, chosen, duration=duration, **given)
+        motion = released(records=FINE_RECORDS)
+        if not motion.converged:
+            return SolvedMotion.of(motion, work={})
+        repeats = repeats_of(motion.solve_s)
+        solve_s = released(records=TIMED_RECORDS, repeat=repeats).solve_s
+        work = work_of_motion(chosen, motion.counters)
+        return SolvedMotion.of(motion, solve_s=solve_s, repeats=repeats, work=work)
 
 
 class _Spline(_Own):

@@ -15,25 +15,26 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.baselines import tasks
-from studies.baselines.exudyn_strips import exudyn_ancf
-from studies.baselines.openseespy import openseespy_frame
-from studies.baselines.variants import (
+from studies.baselines.compared import (
     AS_DELIVERED,
-    ELEMENTS,
     EXUDYN,
     HINT,
     OPENSEES,
-    SPLINE,
     SURROGATE,
+    compared_paths,
+    compared_swings,
     kept,
     missing,
 )
+from studies.baselines.exudyn_strips import exudyn_ancf
+from studies.baselines.openseespy import openseespy_frame
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look
+from studies.work_precision.limits import path_limits, swing_limits
+from studies.work_precision.series import ELEMENTS, SPLINE
 
 GROUPS = (ELEMENTS, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
 
@@ -155,16 +156,16 @@ SWING_AIMS = {1e-2: 20.0}
 
 def _paths() -> Answer:
     """Return theories, errors and times of the static path."""
-    limits, theories = tasks.path_limits(named_case())
-    rows, times = tasks.compared_paths(named_case(), limits)
+    limits, theories = path_limits(named_case())
+    rows, times = compared_paths(named_case(), limits)
     return {"theories": theories, "statics": rows, "statics_timings": times}
 
 
 def _motions() -> Answer:
     """Return theories, errors and times of the swing."""
-    limits, theories = tasks.swing_limits(named_case())
+    limits, theories = swing_limits(named_case())
     uncertainty = {row["theory"]: row["rotation_rad"] for row in theories if row["theory"]}
-    rows, times = tasks.compared_swings(named_case(), limits, uncertainty)
+    rows, times = compared_swings(named_case(), limits, uncertainty)
     return {"swing_theories": theories, "swings": rows, "swings_timings": times}
 
 

@@ -44,13 +44,12 @@ body. Source of the model: as of the pin joint; own derivation of the rest.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from studies.baselines.answer import Geometry, geometry_of
-from studies.baselines.one_coordinate import Surrogate
+from studies.baselines.one_coordinate import Law, State, Surrogate
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -81,80 +80,58 @@ def _stiffness_coefficient(ratio: float) -> float:
     return float(np.polynomial.polynomial.polyval(ratio, COEFFICIENTS))
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Turned:
-    """A body whose point at the crossing moves as it turns; see `studies.baselines.one_coordinate.Law`.
+def _centre(at_rest: Geometry, p: Array, shift: Any) -> Array:
+    """Return the centre of mass (S, 2) of a body whose point at the crossing moves by x + iy [m]."""
+    z = shift + _arm(at_rest) * np.exp(1j * p)
+    return np.stack((z.real, z.imag), axis=-1) + at_rest.crossing
 
-    at_rest: the pivot. mass, turning_inertia: of the body [kg], [kg m^2].
+
+def _arm(at_rest: Geometry) -> complex:
+    """Return the way from the crossing to the centre of mass at rest, as x + iy [m]."""
+    return complex(*(at_rest.centre - at_rest.crossing))
+
+
+def _speed(p: Array, rate: Any, arm: complex) -> Array:
+    """Return the square of the speed of a point of the body at p' = 1 [m^2].
+
+    Args:
+        rate: velocity of the body's point at the crossing, as x + iy [m].
+        arm: from there to the point, at rest.
     """
-
-    at_rest: Geometry
-    mass: float
-    turning_inertia: float
-
-    def centre(self, p: Array) -> Array:
-        """Return the centre of mass."""
-        z = self._shift(p)[0] + complex(*self._arm) * np.exp(1j * p)
-        return np.stack((z.real, z.imag), axis=-1) + self.at_rest.crossing
-
-    @property
-    def _arm(self) -> Array:
-        """From the crossing to the centre of mass, at rest [m]."""
-        return self.at_rest.centre - self.at_rest.crossing
-
-    def _rate(self, p: Array, arm: Array) -> Array:
-        """Return the velocity of a point of the body at p' = 1 as x + iy [m]."""
-        return np.asarray(self._shift(p)[1] + 1j * complex(*arm) * np.exp(1j * p))
-
-    def _shift(self, p: Array) -> tuple[Any, Any]:
-        """Return the displacement of the body's point at the crossing, as x + iy, and its derivative [m]."""
-        raise NotImplementedError
+    return np.asarray(np.abs(rate + 1j * arm * np.exp(1j * p)) ** 2)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _LinearPivot(_Turned):
-    """The law of one pivot with a constant stiffness [N m / rad], and a shift over p^2 [m]."""
+def _constant(problem: Problem, stiffness: float, strips: float, shift: float = 0.0) -> Law:
+    """Return the law of a constant stiffness [N m/rad].
 
-    constant: float
-    shift: float
+    Args:
+        strips: their inertia [kg m^2]. shift: of the body's point at the crossing, over p^2 [m].
+    """
+    at_rest = geometry_of(problem)
+    turning = problem.body_moment_of_inertia + strips
 
-    def energy(self, p: Array) -> Array:
-        """Return K p^2 / 2."""
-        return np.asarray(0.5 * self.constant * p**2)
+    def law(p: Array) -> State:
+        return State(
+            centre=_centre(at_rest, p, 1j * shift * p**2),
+            energy=0.5 * stiffness * p**2,
+            torque=stiffness * p,
+            stiffness=np.full(len(p), stiffness),
+            inertia=turning + problem.body_mass * _speed(p, 2j * shift * p, _arm(at_rest)),
+        )
 
-    def torque(self, p: Array) -> Array:
-        """Return K p."""
-        return np.asarray(self.constant * p)
-
-    def stiffness(self, p: Array) -> Array:
-        """Return K."""
-        return np.full(len(p), self.constant)
-
-    def inertia(self, p: Array) -> Array:
-        """Return M."""
-        rate = self._rate(p, self._arm)
-        return np.asarray(self.turning_inertia + self.mass * (rate.real**2 + rate.imag**2))
-
-    def _shift(self, p: Array) -> tuple[Any, Any]:
-        return 1j * self.shift * p**2, 2j * self.shift * p
+    return law
 
 
-def _linear_law(problem: Problem) -> _LinearPivot:
+def _linear_law(problem: Problem) -> Law:
     """Return the law of the linear pivot."""
     away = 1.0 - problem.crossing_ratio
     b, c = 3.0 * away - 1.0, 1.0 - 2.0 * away
     strip = problem.density * problem.area * problem.length**3
     strips = 2.0 * strip * (b**2 / 5.0 + b * c / 3.0 + c**2 / 7.0)
-    return _LinearPivot(
-        at_rest=geometry_of(problem),
-        constant=small_angle_stiffness(problem),
-        shift=shift_coefficient(problem),
-        mass=problem.body_mass,
-        turning_inertia=problem.body_moment_of_inertia + strips,
-    )
+    return _constant(problem, small_angle_stiffness(problem), strips, shift_coefficient(problem))
 
 
-def _pinned_law(problem: Problem) -> _LinearPivot:
+def _pinned_law(problem: Problem) -> Law:
     """Return the law of the pin joint: that of the linear pivot without a shift.
 
     Raises:
@@ -170,13 +147,7 @@ def _pinned_law(problem: Problem) -> _LinearPivot:
         raise BadInput(f"{PIN_JOINT}: got height / width {ratio:.3g}, expected {RANGE[0]:g} to {RANGE[1]:g}")
     rigidity = problem.youngs_modulus * problem.second_moment_of_area
     strips = 2.0 * problem.density * problem.area * (0.5 * problem.length) ** 3 / 3.0
-    return _LinearPivot(
-        at_rest=geometry_of(problem),
-        constant=_stiffness_coefficient(ratio) * rigidity / (2.0 * problem.length),
-        shift=0.0,
-        mass=problem.body_mass,
-        turning_inertia=problem.body_moment_of_inertia + strips,
-    )
+    return _constant(problem, _stiffness_coefficient(ratio) * rigidity / (2.0 * problem.length), strips)
 
 
 def link_length(problem: Problem) -> float:
@@ -195,104 +166,64 @@ def spring(problem: Problem) -> float:
     return small_angle_stiffness(problem) / (1.0 + 4.0 * (offset / link_length(problem)) ** 2)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _FourBar(_Turned):
-    """The law of one linkage.
+def _links(p: Array, ground: float, body: float, inclination: float) -> tuple[tuple[Array, ...], ...]:
+    """Return mean rotation m and half difference h of the links, each with two derivatives by p.
 
-    ground, body: the pins' distances from the crossing, q and b [m]. rod: inertia of a link about its ground
-    pin [kg m^2]. stub: mass of a strip's part on the body [kg]; stub_place: (2, 2) centres of both [m].
+    Args:
+        ground, body: the pins' distances from the crossing, q and b [m]. inclination: a [rad].
     """
-
-    inclination: float
-    ground: float
-    body: float
-    spring: float
-    rod: float
-    stub: float
-    stub_place: Array
-
-    def energy(self, p: Array) -> Array:
-        """Return V."""
-        mean, half = self._links(p)
-        return np.asarray(self.spring * (mean[0] ** 2 + (p - mean[0]) ** 2 + 2.0 * half[0] ** 2))
-
-    def torque(self, p: Array) -> Array:
-        """Return V'."""
-        mean, half = self._links(p)
-        by_mean = mean[0] * mean[1] + (p - mean[0]) * (1.0 - mean[1])
-        return np.asarray(2.0 * self.spring * (by_mean + 2.0 * half[0] * half[1]))
-
-    def stiffness(self, p: Array) -> Array:
-        """Return V''."""
-        mean, half = self._links(p)
-        by_mean = mean[1] ** 2 + mean[0] * mean[2] + (1.0 - mean[1]) ** 2 - (p - mean[0]) * mean[2]
-        by_half = half[1] ** 2 + half[0] * half[2]
-        return np.asarray(2.0 * self.spring * (by_mean + 2.0 * by_half))
-
-    def inertia(self, p: Array) -> Array:
-        """Return M."""
-        mean, half = self._links(p)
-        links = self.rod * ((mean[1] + half[1]) ** 2 + (mean[1] - half[1]) ** 2)
-        return np.asarray(
-            self.turning_inertia
-            + links
-            + self.mass * self._speed(p, self._arm)
-            + self.stub * sum(self._speed(p, place) for place in self.stub_place)
-        )
-
-    def _speed(self, p: Array, arm: Array) -> Array:
-        """Return the square of the speed of a point of the body at p' = 1 [m^2]."""
-        return np.asarray(np.abs(self._rate(p, arm)) ** 2)
-
-    def _between(self, p: Array) -> tuple[Array, Array, Array]:
-        """Return |w| and its two derivatives by p [m]."""
-        q, b = self.ground, self.body
-        size = np.abs(q + b * np.exp(1j * p))
-        first = -q * b * np.sin(p) / size
-        return size, first, (-q * b * np.cos(p) - first**2) / size
-
-    def _links(self, p: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-        """Return mean rotation and half difference of the links, each with two derivatives by p."""
-        q, b = self.ground, self.body
-        size, first, second = self._between(p)
-        mean = np.unwrap(np.angle(q + b * np.exp(1j * p)))
-        mean_1 = b * (b + q * np.cos(p)) / size**2
-        mean_2 = -q * b * np.sin(p) / size**2 - 2.0 * mean_1 * first / size
-        scale = math.cos(self.inclination) / (q + b)
-        z, z_1, z_2 = scale * size, scale * first, scale * second
-        height = np.sqrt(1.0 - z**2)
-        half = (np.arccos(z) - self.inclination, -z_1 / height, -z_2 / height - z * z_1**2 / height**3)
-        return (mean, mean_1, mean_2), half
-
-    def _shift(self, p: Array) -> tuple[Any, Any]:
-        q, b = self.ground, self.body
-        w, w_1 = q + b * np.exp(1j * p), 1j * b * np.exp(1j * p)
-        size, first, _ = self._between(p)
-        cosine, sine = math.cos(self.inclination), math.sin(self.inclination)
-        height = np.sqrt((q + b) ** 2 / size**2 - cosine**2)
-        height_1 = -((q + b) ** 2) * first / (size**3 * height)
-        return 1j * w * (height - sine), 1j * (w_1 * (height - sine) + w * height_1)
+    w = ground + body * np.exp(1j * p)
+    size, first, second = _apart(p, ground, body)
+    mean_1 = body * (body + ground * np.cos(p)) / size**2
+    mean_2 = -ground * body * np.sin(p) / size**2 - 2.0 * mean_1 * first / size
+    z, z_1, z_2 = (math.cos(inclination) / (ground + body) * each for each in (size, first, second))
+    height = np.sqrt(1.0 - z**2)
+    half_2 = -z_2 / height - z * z_1**2 / height**3
+    return (np.unwrap(np.angle(w)), mean_1, mean_2), (np.arccos(z) - inclination, -z_1 / height, half_2)
 
 
-def _linkage(problem: Problem) -> _FourBar:
+def _apart(p: Array, ground: float, body: float) -> tuple[Array, Array, Array]:
+    """Return |w| and its two derivatives by p [m]."""
+    size = np.abs(ground + body * np.exp(1j * p))
+    first = -ground * body * np.sin(p) / size
+    return size, first, (-ground * body * np.cos(p) - first**2) / size
+
+
+def _shift(p: Array, ground: float, body: float, inclination: float) -> tuple[Array, Array]:
+    """Return the displacement of the body's point at the crossing, as x + iy, and its derivative [m]."""
+    whole, turned = ground + body, body * np.exp(1j * p)
+    size, first, _ = _apart(p, ground, body)
+    height = np.sqrt(whole**2 / size**2 - math.cos(inclination) ** 2)
+    height_1 = -(whole**2) * first / (size**3 * height)
+    above, w = height - math.sin(inclination), ground + turned
+    return 1j * w * above, 1j * (1j * turned * above + w * height_1)
+
+
+def _linkage(problem: Problem) -> Law:
     """Return the law of the linkage."""
-    at_rest, link = geometry_of(problem), link_length(problem) * problem.length
+    at_rest, link, k = geometry_of(problem), link_length(problem) * problem.length, spring(problem)
     left = 0.5 * (problem.length - link)
     ground = problem.crossing_ratio * problem.length - left
     body = (1.0 - problem.crossing_ratio) * problem.length - left
     linear = problem.density * problem.area
-    return _FourBar(
-        at_rest=at_rest,
-        inclination=problem.inclination,
-        ground=ground,
-        body=body,
-        spring=spring(problem),
-        mass=problem.body_mass,
-        turning_inertia=problem.body_moment_of_inertia + 2.0 * linear * left**3 / 12.0,
-        rod=linear * link**3 / 3.0,
-        stub=linear * left,
-        stub_place=(body + 0.5 * left) * at_rest.direction,
-    )
+    stubs = [complex(*place) for place in (body + 0.5 * left) * at_rest.direction]
+    turning = problem.body_moment_of_inertia + 2.0 * linear * left**3 / 12.0
+
+    def law(p: Array) -> State:
+        (m, m_1, m_2), (h, h_1, h_2) = _links(p, ground, body, problem.inclination)
+        shift, rate = _shift(p, ground, body, problem.inclination)
+        links = linear * link**3 / 3.0 * ((m_1 + h_1) ** 2 + (m_1 - h_1) ** 2)
+        ends = linear * left * sum(_speed(p, rate, stub) for stub in stubs)
+        by_mean = m_1**2 + m * m_2 + (1.0 - m_1) ** 2 - (p - m) * m_2
+        return State(
+            centre=_centre(at_rest, p, shift),
+            energy=k * (m**2 + (p - m) ** 2 + 2.0 * h**2),
+            torque=2.0 * k * (m * m_1 + (p - m) * (1.0 - m_1) + 2.0 * h * h_1),
+            stiffness=2.0 * k * (by_mean + 2.0 * (h_1**2 + h * h_2)),
+            inertia=turning + links + problem.body_mass * _speed(p, rate, _arm(at_rest)) + ends,
+        )
+
+    return law
 
 
 linear_pivot = Surrogate(model="linear pivot", law_of=_linear_law)

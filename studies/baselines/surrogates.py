@@ -14,17 +14,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.metrics import relative_error, swing_frequency, trajectory_error
-from studies.answers.reference import Swing
+from studies.answers.metrics import swing_frequency
+from studies.answers.reference import Swing, errors
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.baselines import pseudo_rigid
 from studies.baselines.answer import SolvedPath
-from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model
-from studies.baselines.constraint_strips import guide
+from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
+from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model, guide
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
-from studies.baselines.variants import PSEUDO_RIGID, SURROGATES
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
@@ -64,12 +63,12 @@ def _paths() -> Answer:
     paths = {name: each.static_path(problem, turns).timed(9) for name, each in SURROGATES.items()}
     fine = replace(problem, increments=STATES - 1)
     beside = {name: answer_static(fine, formulations.SETTINGS[name]) for name in SPLINES}
-    errors = [_errors(name, path, limit) for name, path in (paths | beside).items()]
+    found = [_errors(name, path, limit) for name, path in (paths | beside).items()]
     uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
     paths[spline.model] = spline.static_path(problem, turns).timed(9)
     task = f"path of {STATES - 1} increments"
     return {
-        "errors": pd.concat(errors),
+        "errors": pd.concat(found),
         "reference": [
             {"quantity": name, "unit": "1", "uncertainty": value} for name, value in uncertainty.items()
         ],
@@ -79,16 +78,10 @@ def _paths() -> Answer:
 
 def _errors(name: str, path: SolvedPath | Response, limit: SolvedPath) -> pd.DataFrame:
     """Return the errors at each rotation: trajectory >= 0, the others signed [1]."""
-    torque = np.zeros(len(limit.torque))  # at rest there is none, but for round-off
-    torque[1:] = relative_error(path.torque[1:], limit.torque[1:])
-    columns = {
-        "model": name,
-        "rotation_rad": path.rotation,
-        "trajectory": trajectory_error(path.centre, limit.centre),
-        "torque": torque,
-        "stiffness": relative_error(path.stiffness, limit.stiffness),
-    }
-    return pd.DataFrame(columns)
+    found = errors(path, limit)
+    found["torque"][0] = 0.0  # at rest there is none, but for round-off
+    columns = {quantity: found[quantity] for quantity in QUANTITIES}
+    return pd.DataFrame({"model": name, "rotation_rad": path.rotation, **columns})
 
 
 def _thresholds(tables: Tables) -> list[dict[str, Any]]:

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.baselines.constraint_strips import guide
+from studies.baselines.constraint_model import guide
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
 from studies.model_form.account import (
     BEAM,

@@ -1,6 +1,5 @@
 """The cheapest setting of every model that meets an error on one pivot, found by trying them all."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,13 +9,15 @@ import pandas as pd
 from studies.answers.adapters import answer_modes
 from studies.answers.reference import NoReference
 from studies.answers.settings import SplineSettings
+from studies.baselines.own import spline
+from studies.baselines.variant import grid, ranked
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.kinds import Progress
+from studies.kinds import Array, Progress
 from studies.record.progress import silent
 from studies.work_precision import series
 from studies.work_precision.equal_error import coarsest, worst
-from studies.work_precision.members import at, limit_of_theory, motion_errors, moving, path_errors
+from studies.work_precision.limits import at, limit_of_theory, motion_errors, path_errors
 
 #: What a setting is judged by.
 PATH_ERRORS = ("error_trajectory", "error_torque")
@@ -47,33 +48,28 @@ def advise_path(problem: Design, error: float, progress: Progress = silent) -> p
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    models = [each for each in series.own_series() if each.name in OWN]
-    models[0] = series.splines(series.SPLINE, models[0].look, counts=COUNTS)
-    models.append(series.by_itself(error))
-    models += series.other_series() if isinstance(problem, Problem) else []
-    total = sum(len(each.members) for each in models) + len(models)
-    limits, members = {}, {}
+    tried = [each for each in series.own_paths(COUNTS) if each.series in OWN]
+    tried += grid(spline, series.ITSELF, accuracy=(error,))
+    tried += series.other_paths() if isinstance(problem, Problem) else []
+    total = len(tried) + len({each.series for each in tried})
+    limits = {theory: limit_of_theory(problem, theory) for theory in {each.theory for each in tried}}
     rows: list[dict[str, Any]] = []
-    for model in models:
-        if model.theory not in limits:
-            limits[model.theory] = limit_of_theory(problem, model.theory)
-        limit = limits[model.theory]
-        for member in model.members:
-            progress(len(rows), total)
-            path = member.solve(problem, 1)
-            members[model.name, member.setting] = member
-            rows.append(
-                {"series": model.name, "family": "all", "setting": member.setting, "rank": member.count}
-                | path_errors(path, limit.path)
-                | {"uncertainty": max(limit.uncertainty[name] for name in ("trajectory", "torque"))}
-                | {"uncertainty_stress": limit.uncertainty["stress"]}
-                | {"solve_s": path.solve_s, "wall_s": path.wall_s, "message": path.message}
-            )
+    for each in tried:
+        progress(len(rows), total)
+        path, limit = each.path(problem, 1), limits[each.theory]
+        rows.append(
+            {"series": each.series, "family": each.family, "setting": each.setting, "rank": each.count}
+            | path_errors(path, limit.path)
+            | {"uncertainty": max(limit.uncertainty[name] for name in ("trajectory", "torque"))}
+            | {"uncertainty_stress": limit.uncertainty["stress"]}
+            | {"solve_s": path.solve_s, "wall_s": path.wall_s, "message": path.message}
+        )
     found = _chosen(pd.DataFrame(rows), PATH_ERRORS, error)
     for place, row in found.iterrows():
         progress(len(rows), total)
         if not row["message"]:
-            again = members[row["series"], row["setting"]].solve(problem, REPEAT)
+            name = row["series"], row["setting"]
+            again = next(each for each in tried if (each.series, each.setting) == name).path(problem, REPEAT)
             found.loc[place, ["solve_s", "wall_s"]] = again.solve_s, again.wall_s
     progress(total, total)
     return found
@@ -91,40 +87,38 @@ def advise_motion(problem: Design, error: float, progress: Progress = silent) ->
     frequency = float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     duration = PERIODS / frequency
     scale, start = 1.0 / frequency / PERIOD, abs(problem.rotation or 0.0)
-    models = series.moving_series(scale)
-    models += series.moving_others(scale) if isinstance(problem, Problem) else []
-    total = len(REFERENCE) + sum(len(each.members) for each in models)
+    tried = series.own_swings(scale)
+    tried += series.other_swings(scale) if isinstance(problem, Problem) else []
+    total = len(REFERENCE) + len(tried)
     instants = np.linspace(0.0, duration, INSTANTS)
     integrator = _integrator(problem, duration)
-    rotations = []
-    for done, n in enumerate(REFERENCE):
-        progress(done, total)
-        member = moving(SplineSettings(control_points=n), f"n = {n}", "", integrator=integrator)
-        motion = member.solve(problem, duration)
-        if not motion.converged:
-            raise NoReference(f"reference with {n} control points: {motion.message}")
-        rotations.append(at(motion, np.minimum(instants, motion.time[-1])))
+    rotations: list[Array] = []
+    for finest in grid(spline, "reference", control_points=REFERENCE, integrator=(integrator,)):
+        progress(len(rotations), total)
+        limit: Any = finest.swing(problem, duration)
+        if not limit.converged:
+            raise NoReference(f"reference with {finest.count} control points: {limit.message}")
+        rotations.append(at(limit, np.minimum(instants, limit.time[-1])))
     uncertainty = float(np.abs(rotations[0] - rotations[1]).max()) / start
     rows: list[dict[str, Any]] = []
-    for model in models:
-        for rank, member in enumerate(model.members):
-            progress(len(REFERENCE) + len(rows), total)
-            motion = member.solve(problem, duration)
-            off = motion_errors(motion, rotations[0], instants)
-            rows.append(
-                {"series": model.name, "family": member.family, "setting": member.setting, "rank": rank}
-                | {"error_rotation": off["error_rotation_rad"] / start}
-                | {"error_frequency": off["error_frequency"], "uncertainty": uncertainty}
-                | {"solve_s": motion.solve_s, "wall_s": math.nan, "message": motion.message}
-            )
+    for rank, each in ranked(tried):
+        progress(len(REFERENCE) + len(rows), total)
+        motion = each.swing(problem, duration)
+        off = motion_errors(motion, rotations[0], instants)
+        rows.append(
+            {"series": each.series, "family": each.family, "setting": each.setting, "rank": rank}
+            | {"error_rotation": off["error_rotation_rad"] / start}
+            | {"error_frequency": off["error_frequency"], "uncertainty": uncertainty}
+            | {"solve_s": motion.solve_s, "wall_s": motion.wall_s, "message": motion.message}
+        )
     progress(total, total)
     return _chosen(pd.DataFrame(rows), MOTION_ERRORS, error)
 
 
 def _integrator(problem: Design, duration: float) -> str:
     """Return the spline's most accurate integrator that the scene allows, by trying."""
-    trial = moving(SplineSettings(control_points=4), "trial", "", integrator="leapfrog")
-    return "leapfrog" if trial.solve(problem, 0.1 * duration).converged else "energy"
+    (trial,) = grid(spline, "trial", control_points=(4,), integrator=("leapfrog",))
+    return "leapfrog" if trial.swing(problem, 0.1 * duration).converged else "energy"
 
 
 def _chosen(rows: pd.DataFrame, columns: Sequence[str], error: float) -> pd.DataFrame:

@@ -6,6 +6,7 @@ next coarser one: the explicit finite elements tend to the same motion, but reac
 steps alone, without the static path to the start, the median of repeats, on one thread.
 """
 
+import math
 from functools import cache
 from typing import Any
 
@@ -15,21 +16,20 @@ import pandas as pd
 from studies.answers.adapters import answer_release
 from studies.answers.metrics import swing_frequency
 from studies.answers.settings import SplineSettings
-from studies.baselines.answer import SolvedMotion
-from studies.baselines.variants import missing
+from studies.baselines.compared import missing
+from studies.baselines.own import FINE_RECORDS
+from studies.baselines.variant import Variant, ranked
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
+from studies.paper.formulations import DURATION, INSTANTS
 from studies.work_precision.equal_error import diagram, digits, finer, less
-from studies.work_precision.members import RECORDS, Member, at, motion_errors
-from studies.work_precision.series import SPLINE, Series, looks, moving_others, moving_series
+from studies.work_precision.limits import at, counted, motion_errors
+from studies.work_precision.series import MOVING_LOOKS, SPLINE, other_swings, own_swings
+from studies.work_precision.work import MOVED_WORK
 
-DURATION = 0.05
-INSTANTS = np.linspace(0.0, DURATION, 501)
 #: The reference: leapfrog splines by control points and step [s], the coarser one first.
 REFERENCE = {14: 4e-7, 16: 3e-7}
-#: An error is shown where it is this many times that of the reference.
-MARGIN = 10.0
 #: Errors of the rotation [rad] at which models are compared.
 TARGETS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
 #: The error at which the paper's comparison is made [rad].
@@ -42,30 +42,21 @@ QUANTITIES = {
 }
 
 
-def _members() -> list[tuple[Series, int, Member]]:
-    """Return every setting with its series and its rank there."""
-    return [
-        (series, rank, member)
-        for series in (*moving_series(), *moving_others())
-        for rank, member in enumerate(series.members)
-    ]
-
-
-def _solved(series: Series, rank: int, member: Member) -> Answer:
-    """Return errors, work and times of a setting."""
-    motion: SolvedMotion = member.solve(named_case(), DURATION)
+def _solved(rank: int, variant: Variant) -> Answer:
+    """Return errors, work and times of a setting, `rank` being its place in its series."""
+    motion = variant.swing(named_case(), DURATION)
     rotation, reference = _reference()
-    name = {"series": series.name, "setting": member.setting}
+    name = {"series": variant.series, "setting": variant.setting}
     errors = {
-        "series": series.name,
-        "family": member.family,
-        "setting": member.setting,
+        "series": variant.series,
+        "family": variant.family,
+        "setting": variant.setting,
         "rank": rank,
-        "step_s": member.step,
+        "step_s": variant.settings.get("step", math.nan),
         "status": motion.status,
         **motion_errors(motion, rotation, INSTANTS),
         **{f"reference_{row['quantity']}": row["uncertainty"] for row in reference},
-        **motion.work,
+        **counted(MOVED_WORK, motion.work),
         "message": motion.message,
     }
     times = {
@@ -82,7 +73,7 @@ def _reference() -> tuple[Array, list[dict[str, Any]]]:
     rotations = []
     for n, step in REFERENCE.items():
         motion = answer_release(
-            named_case(), SplineSettings(control_points=n), duration=DURATION, records=RECORDS,
+            named_case(), SplineSettings(control_points=n), duration=DURATION, records=FINE_RECORDS,
             integrator="leapfrog", step=step,
         )  # fmt: skip
         rotations.append(at(motion, INSTANTS))
@@ -107,7 +98,7 @@ def _swing(tables: Tables) -> pd.DataFrame:
 STUDY = Study(
     parts=(
         Part(ask=lambda: {"reference": _reference()[1]}, alone=True),
-        Part(at=_members, ask=_solved, alone=True),
+        Part(at=lambda: ranked([*own_swings(), *other_swings()]), ask=_solved, alone=True),
     ),
     made=digits(["error_rotation_rad"], "rank", TARGETS),
     claims=(
@@ -130,11 +121,9 @@ STUDY = Study(
         "work_precision_dynamics": lambda tables: diagram(
             tables,
             QUANTITIES,
-            margin=MARGIN,
             rank="rank",
-            styles=looks(moving_series()),
+            styles=MOVING_LOOKS,
             part="steps",
-            width=9.5,
         )
     },
     missing=missing,

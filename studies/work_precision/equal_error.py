@@ -18,6 +18,10 @@ from studies.work_precision.series import SPLINE
 Made = dict[str, Callable[[Tables], pd.DataFrame]]
 
 
+#: An error is shown where it is this many times that of its reference.
+MARGIN = 10.0
+
+
 def worst(rows: pd.DataFrame, columns: Sequence[str]) -> pd.Series:
     """Return the largest of the error columns, row by row; infinite where one is missing."""
     return rows[list(columns)].max(axis=1, skipna=False).fillna(math.inf)
@@ -140,19 +144,16 @@ def diagram(
     tables: Tables,
     quantities: Mapping[str, str],
     *,
-    margin: float,
     rank: str,
     styles: Mapping[str, Look],
     part: str,
-    width: float,
 ) -> Figure:
     """Draw the largest error over time (left) and work (right), one row a quantity.
 
     Args:
         tables: errors and timings; quantities: of the errors, with what they are called.
-        margin: errors below so many times that of their reference are left out.
         rank: column by which the settings of a family are joined; styles: by series.
-        part: what a path is made of: increments or steps; width: of the figure [inch].
+        part: what a path is made of: increments or steps.
     """
     rows = joined(tables)
     curves: dict[str, Any] = {"looks": styles, "by": "series", "family": "family", "along": rank}
@@ -160,17 +161,17 @@ def diagram(
     work = Axis("flops", "counted operations [1]", log=True)
     lines = []
     for quantity, title in quantities.items():
-        shown = rows[rows[f"error_{quantity}"] >= margin * rows[f"reference_{quantity}"]]
+        shown = rows[rows[f"error_{quantity}"] >= MARGIN * rows[f"reference_{quantity}"]]
         counted = shown[shown["flops"].notna()]
         y = Axis(f"error_{quantity}", title, log=True)
         timed = Panel(time, y, (Curves(shown[shown["solve_s"].notna()], **curves),))
-        named = Families(counted, rank, styles)
+        named = _Families(counted, rank, styles)
         lines.append((timed, Panel(work, y, (Curves(counted, **curves), named))))
-    return sheet(width, 1.6 + 2.1 * len(quantities), lines, legend=3)
+    return sheet(9.5, 1.6 + 2.1 * len(quantities), lines, legend=3)
 
 
 @dataclass(frozen=True)
-class Families:
+class _Families:
     """The names of families at the coarsest setting of each, which stands first in the order of a column."""
 
     rows: pd.DataFrame

@@ -2,7 +2,7 @@
 
 Every model solves the path of Table 1 to 90 degrees in 20 increments, on one thread. The residual of a solved
 state is below 1e-11 in the splines and 1e-10 in the elements, in EI/L^2; the other codes' own tolerance is
-set so that it does not show. Each is held against the limit of its own theory (see `paths`), and the
+set so that it does not show. Each is held against the limit of its own theory (see `limits`), and the
 distance of the theories is stated. Time is that of the increments alone (`solve_s`), the median of repeats;
 work is counted from sizes (see `work`).
 """
@@ -19,19 +19,19 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.reference import QUANTITIES
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.baselines.variants import missing
+from studies.baselines.compared import missing
+from studies.baselines.own import spline
+from studies.baselines.variant import Variant
 from studies.cases.problem import named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.record.marks import Slope
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, sheet
 from studies.record.style import BASES, BLUE, GREEN, Look
 from studies.work_precision.equal_error import diagram, digits, finer, joined, less
-from studies.work_precision.members import THEORIES, Limit, Member, limit_of_theory, path_errors
-from studies.work_precision.series import ELEMENTS, SPLINE, Series, looks, other_series, own_series
-from studies.work_precision.work import ELEMENT_FORCES, STRIPS, work_of
+from studies.work_precision.limits import THEORIES, Limit, counted, limit_of_theory, path_errors
+from studies.work_precision.series import ELEMENTS, LOOKS, SPLINE, other_paths, own_paths
+from studies.work_precision.work import ELEMENT_FORCES, STRIPS, WORK, work_of
 
-#: An error is shown where it is this many times that of its reference.
-MARGIN = 10.0
 ERRORS = ("error_trajectory", "error_torque")
 #: Errors at which models are compared.
 TARGETS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
@@ -48,32 +48,28 @@ COMPILED_ELEMENTS = 20
 
 #: Basis -> control points; the range from which the exponent is taken.
 COUNTS = {"bezier": (4, 6, 8, 12, 16, 20, 24), "bspline": (8, 12, 16, 24, 32, 48, 64)}
-#: How often the path is timed.
-REPEAT = 7
+#: How often the path is timed, and that of a spline among others.
+REPEAT, SPLINE_REPEAT = 7, 15
 
 
-def _members() -> list[tuple[Series, Member]]:
-    """Return every setting with its series."""
-    return [(series, member) for series in (*own_series(), *other_series()) for member in series.members]
-
-
-def _solved(series: Series, member: Member) -> Answer:
+def _solved(variant: Variant) -> Answer:
     """Return errors over the path and at its end, those of the reference, work, and times of a setting."""
-    path, exact = member.solve(named_case(), series.repeat), _limit(series.theory)
-    name = {"series": series.name, "setting": member.setting}
+    repeat = SPLINE_REPEAT if variant.baseline is spline else REPEAT
+    path, exact = variant.path(named_case(), repeat), _limit(variant.theory)
+    name = {"series": variant.series, "setting": variant.setting}
     errors = {
-        "series": series.name,
-        "family": member.family,
-        "setting": member.setting,
-        "count": member.count,
-        "theory": series.theory,
+        "series": variant.series,
+        "family": variant.family,
+        "setting": variant.setting,
+        "count": variant.count,
+        "theory": variant.theory,
         "status": path.status,
         **path_errors(path, exact.path),
         **{f"reference_{each}": exact.uncertainty[each] for each in QUANTITIES},
-        **path.work,
+        **counted(WORK, path.work),
         "message": path.message,
     }
-    times = {"solve_s": path.solve_s, "wall_s": path.wall_s, "repeats": series.repeat}
+    times = {"solve_s": path.solve_s, "wall_s": path.wall_s, "repeats": repeat}
     return {"errors": errors, "timings": name | times}
 
 
@@ -208,7 +204,7 @@ def _scaling_figure(tables: Tables) -> Figure:
 STUDY = Study(
     parts=(
         Part(at=lambda: THEORIES, ask=lambda theory: {"reference": _reference(theory)}),
-        Part(at=_members, ask=_solved, alone=True),
+        Part(at=lambda: [*own_paths(), *other_paths()], ask=_solved, alone=True),
         Part(at=_iterations_asked, ask=_iteration, alone=True),
     ),
     made=digits(ERRORS, "count", TARGETS) | {"language": _language},
@@ -252,11 +248,9 @@ STUDY = Study(
         "work_precision_statics": lambda tables: diagram(
             tables,
             {name: f"error of the {name} [1]" for name in ("trajectory", "torque", "stiffness")},
-            margin=MARGIN,
             rank="count",
-            styles=looks(own_series()),
+            styles=LOOKS,
             part="increments",
-            width=9.5,
         ),
         "work_precision_scaling": _scaling_figure,
     },

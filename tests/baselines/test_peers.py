@@ -9,16 +9,17 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import peers, tasks, variants
+from studies.baselines import compared, peers
 from studies.baselines.answer import BaselineFailed, SolvedPath
+from studies.baselines.compared import PEERS, kept, spread, tried
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
-from studies.baselines.tasks import errors_of
-from studies.baselines.variants import PEERS, Variant, kept, spread, tried
+from studies.baselines.variant import grid
 from studies.cases.problem import named_case
 from studies.errors import BadInput
+from studies.work_precision.limits import errors_of, path_limits
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
@@ -171,7 +172,7 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     """Requirement: a code that is absent is a row of the study, with what to do."""
     module = PEERS[name]
     monkeypatch.setattr(module, "installed", lambda: False)
-    asked = [Variant(module=module, group="x", theory="y", settings={"elements": n}) for n in (1, 2)]
+    asked = grid(module, "x", elements=(1, 2))
     rows, times = tried(asked, None, ["worst"], judged="worst", repeat=1)
     assert [(row["status"], row["model"]) for row in rows] == [("not installed", name)]
     assert rows[0]["reason"] == "not installed: python -m pip install '.[peers]'"
@@ -185,13 +186,13 @@ def test_study_runs_without_other_codes(monkeypatch):
 
     for module in (exudyn_ancf, exudyn_exact, openseespy_frame):
         monkeypatch.setattr(module, "installed", lambda: False)
-    monkeypatch.setattr(tasks, "REPEAT", 1)
-    limits, theories = tasks.path_limits(CASE)
-    rows, times = tasks.compared_paths(CASE, limits)
+    monkeypatch.setattr(compared, "REPEAT", 1)
+    limits, theories = path_limits(CASE)
+    rows, times = compared.compared_paths(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
     assert {row["status"] for row in rows} == {"converged", "not installed"}
     found = peers._ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
-    assert set(found.dropna(subset="ratio")["group"]) <= {variants.ELEMENTS, variants.SURROGATE}
+    assert set(found.dropna(subset="ratio")["group"]) <= {compared.ELEMENTS, compared.SURROGATE}
     assert (found["spline_s"] > 0.0).all()
 
 
@@ -201,7 +202,7 @@ def test_failed_variant_keeps_its_row():
     def fails(variant):
         raise BaselineFailed("stopped at 0.1 rad")
 
-    rows, times = tried(variants.static_variants()[:1], fails, ["worst"], judged="worst", repeat=1)
+    rows, times = tried(compared.STATIC[:1], fails, ["worst"], judged="worst", repeat=1)
     assert (rows[0]["status"], rows[0]["reason"]) == ("failed", "stopped at 0.1 rad")
     assert math.isnan(rows[0]["worst"])
     assert times == []

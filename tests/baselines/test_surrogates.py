@@ -6,10 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.baselines import constraint_strips, one_coordinate, pseudo_rigid, surrogates
-from studies.baselines.answer import SolvedMotion, SolvedPath
-from studies.baselines.constraint_model import chained_constraint_model, constraint_model, with_beams
-from studies.baselines.constraint_strips import guide
+from studies.baselines import constraint_model as beams
+from studies.baselines import one_coordinate, pseudo_rigid, surrogates
+from studies.baselines.answer import SolvedMotion, SolvedPath, geometry_of
+from studies.baselines.compared import SURROGATES
+from studies.baselines.constraint_model import (
+    chained_constraint_model,
+    constraint_model,
+    guide,
+    with_beams,
+)
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import (
     four_bar,
@@ -19,7 +25,6 @@ from studies.baselines.pseudo_rigid import (
     small_angle_stiffness,
     spring,
 )
-from studies.baselines.variants import SURROGATES
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.errors import BadInput
@@ -89,10 +94,10 @@ def test_four_bar_reproduces_what_it_was_fitted_to(problem):
     """Requirement: stiffness at rest and centre shift of the linkage are the closed form's."""
     law = four_bar.law_of(problem)
     rest = np.zeros(1)
-    assert law.stiffness(rest)[0] == pytest.approx(small_angle_stiffness(problem), rel=1e-13)
+    assert law(rest).stiffness[0] == pytest.approx(small_angle_stiffness(problem), rel=1e-13)
     linear = linear_pivot.law_of(problem)
     p = np.array([1e-3])
-    moved = np.linalg.norm(law.centre(p) - linear.centre(p)) / (problem.length * p[0] ** 2)
+    moved = np.linalg.norm(law(p).centre - linear(p).centre) / (problem.length * p[0] ** 2)
     assert moved < 1e-3  # the next term of the linkage is of third order
 
 
@@ -108,20 +113,23 @@ def test_four_bar_keeps_its_links_and_its_derivatives(problem):
     """Requirement: links keep their length; torque, stiffness and speed are derivatives of what they say."""
     law = four_bar.law_of(problem)
     p, h = np.linspace(-1.5, 1.5, 13), 1e-5
-    moved = law._shift(p)[0]
-    for direction in law.at_rest.direction:
-        t = complex(*direction)
-        link = np.abs(moved + (law.ground + law.body * np.exp(1j * p)) * t)
-        assert link == pytest.approx(law.ground + law.body, rel=1e-14)
-    scale = law.spring
-    slope = (law.energy(p + h) - law.energy(p - h)) / (2.0 * h)
-    assert law.torque(p) == pytest.approx(slope, abs=1e-8 * scale)
-    assert law.stiffness(p) == pytest.approx(
-        (law.torque(p + h) - law.torque(p - h)) / (2.0 * h), abs=1e-8 * scale
+    at_rest, scale = geometry_of(problem), spring(problem)
+    left = 0.5 * problem.length * (1.0 - link_length(problem))
+    ground = problem.crossing_ratio * problem.length - left
+    body = (1.0 - problem.crossing_ratio) * problem.length - left
+    arm = complex(*(at_rest.centre - at_rest.crossing))
+    moved = (law(p).centre - at_rest.crossing) @ (1.0, 1j) - arm * np.exp(1j * p)
+    for direction in at_rest.direction:
+        link = np.abs(moved + (ground + body * np.exp(1j * p)) * complex(*direction))
+        assert link == pytest.approx(ground + body, rel=1e-14)
+    slope = (law(p + h).energy - law(p - h).energy) / (2.0 * h)
+    assert law(p).torque == pytest.approx(slope, abs=1e-8 * scale)
+    assert law(p).stiffness == pytest.approx(
+        (law(p + h).torque - law(p - h).torque) / (2.0 * h), abs=1e-8 * scale
     )
-    speed = np.linalg.norm((law.centre(p + h) - law.centre(p - h)) / (2.0 * h), axis=1)
-    arm = law.at_rest.centre - law.at_rest.crossing
-    assert np.sqrt(law._speed(p, arm)) == pytest.approx(speed, rel=1e-8, abs=1e-10)
+    speed = np.linalg.norm((law(p + h).centre - law(p - h).centre) / (2.0 * h), axis=1)
+    rate = pseudo_rigid._shift(p, ground, body, problem.inclination)[1]
+    assert np.sqrt(pseudo_rigid._speed(p, rate, arm)) == pytest.approx(speed, rel=1e-8, abs=1e-10)
 
 
 @pytest.mark.parametrize("model", BEAMS, ids=lambda model: model.model)
@@ -129,8 +137,8 @@ def test_constraint_model_has_the_exact_stiffness_at_rest(model):
     """Requirement: beams in closed form are exact at rest, however many, stretch included."""
     law, limit = model.law_of(UNEVEN), spline.static_path(UNEVEN, [0.0, SMALL], control_points=8)
     rest = np.zeros(1)
-    assert law.centre(rest)[0] == pytest.approx(limit.centre[0], abs=1e-15)
-    gates.check("constraint_model_stiffness", abs(law.stiffness(rest)[0] / limit.stiffness[0] - 1.0))
+    assert law(rest).centre[0] == pytest.approx(limit.centre[0], abs=1e-15)
+    gates.check("constraint_model_stiffness", abs(law(rest).stiffness[0] / limit.stiffness[0] - 1.0))
 
 
 def test_constraint_model_gate_has_teeth():
@@ -138,7 +146,7 @@ def test_constraint_model_gate_has_teeth():
     angle = np.array([gates.teeth("constraint_model_stiffness")["angle"]])
     limit = spline.static_path(UNEVEN, [0.0, angle[0]], control_points=8)
     with pytest.raises(AssertionError, match="x the gate"):
-        found = constraint_model.law_of(UNEVEN).stiffness(angle)[0]
+        found = constraint_model.law_of(UNEVEN)(angle).stiffness[0]
         gates.check("constraint_model_stiffness", abs(found / limit.stiffness[-1] - 1.0))
 
 
@@ -149,7 +157,7 @@ def test_beam_in_closed_form_is_a_beam_column():
     u = c * p - (0.6 * y**2 - 0.1 * y * turn + turn**2 / 15.0)
     u += p * (y**2 / 700.0 - y * turn / 700.0 + 11.0 * turn**2 / 6300.0)
     start = np.zeros((1, 3))
-    _, force, _ = constraint_strips._placed(start, np.array([[1.0 + u, y, turn]]), 0.0, 1.0, c)
+    _, force, _ = beams._placed(start, np.array([[1.0 + u, y, turn]]), 0.0, 1.0, c)
     stiff = [12 + 1.2 * p - p**2 / 700, -6 - p / 10 + p**2 / 1400, 4 + 2 * p / 15 - 11 * p**2 / 6300]
     expected = [p, stiff[0] * v[0] + stiff[1] * v[1], stiff[1] * v[0] + stiff[2] * v[1]]
     assert force[0, 3:] == pytest.approx(expected, rel=1e-12)
@@ -162,21 +170,21 @@ def test_constraint_model_has_its_derivatives(problem, model):
     """Requirement: torque and stiffness are derivatives of the energy along the path."""
     law, p, h = model.law_of(problem), np.array([-0.9, 0.7]), 1e-4
     scale = small_angle_stiffness(problem)
-    slope = (law.energy(p + h) - law.energy(p - h)) / (2.0 * h)
-    assert law.torque(p) == pytest.approx(slope, abs=1e-7 * scale)
-    rate = (law.torque(p + h) - law.torque(p - h)) / (2.0 * h)
-    assert law.stiffness(p) == pytest.approx(rate, abs=1e-7 * scale)
+    slope = (law(p + h).energy - law(p - h).energy) / (2.0 * h)
+    assert law(p).torque == pytest.approx(slope, abs=1e-7 * scale)
+    rate = (law(p + h).torque - law(p - h).torque) / (2.0 * h)
+    assert law(p).stiffness == pytest.approx(rate, abs=1e-7 * scale)
     still = replace(problem, body_moment_of_inertia=1e-12, density=1e-12)
-    moved = np.linalg.norm(model.law_of(still).centre(p + h) - model.law_of(still).centre(p - h), axis=1)
+    moved = np.linalg.norm(model.law_of(still)(p + h).centre - model.law_of(still)(p - h).centre, axis=1)
     speed = problem.body_mass * (moved / (2.0 * h)) ** 2
-    assert model.law_of(still).inertia(p) == pytest.approx(speed, rel=1e-6, abs=1e-10)
+    assert model.law_of(still)(p).inertia == pytest.approx(speed, rel=1e-6, abs=1e-10)
 
 
 def test_chained_constraint_model_tends_to_the_elastica():
     """Requirement: with twice the beams the torque's error at 60 degrees falls by the fourth order."""
     turns = np.array([0.0, math.pi / 3.0])
     limit = spline.static_path(CASE, turns, control_points=14).torque[-1]
-    errors = [abs(with_beams(n)(CASE).torque(turns)[-1] / limit - 1.0) for n in (2, 4, 8)]
+    errors = [abs(with_beams(n)(CASE)(turns).torque[-1] / limit - 1.0) for n in (2, 4, 8)]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders.min() > 4.0 - 0.15, (errors, orders)
 
@@ -212,11 +220,9 @@ def energy_drift(model, step, duration=0.05):
     """Largest change of kinetic and potential energy of a swing from 90 degrees, over what is at stake."""
     law, start = model.law_of(CASE), math.pi / 2
     states = np.empty((round(duration / step) + 1, 2))
-    series = one_coordinate._series_of(law, start)
-    tables = (series.reach, series.inertia, series.inertia_rate, series.torque)
-    one_coordinate.integrate(start, step, states, *tables)
+    one_coordinate.integrate(start, step, states, *one_coordinate._series_of(law, start))
     p, v = states[:: len(states) // 250].T
-    energy = 0.5 * law.inertia(p) * v**2 + law.energy(p)
+    energy = 0.5 * law(p).inertia * v**2 + law(p).energy
     return np.abs(energy / energy[0] - 1.0).max()
 
 
@@ -236,7 +242,8 @@ def test_pin_joint_swings_harmonically():
     """Requirement: with constant inertia and stiffness the release is a cosine."""
     law = pin_joint.law_of(CASE)
     motion = pin_joint.release(CASE, start=1.0, duration=0.05, step=1e-5)
-    omega = math.sqrt(law.constant / float(law.inertia(np.zeros(1))[0]))
+    rest = law(np.zeros(1))
+    omega = math.sqrt(rest.stiffness[0] / rest.inertia[0])
     assert motion.rotation == pytest.approx(np.cos(omega * motion.time), abs=1e-9)
 
 

@@ -9,13 +9,14 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import main
-from studies.baselines.answer import SolvedMotion, SolvedPath
+from studies.baselines.answer import BaselineFailed, SolvedPath
+from studies.baselines.variant import Baseline, grid
 from studies.cases.problem import FOLDER, named_case
 from studies.commands import advise as command
 from studies.errors import BadInput
-from studies.work_precision import advice, members, series
+from studies.work_precision import advice, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
-from studies.work_precision.members import Member, of_baseline, path_errors
+from studies.work_precision.limits import path_errors
 from studies.work_precision.work import WORK
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
@@ -84,31 +85,30 @@ def test_errors_of_a_path_relate_to_its_reference():
     assert (found["error_stress"], found["end_stress"]) == pytest.approx((0.02, 0.02), rel=1e-9)
     silent = path_errors(replace(exact_path(problem), max_stress=None), exact_path(problem))
     assert math.isnan(silent["error_stress"]) and silent["error_torque"] == 0.0
-    assert all(
-        math.isnan(value) for value in path_errors(members._unsolved("stopped"), exact_path(problem)).values()
-    )
+    stopped = replace(exact_path(problem), status="not_converged")
+    assert all(math.isnan(value) for value in path_errors(stopped, exact_path(problem)).values())
 
 
 def test_a_baseline_that_refuses_is_a_row():
     """A pivot outside of a surrogate's range is an answer that stopped, with the reason."""
 
-    class Refusing:
-        @staticmethod
-        def static_path(*_, **__):
+    class Refusing(Baseline):
+        def static_path(self, *_, **__):
             raise BadInput("pin joint: got this, expected that")
 
-    path = of_baseline(Refusing, "closed form", 1).solve(named_case("cross_axis_pivot"), 1)
+    (variant,) = grid(Refusing(model="pin joint"), "pin joint")
+    path = variant.path(named_case("cross_axis_pivot"), 1)
+    assert variant.setting == "closed form"
     assert (path.status, path.message) == ("not_converged", "pin joint: got this, expected that")
 
 
 def test_static_advice_as_json(capsys, monkeypatch):
     """The command advises on Table 1: the spline and the elements meet 1e-2, the pin joint does not."""
-    monkeypatch.setattr(advice, "COUNTS", range(4, 7))
     wanted = ("linear pivot", "pin joint", "four-bar")
-    own = [each for each in series.own_series() if each.name in (series.SPLINE, series.ELEMENTS)]
-    others = [each for each in series.other_series() if each.name in wanted]
-    monkeypatch.setattr(series, "own_series", lambda: own)
-    monkeypatch.setattr(series, "other_series", lambda: others)
+    own = [each for each in series.own_paths(range(4, 7)) if each.series in (series.SPLINE, series.ELEMENTS)]
+    others = [each for each in series.other_paths() if each.series in wanted]
+    monkeypatch.setattr(series, "own_paths", lambda counts: own)
+    monkeypatch.setattr(series, "other_paths", lambda: others)
     assert main(["advise", CASE, "--accuracy", "1e-2", "--json", "-"]) == 0
     document = json.loads(capsys.readouterr().out)
     found = {row["model"]: row for row in document["models"]}
@@ -131,16 +131,14 @@ def test_dynamic_advice_as_a_table(capsys, monkeypatch):
     """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
     monkeypatch.setattr(advice, "REFERENCE", (6, 5))
     monkeypatch.setattr(advice, "PERIODS", 1.0)
-    one = series.moving_series()[1]
-    small = [series.Series(name=one.name, look=one.look, members=one.members[8:11])]
-    stopped = SolvedMotion(
-        status="not_converged", message="it blew up", time=np.zeros(0), rotation=np.zeros(0),
-        solve_s=math.nan, repeats=0, work={},
-    )  # fmt: skip
-    failing = Member(setting="one", family="all", step=1.0, solve=lambda *_: stopped)
-    other = series.Series(name="failing", look=one.look, members=(failing,))
-    monkeypatch.setattr(series, "moving_series", lambda *_: small)
-    monkeypatch.setattr(series, "moving_others", lambda *_: [other])
+    small = [each for each in series.own_swings() if each.series == series.IMPLICIT][8:11]
+
+    class Failing(Baseline):
+        def release(self, *_, **__):
+            raise BaselineFailed("it blew up")
+
+    monkeypatch.setattr(series, "own_swings", lambda *_: small)
+    monkeypatch.setattr(series, "other_swings", lambda *_: grid(Failing(model="failing"), "failing"))
     assert main(["advise", CASE, "--accuracy", "0.1", "--dynamic"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
@@ -150,13 +148,15 @@ def test_dynamic_advice_as_a_table(capsys, monkeypatch):
 
 def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
     """Where no model meets the error the exit code says so, and the best of each is still told."""
-    coarse = Member(setting="coarse", count=1, solve=lambda problem, repeat: exact_path(problem, 0.5))
-    one = series.own_series()[0]
-    bad = series.Series(name="spline", look=one.look, members=(coarse,))
-    monkeypatch.setattr(series, "own_series", lambda: [bad])
-    monkeypatch.setattr(series, "splines", lambda *_, **__: bad)
-    monkeypatch.setattr(series, "by_itself", lambda accuracy: bad)
-    monkeypatch.setattr(series, "other_series", list)
+
+    class Coarse(Baseline):
+        def path(self, problem, *_, **__):
+            return exact_path(problem, 0.5)
+
+    coarse = Coarse(model="spline")
+    monkeypatch.setattr(series, "own_paths", lambda counts: grid(coarse, series.SPLINE))
+    monkeypatch.setattr(advice, "spline", coarse)
+    monkeypatch.setattr(series, "other_paths", list)
     assert main(["advise", CASE, "--accuracy", "1e-9"]) == 3
     streams = capsys.readouterr()
     assert "no model meets 1e-09 here" in streams.err
