@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
-from spline_model.effects import Clamp, MixedStretching, Shear, Stretching, StripGravity
-from spline_model.effects.base import Constraint
+from spline_model.effects import MixedStretching, Shear, Stretching, StripGravity
 from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
@@ -188,7 +187,5 @@ def centre_lines(system: System, states: Array) -> Array:
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:
     """Force and moment of the clamp on that end of the strip (S, 3) [N, N, N m]; zero if free."""
-    for i, constraint in enumerate(system.scene.of(Constraint)):
-        if isinstance(constraint, Clamp) and (constraint.strip, constraint.end) == (strip, end):
-            return np.asarray(states[:, system.layout.rows(i)])
-    return np.zeros((len(states), 3))
+    rows = system.scene.clamps.get((strip, end))
+    return np.zeros((len(states), 3)) if rows is None else states[:, rows]

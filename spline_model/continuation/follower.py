@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,7 +198,7 @@ def _settle(watch: Watch) -> Newton:
 
 def _grown(watch: Watch) -> Array:
     """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
-    growing = watch.work.growing()
+    growing = replace(watch.work, grows=True)
     own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
     newton = solve(growing, growing.state(growing.system.rest), 0.0)
     begin = _held(growing, newton)

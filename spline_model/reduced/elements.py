@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.compile import System
-from spline_model.continuation.followed import Bordered, Energies, Followed
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
@@ -93,14 +93,9 @@ class Elements(Followed):
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        return cls.on(model)
-
-    @classmethod
-    def on(cls, model: Reduced) -> Self:
-        """The elements of a reduced mechanism."""
         size = model.size + len(model.bodies.held)
         return cls(
-            system=model.system,
+            system=system,
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
             model=model,
@@ -189,7 +184,7 @@ class Elements(Followed):
         z[:, self.place], z[:, self.model.size :] = y, reaction
         return z
 
-    def fill(self, z: Array, load_factor: float, share: float) -> Energies:
+    def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Gradient, tangent and energies at z."""
         model, size = self.model, self.model.size
         arrays = self.arrays if share == 1.0 else self.loose
@@ -222,7 +217,7 @@ class Elements(Followed):
         last = own.shape[1] - self.model.strips.compliance.shape[1]
         if (z[own[:, last - 2 : last]] > 0.0).all() and self.out[SLOWEST] > checks.SLOWEST_SPEED:
             return ""
-        return checks.refuse(self.system, self.unknowns(z))
+        return super().refuse(self.unknowns(z))
 
     def defect(self, z: Array, load_factor: float) -> float:
         """The moment defect of a state."""
@@ -283,4 +278,4 @@ def followed(system: System, method: str = "condensed") -> Followed:
     if model is None and system.scene.of(Shear):
         known = 'none beside method="multipliers", long B-splines or own effects'
         raise InvalidParameter("effects", "shear", known)
-    return Bordered.of(system) if model is None else Elements.on(model)
+    return Followed.of(system) if model is None else Elements.of(system)

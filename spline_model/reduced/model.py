@@ -11,8 +11,7 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import SlideModes, SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
-from spline_model.effects.base import Constraint
+from spline_model.effects import Bending, MixedStretching, RootCompliance, Shear, Stretching
 from spline_model.effects.elastic import MEASURES
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.ends import Ends, bodies_of, ends_of
@@ -259,11 +258,6 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
     """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
-    roots = {
-        c.strip: layout.rows(i)
-        for i, c in enumerate(scene.of(Constraint))
-        if isinstance(c, Clamp) and c.end == "start"
-    }
     for i, body in enumerate(scene.bodies):
         y[..., 3 * i : 3 * i + 3] = z[..., layout.body(body.name)] / [model.length, model.length, 1.0]
     for s, strip in enumerate(scene.strips):
@@ -272,7 +266,7 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
         apart = np.zeros((*z.shape[:-1], 2))
         if model.shears:  # the force of the clamp at the root is minus that along the strip
             unit = model.length / model.energy / strips.numbers[s, SHEAR]
-            apart = z[..., roots[strip.name]][..., :2] * unit
+            apart = z[..., scene.clamps[strip.name, "start"]][..., :2] * unit
             at = w.start + 2 * model.yields
             y[..., at : at + 2] = apart
         y[..., w.stop + 6 - 2 * n : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import Clamp, MixedStretching
-from spline_model.effects.base import Constraint
+from spline_model.effects import MixedStretching
 from spline_model.reduced.arrays import Answer
 from spline_model.reduced.model import Reduced
 from spline_model.solution import Later
@@ -86,9 +85,6 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     for i, body in enumerate(scene.bodies):
         z[..., layout.body(body.name)] = y[..., 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
     unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
-    rows: dict[tuple[str, str], slice] = {
-        (c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)
-    }
     for s, strip in enumerate(scene.strips):
         in_order = np.empty((*many, n, 2), dtype=points.dtype)
         in_order[..., shape.order, :] = points[..., s, :].reshape(*many, n, 2)
@@ -101,8 +97,8 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
                 z[..., layout.axial_modes(i)] = force[..., done : done + effect.modes.count]
                 done += effect.modes.count
         for end, place in (("start", 0), ("end", 1)):
-            if (strip.name, end) in rows:
-                z[..., rows[strip.name, end]] = forces[..., s, place, :] * unit
+            if (strip.name, end) in scene.clamps:
+                z[..., scene.clamps[strip.name, end]] = forces[..., s, place, :] * unit
     drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
