@@ -32,8 +32,7 @@ from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITE
 from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.preload import Preload, act, apart
-from spline_model.reduced.states import by_state, unknowns_of
-from spline_model.reduced.whole import add_strip
+from spline_model.reduced.states import add_strip, by_state, unknowns_of
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import ON_POINTS
 

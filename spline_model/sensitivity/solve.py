@@ -19,8 +19,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.reduced.states import gathered
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import gathered, whole_tangents
 from spline_model.scene import Layout
 from spline_model.sensitivity.element import Curve, Elements, times_each, turned
 from spline_model.sensitivity.parameters import KEYWORDS, Rates, Varied
