@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
-from spline_model.effects import GROUND, Bending, Clamp, DrivenRotation, MixedStretching, StripGravity
+from spline_model.effects import GROUND, Clamp, DrivenRotation, MixedStretching, StripGravity
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
 
@@ -168,10 +168,6 @@ class Scene:
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:
         return {}
-
-    def bending_of(self, strip: str) -> Bending | None:
-        """The bending effect of a strip, if the scene names one."""
-        return next((e for e in self.effects if isinstance(e, Bending) and e.strip == strip), None)
 
     def weight_of(self, strip: str) -> NDArray[np.float64]:
         """Weight of a strip (2,) [N], spread evenly over u."""

@@ -106,7 +106,7 @@ class Elements(Followed):
     def place(self) -> NDArray[np.int64]:
         """Place of each entry of y in z (Y,)."""
         poses, (count, modes) = len(self.model.bodies.rest), self.model.strips.compliance.shape
-        return places(poses, count, (self.model.size - poses) // count - modes, modes)
+        return _places(poses, count, (self.model.size - poses) // count - modes, modes)
 
     @cached_property
     def preload(self) -> Preload:
@@ -251,7 +251,7 @@ class Elements(Followed):
             for name in ("z", "load_factor", "stiffness", "energies", "inertia")
         )
         size = self.model.size
-        answer = Answer.empty(len(points), size, len(self.model.bodies.held))._replace(
+        answer = Answer(
             y=self.y(z),
             reaction=z[:, size:],
             stiffness=stiffness,
@@ -259,12 +259,13 @@ class Elements(Followed):
             done=np.array(done),
             inertia=inertia,
             defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
+            counters=np.zeros(4, dtype=np.int64),
         )
         return by_state(self.model, factor, answer)
 
 
 @lru_cache(maxsize=64)
-def places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
+def _places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
     """Place of each entry of y in z, for strips of ``own`` coordinates w and that many axial forces a."""
     w = poses + np.arange(count * own).reshape(count, own)
     a = poses + count * own + np.arange(count * modes).reshape(count, modes)
