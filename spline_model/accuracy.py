@@ -52,7 +52,7 @@ SAME_END = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Search(Generic[Found]):
+class _Search(Generic[Found]):
     """How a search ended: the best answer with its estimated error [1] and control points, and all trials.
 
     found: None, and the error inf, if no number of control points has an answer.
@@ -102,7 +102,7 @@ def search(
     design: Design,
     accuracy: float,
     attempt: Callable[[int, int], tuple[float, Found] | None],
-) -> Search[Found]:
+) -> _Search[Found]:
     """Raise the control points, from those of the design on, until the estimate is below ``accuracy``.
 
     attempt: solves with two numbers of control points and returns the estimated error of the first, and its
@@ -112,7 +112,7 @@ def search(
     if grid.control_points is None:
         grid = replace(grid, control_points=FIRST)
     most = max(MOST[grid.basis], grid.points)
-    best: Search[Found] = Search(
+    best: _Search[Found] = _Search(
         accuracy=accuracy, error=math.inf, control_points=grid.points, trials=(), found=None
     )
     levels: list[tuple[int, float]] = []

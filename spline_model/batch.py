@@ -22,7 +22,8 @@ from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.designs import Given, designs_of, one_each, pivots, varied
 from spline_model.reduced.many import Designs, Share, Stations, follow_all
-from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
+from spline_model.reduced.model import Reduced, reduced
+from spline_model.reduced.numbers import LEAST_COMPLIANCE
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 

@@ -31,7 +31,8 @@ def refuse(system: System, z: Array) -> str:
         angle = clamps.direction[c] + (z[body + 2] if body >= 0 else 0.0)
         if not chord[0] * np.cos(angle) + chord[1] * np.sin(angle) > 0:
             return f"the end tangent at clamp {c + 1} points backwards"
-    slowest = _slowest_speed(system, z)
+    x, y, _, _ = system.points.derivatives(z)
+    slowest = float((np.hypot(x, y) / system.points.speed).min(initial=np.inf))
     if not slowest > SLOWEST_SPEED:
         return f"the centreline is folded: |C'| falls to {slowest:.2g} of its value at rest"
     return ""
@@ -48,11 +49,3 @@ def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: A
     if correction > max(LARGEST_CORRECTION * step, SMALLEST_CORRECTION):
         return f"the solution lies {correction / step:.2g} steps from the predicted one"
     return ""
-
-
-def _slowest_speed(system: System, z: Array) -> float:
-    table = system.points
-    if table.place.shape[0] == 0:
-        return np.inf
-    x, y, _, _ = table.derivatives(z)
-    return float((np.hypot(x, y) / table.speed).min())

@@ -48,9 +48,9 @@ class System:
         return self.scene.layout
 
     @cached_property
-    def scales(self) -> Scales:
+    def scales(self) -> _Scales:
         """The unit of each unknown, which makes residuals dimensionless."""
-        return Scales.of(self.scene)
+        return _Scales.of(self.scene)
 
     def with_tables(self, **changed: Any) -> System:
         """The same scene with other tables of these names."""
@@ -169,7 +169,7 @@ def compile_scene(scene: Scene) -> System:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Scales:
+class _Scales:
     """Length L of the longest strip and energy EI / L of the largest flexural rigidity of a scene.
 
     Scaled by ``unit / energy`` a force row is in EI/L^2, a moment row in EI/L, a

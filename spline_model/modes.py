@@ -22,7 +22,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
-from spline_model.reduced.whole import coordinates_by, whole_tangents
+from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.sections import STATIONS
 from spline_model.solution import FrequencyEstimate, Later
 from spline_model.statics import solve_mechanism

@@ -8,9 +8,9 @@ to N^3; one that keeps to the order of the chain, to N: long B-splines are facto
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,11 @@ from scipy.linalg import get_lapack_funcs
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
-from spline_model.bordered import evaluate
 from spline_model.compile import System
 from spline_model.quadrature import FIRST, MODE, MODES, WIDTH
+
+if TYPE_CHECKING:
+    from spline_model.continuation.followed import Followed
 
 Array = NDArray[np.float64]
 Change = Callable[[Array, float], tuple[Array, float]]
@@ -177,70 +179,7 @@ def filled_entries(system: System) -> NDArray[np.bool_]:
     return filled
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Workspace:
-    """A system with the arrays that its kernels fill, and the counters of the work.
-
-    pattern: of a tangent that is factorised sparse; None for a dense one.
-    """
-
-    system: System
-    gradient: Array
-    hessian: Array
-    pattern: Pattern | None = None
-    counters: Counters = field(default_factory=Counters)
-
-    @classmethod
-    def of(cls, system: System) -> Self:
-        """Fresh arrays for a system."""
-        size = system.layout.size
-        return cls(
-            system=system,
-            gradient=np.empty(size),
-            hessian=np.empty((size, size)),
-            pattern=Pattern.of(system),
-        )
-
-    @property
-    def unit(self) -> Array:
-        """Unit of each unknown (N,), which with that of energy makes residuals dimensionless."""
-        return self.system.scales.unit
-
-    @property
-    def energy(self) -> float:
-        """Unit of energy."""
-        return self.system.scales.energy
-
-    def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """Fill gradient and hessian at z; returns bending and axial energy [J].
-
-        Not a number where C' = 0: control points that coincide have neither tangent nor curvature.
-        """
-        self.counters.residual_evaluations += 1
-        self.counters.tangent_evaluations += 1
-        return evaluate(self.system, z, load_factor, self.gradient, self.hessian)
-
-    def norm(self) -> float:
-        """Largest entry of the dimensionless residual."""
-        return float(np.abs(self.gradient * self.unit).max() / self.energy)
-
-    def solve(self, right_side: Array) -> Array:
-        """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
-        unit, energy = self.unit, self.energy
-        own = unit if right_side.ndim == 1 else unit[:, None]
-        self.counters.factorisations += 1
-        if self.pattern is not None:
-            return np.asarray(own * self.pattern.factorise(self.hessian).solve(right_side * own / energy))
-        matrix = self.hessian * (unit[:, None] * unit / energy)
-        if not np.isfinite(matrix).all():
-            raise np.linalg.LinAlgError("the tangent is not finite")
-        factors, pivots, failed = getrf(matrix)
-        if failed:
-            raise np.linalg.LinAlgError("the tangent is singular")
-        return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
-
-
-def solve(work: Workspace, start: Array, load_factor: float, change: Change | None = None) -> Newton:
+def solve(work: Followed, start: Array, load_factor: float, change: Change | None = None) -> Newton:
     """Newton from ``start``, until the residual is below TOLERANCE.
 
     change: of the unknowns and of the load factor, from both; by default the latter is fixed.
@@ -267,3 +206,27 @@ def solve(work: Workspace, start: Array, load_factor: float, change: Change | No
         z, load_factor = z + moved, load_factor + more
         work.counters.newton_iterations += 1
     return Newton(z=z, load_factor=load_factor, energies=energies, norms=tuple(norms), reason=reason)
+
+
+def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Newton:
+    """Newton from (z, load factor), orthogonal to (normal (N,), along) in dimensionless unknowns.
+
+    The bordered matrix is regular at a limit point, where the tangent is not. normal = 0 and
+    along = 1 hold the load factor.
+    """
+    unit, energy, size = work.unit, work.energy, len(z)
+    matrix, right = np.zeros((size + 1, size + 1)), np.zeros(size + 1)
+    matrix[size, :size], matrix[size, size] = normal, along
+
+    def change(z: Array, load_factor: float) -> tuple[Array, float]:
+        matrix[:size, size] = -work.push(z, load_factor) * unit / energy
+        matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
+        right[:size] = -work.gradient * unit / energy
+        work.counters.factorisations += 1
+        factors, pivots, failed = getrf(matrix)
+        if failed:
+            raise np.linalg.LinAlgError("the bordered tangent is singular")
+        found = getrs(factors, pivots, right)[0].ravel()
+        return unit * found[:size], float(found[size])
+
+    return solve(work, z, load_factor, change)

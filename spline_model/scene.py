@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import SplineBasis
-from spline_model.effects import GROUND, Bending, DrivenRotation, MixedStretching, StripGravity
+from spline_model.effects import GROUND, Clamp, DrivenRotation, MixedStretching, StripGravity
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
 
@@ -169,10 +169,6 @@ class Scene:
     def _sorted(self) -> dict[type, tuple[Any, ...]]:
         return {}
 
-    def bending_of(self, strip: str) -> Bending | None:
-        """The bending effect of a strip, if the scene names one."""
-        return next((e for e in self.effects if isinstance(e, Bending) and e.strip == strip), None)
-
     def weight_of(self, strip: str) -> NDArray[np.float64]:
         """Weight of a strip (2,) [N], spread evenly over u."""
         length, total = float(self.strip(strip).share_of_length().sum()), np.zeros(2)
@@ -186,6 +182,12 @@ class Scene:
         """Index in z of the driven rotation's torque, if there is one."""
         drives = (i for i, each in enumerate(self.of(Constraint)) if isinstance(each, DrivenRotation))
         return next((self.layout.multipliers[i][0] for i in drives), None)
+
+    @cached_property
+    def clamps(self) -> dict[tuple[str, str], slice]:
+        """Rows of the clamps by strip and end, "start" or "end"."""
+        held = enumerate(self.of(Constraint))
+        return {(c.strip, c.end): self.layout.rows(i) for i, c in held if isinstance(c, Clamp)}
 
     @cached_property
     def layout(self) -> Layout:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,10 +48,6 @@ class StripFields:
     bodies: Array
 
 
-ALONG = tuple(field.name for field in fields(StripFields) if "bodies" not in field.name)
-GIVEN = ("arc_length", "rest_shape")
-
-
 def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     """Fields of static states (S, N), as solutions hold them; a drive's multiplier at the end is ignored.
 
@@ -85,68 +81,59 @@ def _known(system: System, states: Array) -> Array:
 
 
 def _fields(mechanism: Mechanism, system: System, states: Array, *, moving: bool) -> StripFields:
-    along = sections(system, states, STATIONS)
-    strips = [
-        _strip_fields(system, states, along.strip(i), s.name, s.root, moving)
-        for i, s in enumerate(mechanism.design.strips)
-    ]
+    strips, layout, along = system.scene.strips, system.layout, sections(system, states, STATIONS)
+    points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
+    value, first, second = (strips[0].basis.evaluate(STATIONS, order) for order in range(3))
+    at_rest, moved = np.array([strip.control_points for strip in strips]), np.stack(points, axis=1)
+    tangent, rest = first @ moved, first @ at_rest
+    speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.linalg.norm(rest, axis=-1)
+    rotation = np.unwrap(np.arctan2(_cross(rest, tangent), np.sum(rest * tangent, axis=-1)), axis=-1)
+    for g, root in enumerate(strip.root for strip in mechanism.design.strips):
+        if root != GROUND:  # a body at the root says how many whole turns it has made
+            turn = states[:, layout.body(root)][:, 2:]
+            rotation[:, g] += 2.0 * np.pi * np.round((turn - rotation[:, g, :1]) / (2.0 * np.pi))
+    stretch, arc = speed / rest_speed, np.array([strip.length_to(STATIONS) for strip in strips])
+    _stretch(system, along.axial_force, stretch)
+    if moving:
+        direction = rotation + np.arctan2(rest[..., 1], rest[..., 0])
+        force, reactions = _by_moments(arc, along, stretch, direction)
+    else:
+        ends = [[clamp_reactions(system, states, strip.name, end) for end in ENDS] for strip in strips]
+        force, reactions = along.shear_force, np.array(ends).transpose(2, 0, 1, 3)
     return StripFields(
-        **{name: np.stack([each[name] for each in strips], axis=int(name not in GIVEN)) for name in ALONG},
+        arc_length=arc,
+        rest_shape=value @ at_rest,
+        shape=along.shape,
+        rotation=rotation,
+        curvature=_cross(tangent, second @ moved) / speed**2 / rest_speed,
+        stretch=stretch,
+        axial_force=along.axial_force,
+        shear_force=force,
+        bending_moment=along.bending_moment,
+        reactions=reactions,
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
-        bodies=states[:, system.layout.poses].reshape(len(states), -1, 3),
+        bodies=states[:, layout.poses].reshape(len(states), -1, 3),
     )
 
 
-def _strip_fields(
-    system: System, states: Array, along: Sections, name: str, root: str, moving: bool
-) -> dict[str, Array]:
-    strip = system.scene.strip(name)
-    first, second = (strip.basis.evaluate(STATIONS, order) for order in (1, 2))
-    points = states[:, system.layout.strip(name)].reshape(len(states), -1, 2)
-    tangent, rest = first @ points, first @ strip.control_points
-    speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.hypot(*rest.T)
-    rotation = np.unwrap(np.arctan2(_cross(rest, tangent), np.sum(rest * tangent, axis=-1)), axis=1)
-    if root != GROUND:  # a body at the root says how many whole turns it has made
-        turn = states[:, system.layout.body(root)][:, 2:]
-        rotation = rotation + 2.0 * np.pi * np.round((turn - rotation[:, :1]) / (2.0 * np.pi))
-    stretch = _stretch(system, along.axial_force, name, speed / rest_speed)
-    direction = rotation + np.arctan2(rest[:, 1], rest[:, 0])
-    arc = strip.length_to(STATIONS)
-    if moving:
-        force, reactions = _by_moments(arc, along, stretch, direction)
-    else:
-        ends = [clamp_reactions(system, states, name, end) for end in ENDS]
-        force, reactions = along.shear_force, np.stack(ends, axis=1)
-    return {
-        "arc_length": arc,
-        "rest_shape": strip.basis.evaluate(STATIONS) @ strip.control_points,
-        "shape": along.shape,
-        "rotation": rotation,
-        "curvature": _cross(tangent, second @ points) / speed**2 / rest_speed,
-        "stretch": stretch,
-        "axial_force": along.axial_force,
-        "shear_force": force,
-        "bending_moment": along.bending_moment,
-        "reactions": reactions,
-    }
-
-
-def _stretch(system: System, axial_force: Array, name: str, kinematic: Array) -> Array:
-    """1 + N/EA + natural strain of a mixed strip; that of the shape otherwise."""
-    for mixed in system.scene.of(MixedStretching):
-        if mixed.strip == name and not isinstance(mixed.modes, SlideModes):
-            return np.asarray(1.0 + mixed.axial_compliance * axial_force + mixed.natural_strain)
-    return kinematic
+def _stretch(system: System, axial_force: Array, stretch: Array) -> None:
+    """Put 1 + N/EA + natural strain of mixed strips in the place of that of the shape."""
+    names = [strip.name for strip in system.scene.strips]
+    for mixed in reversed(system.scene.of(MixedStretching)):
+        if not isinstance(mixed.modes, SlideModes):
+            g = names.index(mixed.strip)
+            stretch[:, g] = 1.0 + mixed.axial_compliance * axial_force[:, g] + mixed.natural_strain
 
 
 def _by_moments(arc: Array, along: Sections, stretch: Array, direction: Array) -> tuple[Array, Array]:
     """Shear force and reactions by the balance of moments."""
-    slope = CubicSpline(arc, along.bending_moment, axis=1)(arc, 1)
+    moments = zip(arc, np.moveaxis(along.bending_moment, 1, 0), strict=True)
+    slope = np.stack([CubicSpline(s, moment, axis=1)(s, 1) for s, moment in moments], axis=1)
     shear = -slope / stretch
     c, s = np.cos(direction), np.sin(direction)
     x, y = along.axial_force * c - shear * s, along.axial_force * s + shear * c
     beyond = np.stack((x, y, along.bending_moment), axis=-1)
-    return shear, np.stack((-beyond[:, 0], beyond[:, -1]), axis=1)
+    return shear, np.stack((-beyond[:, :, 0], beyond[:, :, -1]), axis=2)
 
 
 def _with_axial_forces(system: System, states: Array) -> Array:

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
-from spline_model.effects import Clamp, MixedStretching, Shear, Stretching, StripGravity
-from spline_model.effects.base import Constraint
+from spline_model.effects import Bending, MixedStretching, Shear, Stretching, StripGravity
 from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
@@ -37,10 +36,6 @@ class Sections:
     axial_force: Array
     bending_moment: Array
     shear_force: Array
-
-    def strip(self, place: int) -> Sections:
-        """The same along one strip, without the axis of the strips."""
-        return Sections(**{part.name: getattr(self, part.name)[:, place] for part in fields(self)})
 
 
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
@@ -88,9 +83,9 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
         moment = _balanced_moments(system, states, strips, points[:, :, :count], stations)
     else:
         moment = np.zeros_like(speed)
+        bends = {bending.strip: bending for bending in scene.of(Bending)}
         for g, strip in enumerate(strips):
-            bending = scene.bending_of(strip.name)
-            if bending is not None:
+            if bending := bends.get(strip.name):
                 length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
                 strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
                 strain -= bending.natural_curvature
@@ -188,7 +183,5 @@ def centre_lines(system: System, states: Array) -> Array:
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:
     """Force and moment of the clamp on that end of the strip (S, 3) [N, N, N m]; zero if free."""
-    for i, constraint in enumerate(system.scene.of(Constraint)):
-        if isinstance(constraint, Clamp) and (constraint.strip, constraint.end) == (strip, end):
-            return np.asarray(states[:, system.layout.rows(i)])
-    return np.zeros((len(states), 3))
+    rows = system.scene.clamps.get((strip, end))
+    return np.zeros((len(states), 3)) if rows is None else states[:, rows]

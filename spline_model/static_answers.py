@@ -19,7 +19,7 @@ from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import whole_tangents
 from spline_model.sections import ENDS, STATIONS, Sections, centre_lines, clamp_reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,

@@ -30,19 +30,8 @@ from spline_model.pivot import Pivot
 from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
 from spline_model.reduced.elements import followed
 from spline_model.scene import Scene
-from spline_model.sections import STATIONS
 from spline_model.solution import Path, Status
 from spline_model.static_answers import StaticSolution
-
-__all__ = [
-    "CONTROLS",
-    "METHODS",
-    "STATIONS",
-    "solve_from",
-    "solve_loads",
-    "solve_mechanism",
-    "solve_statics",
-]
 
 Array = NDArray[np.float64]
 

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed, correct
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import NOT_TRACKED, Point, directed, hermite, reached
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
+from spline_model.newton import correct
 from spline_model.solution import CriticalPoint
 
 Array = NDArray[np.float64]

@@ -1,11 +1,9 @@
-"""What a path needs of the system it is followed on: the bordered one, or any other with its own unknowns."""
+"""What a path is followed on: the scene's bordered system, or another one with its own unknowns."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -13,10 +11,10 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.bordered import evaluate, open_energy
-from spline_model.compile import compile_scene
-from spline_model.continuation.resolution import LARGEST_DEFECT, Resolution
+from spline_model.compile import System, compile_scene
+from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
-from spline_model.newton import Newton, Workspace, getrf, getrs, solve
+from spline_model.newton import Counters, Pattern, getrf, getrs
 from spline_model.solution import Later
 
 if TYPE_CHECKING:
@@ -24,72 +22,119 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-Energies = tuple[float, float]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Followed(Workspace):
-    """A system with its unknowns z (N,), of which the first ``count`` are coordinates.
+class Followed:
+    """A system with its unknowns z (N,), of which the first ``count`` are coordinates, and arrays to fill.
 
-    grows: whether its load factor is the share of weight and pre-strain that acts, while no load does.
+    The unknowns are the scene's own: behind its coordinates stand axial forces and multipliers. Elements
+    (``spline_model.reduced.elements``) have others. pattern: of a tangent that is factorised sparse; None for
+    a dense one; counters: of the work; grows: whether the load factor is the share of weight and pre-strain
+    that acts, while no load does.
     """
 
+    system: System
+    gradient: Array
+    hessian: Array
+    pattern: Pattern | None = None
+    counters: Counters = field(default_factory=Counters)
     grows: bool = False
 
-    @property
-    @abstractmethod
-    def count(self) -> int:
-        """Number of coordinates; behind them stand axial forces and multipliers."""
+    @classmethod
+    def of(cls, system: System) -> Self:
+        """Fresh arrays for a system."""
+        size = system.layout.size
+        return cls(
+            system=system,
+            gradient=np.empty(size),
+            hessian=np.empty((size, size)),
+            pattern=Pattern.of(system),
+        )
 
     @property
-    @abstractmethod
+    def unit(self) -> Array:
+        """Unit of each unknown (N,), which with that of energy makes residuals dimensionless."""
+        return self.system.scales.unit
+
+    @property
+    def energy(self) -> float:
+        """Unit of energy."""
+        return self.system.scales.energy
+
+    @property
+    def count(self) -> int:
+        """Number of coordinates."""
+        return self.system.layout.coordinate_count
+
+    @property
     def driven(self) -> int | None:
         """Place in z of the driven rotation's torque, if there is one."""
+        return self.system.scene.driven_row
 
-    @abstractmethod
-    def fill(self, z: Array, load_factor: float, share: float) -> Energies:
+    def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Fill gradient and hessian at z under a share of the preload; returns bending and axial energy."""
+        system = self.system
+        if share != 1.0:
+            points, weight = system.points.with_share(share), share * system.weight
+            system = system.with_tables(points=points, weight=weight)
+        return evaluate(system, z, load_factor, self.gradient, self.hessian)
 
-    @abstractmethod
     def external(self, z: Array) -> tuple[float, float]:
         """Work from rest to z of all loads at load factor 1, and of all weight."""
+        loads, weight, moved = self.system.loads, self.system.weight, z - self.system.rest
+        return float(moved[loads.coordinate] @ loads.value), float(moved[: weight.size] @ weight)
 
     @property
-    @abstractmethod
     def push_of_loads(self) -> Array:
         """Minus the derivative of the gradient in the load factor (N,)."""
+        drives, loads = self.system.drives, self.system.loads
+        force = np.zeros(self.system.layout.size)
+        force[drives.row] = -drives.target
+        np.add.at(force, loads.coordinate, loads.value)
+        return force
 
-    @abstractmethod
     def refuse(self, z: Array) -> str:
         """Why a state that was just evaluated is no strip; empty if it is one."""
+        return checks.refuse(self.system, z)
 
-    @abstractmethod
     def defect(self, z: Array, load_factor: float) -> float:
         """The moment defect of a state (``continuation.resolution``)."""
+        return moment_defect(self.system, z, self.acting(load_factor)[1])
 
-    @abstractmethod
     def state(self, unknowns: Array) -> Array:
         """z of the scene's unknowns, whose clamps hold."""
+        return unknowns
 
-    @abstractmethod
     def unknowns(self, z: Array) -> Array:
         """The scene's unknowns at z."""
+        return z
 
-    @abstractmethod
     def moved(self, z: Array, direction: Array) -> Array:
         """Change (Q,) of the scene's coordinates, dimensionless, with that of the ``count`` coordinates."""
+        del z  # they are the same ones
+        return direction
 
-    @abstractmethod
     def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
         """What a ``Path`` has by state; done (S,): int P_lambda d(lambda) to each of the points."""
+        by_state = ("z", "load_factor", "stiffness", "energies", "inertia")
+        states, factors, stiffness, energies, inertia = (
+            np.array([getattr(point, name) for point in points]) for name in by_state
+        )
+        return {
+            "load_factor": factors,
+            "poses": states[:, self.system.layout.poses],
+            "reactions": states[:, self.system.drives.row],
+            "unknowns": Later(states.copy),
+            "stiffness": stiffness,
+            "energies": energies,
+            "done": np.array(done),
+            "inertia": inertia,
+            "moment_defect": np.array([self.defect(p.z, p.load_factor) for p in points]),
+        }
 
     def room(self) -> Self:
         """The same with a gradient and a tangent of its own."""
         return replace(self, gradient=np.empty_like(self.gradient), hessian=np.empty_like(self.hessian))
-
-    def growing(self) -> Self:
-        """The same with the share of weight and pre-strain as its load factor."""
-        return replace(self, grows=True)
 
     def finer(self) -> Self:
         """The same scene with twice the Gauss points."""
@@ -119,15 +164,37 @@ class Followed(Workspace):
         """Load factor proper and share of weight and pre-strain."""
         return (0.0, load_factor) if self.grows else (load_factor, 1.0)
 
-    def evaluate(self, z: Array, load_factor: float) -> Energies:
-        """Fill gradient and hessian at z; returns bending and axial energy, not a number where C' = 0."""
+    def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
+        """Fill gradient and hessian at z; returns bending and axial energy.
+
+        Not a number where C' = 0: control points that coincide have neither tangent nor curvature.
+        """
         self.counters.residual_evaluations += 1
         self.counters.tangent_evaluations += 1
         try:
             return self.fill(z, *self.acting(load_factor))
-        except ZeroDivisionError:
+        except ZeroDivisionError:  # of kernels that run as Python
             self.gradient[:] = np.nan
             return np.nan, np.nan
+
+    def norm(self) -> float:
+        """Largest entry of the dimensionless residual."""
+        return float(np.abs(self.gradient * self.unit).max() / self.energy)
+
+    def solve(self, right_side: Array) -> Array:
+        """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
+        unit, energy = self.unit, self.energy
+        own = unit if right_side.ndim == 1 else unit[:, None]
+        self.counters.factorisations += 1
+        if self.pattern is not None:
+            return np.asarray(own * self.pattern.factorise(self.hessian).solve(right_side * own / energy))
+        matrix = self.hessian * (unit[:, None] * unit / energy)
+        if not np.isfinite(matrix).all():
+            raise np.linalg.LinAlgError("the tangent is not finite")
+        factors, pivots, failed = getrf(matrix)
+        if failed:
+            raise np.linalg.LinAlgError("the tangent is singular")
+        return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
 
     def push(self, z: Array, load_factor: float) -> Array:
         """Minus the derivative of the gradient in the load factor at z, shape (N,).
@@ -142,11 +209,11 @@ class Followed(Workspace):
         apart.fill(z, 0.0, load_factor + 0.5)
         return less - apart.gradient
 
-    def potential(self, z: Array, load_factor: float, energies: Energies) -> float:
-        """Energy of strips, dead weight and loads."""
+    def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
+        """Energy of strips, dead weight, loads and potentials in Python, which elements do not know."""
         factor, share = self.acting(load_factor)
         loads, weight = self.external(z)
-        return sum(energies) - factor * loads - share * weight
+        return sum(energies) - factor * loads - share * weight + open_energy(self.system, z)
 
     def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
         """First and second derivative of the potential in the load factor, drives released."""
@@ -158,111 +225,3 @@ class Followed(Workspace):
             for at in (load_factor - 0.5, load_factor, load_factor + 0.5)
         )
         return more - less, 4.0 * (more + less - 2.0 * here)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Bordered(Followed):
-    """The scene's own unknowns: coordinates (Q,), axial forces and multipliers."""
-
-    @property
-    def count(self) -> int:
-        """Number of coordinates."""
-        return self.system.layout.coordinate_count
-
-    @property
-    def driven(self) -> int | None:
-        """Place of the driven rotation's torque, if there is one."""
-        return self.system.scene.driven_row
-
-    @cached_property
-    def resolution(self) -> Resolution:
-        """The balance of moments of the system."""
-        return Resolution(self.system)
-
-    def fill(self, z: Array, load_factor: float, share: float) -> Energies:
-        """Gradient, tangent and energies [J] at z."""
-        system = self.system
-        if share != 1.0:
-            points, weight = system.points.with_share(share), share * system.weight
-            system = system.with_tables(points=points, weight=weight)
-        bending, axial = evaluate(system, z, load_factor, self.gradient, self.hessian)
-        return bending, axial
-
-    def potential(self, z: Array, load_factor: float, energies: Energies) -> float:
-        """Energy of strips, dead weight, loads and potentials in Python [J]."""
-        return super().potential(z, load_factor, energies) + open_energy(self.system, z)
-
-    def external(self, z: Array) -> tuple[float, float]:
-        """Work from rest to z of loads and of weight [J]."""
-        loads, weight, moved = self.system.loads, self.system.weight, z - self.system.rest
-        return float(moved[loads.coordinate] @ loads.value), float(moved[: weight.size] @ weight)
-
-    @property
-    def push_of_loads(self) -> Array:
-        """Minus the derivative of the gradient in the load factor (N,)."""
-        drives, loads = self.system.drives, self.system.loads
-        force = np.zeros(self.system.layout.size)
-        force[drives.row] = -drives.target
-        np.add.at(force, loads.coordinate, loads.value)
-        return force
-
-    def refuse(self, z: Array) -> str:
-        """Why a state is no strip."""
-        return checks.refuse(self.system, z)
-
-    def defect(self, z: Array, load_factor: float) -> float:
-        """The moment defect of a state."""
-        return self.resolution.defect(z, self.acting(load_factor)[1])
-
-    def state(self, unknowns: Array) -> Array:
-        """The same."""
-        return unknowns
-
-    def unknowns(self, z: Array) -> Array:
-        """The same."""
-        return z
-
-    def moved(self, z: Array, direction: Array) -> Array:
-        """The same."""
-        return direction
-
-    def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
-        """What a ``Path`` has by state."""
-        states, factors = (np.array([getattr(p, name) for p in points]) for name in ("z", "load_factor"))
-        layout, drives = self.system.layout, self.system.drives
-        begin = layout.coordinate_count - 3 * len(layout.bodies)
-        return {
-            "load_factor": factors,
-            "poses": states[:, begin : layout.coordinate_count],
-            "reactions": states[:, drives.row],
-            "unknowns": Later(states.copy),
-            "stiffness": np.array([p.stiffness for p in points]),
-            "energies": np.array([p.energies for p in points]),
-            "done": np.array(done),
-            "inertia": np.array([p.inertia for p in points]),
-            "moment_defect": np.array([self.defect(p.z, p.load_factor) for p in points]),
-        }
-
-
-def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Newton:
-    """Newton from (z, load factor), orthogonal to (normal (N,), along) in dimensionless unknowns.
-
-    The bordered matrix is regular at a limit point, where the tangent is not. normal = 0 and
-    along = 1 hold the load factor.
-    """
-    unit, energy, size = work.unit, work.energy, len(z)
-    matrix, right = np.zeros((size + 1, size + 1)), np.zeros(size + 1)
-    matrix[size, :size], matrix[size, size] = normal, along
-
-    def change(z: Array, load_factor: float) -> tuple[Array, float]:
-        matrix[:size, size] = -work.push(z, load_factor) * unit / energy
-        matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
-        right[:size] = -work.gradient * unit / energy
-        work.counters.factorisations += 1
-        factors, pivots, failed = getrf(matrix)
-        if failed:
-            raise np.linalg.LinAlgError("the bordered tangent is singular")
-        found = getrs(factors, pivots, right)[0].ravel()
-        return unit * found[:size], float(found[size])
-
-    return solve(work, z, load_factor, change)

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point, reached
-from spline_model.continuation.watch import Place, Watch
+from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve
 
@@ -197,8 +198,8 @@ def _settle(watch: Watch) -> Newton:
 
 def _grown(watch: Watch) -> Array:
     """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
-    growing = watch.work.growing()
-    own = Watch(growing, leaves=watch.leaves, by_load=True, place=Place(system=None))
+    growing = replace(watch.work, grows=True)
+    own = Watch(growing, leaves=watch.leaves, by_load=True)
     newton = solve(growing, growing.state(growing.system.rest), 0.0)
     begin = _held(growing, newton)
     follower = Follower(own, begin, newton.norms)

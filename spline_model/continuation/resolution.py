@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp
-from spline_model.effects.base import Constraint
+from spline_model.effects import Bending
 from spline_model.quadrature import MEASURE, WEIGHT
 
 Array = NDArray[np.float64]
@@ -24,55 +22,26 @@ SMALLEST_MOMENT = 1e-2
 """Root mean square moment below which strips count as unloaded, EI/L."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Span:
-    """One strip's rows of the table of points: where its points, its root and its weight stand.
-
-    values (G, n) basis and areas (G, n) its integrals from the root, at the Gauss points;
-    clamp: the multipliers at its root; load (2,) weight per du [N].
-    """
-
-    rows: slice
-    points: slice
-    values: Array
-    areas: Array
-    clamp: slice
-    u: Array
-    load: Array
-
-
-class Resolution:
-    """The moment defect of the states of a system.
+def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
+    """Root of the energy of the moment defect over the bending energy at z (N,); share: of the preload.
 
     The constitutive moment M = EI (kappa - kappa_0) satisfies the balance M_b, of the root's
     reaction and the weight, in the mean only; M - M_b is what the discretisation leaves
     out. Zero for the exact solution. Strips that are not clamped at their root are left out.
     Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error in energy of two dual fields.
     """
-
-    def __init__(self, system: System) -> None:
-        self.system = system
-        self.length = system.points.numbers[:, WEIGHT] * system.points.speed
-        self.spans = tuple(_spans(system))
-
-    def defect(self, z: Array, share: float = 1.0) -> float:
-        """Root of the energy of the moment defect over the bending energy; share: of the preload."""
-        table = self.system.points if share == 1.0 else self.system.points.with_share(share)
-        x1, y1, x2, y2 = table.derivatives(z)
-        square = x1**2 + y1**2
-        speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
-        moment = table.moments((x1 * y2 - y1 * x2) / square / speed - table.curvature)
-        wrong, stored = 0.0, SMALLEST_MOMENT**2 * self.system.scales.energy
-        for span in self.spans:
-            ds = self.length[span.rows] / table.rigidity[span.rows]
-            mine = moment[span.rows]
-            wrong += float(ds @ (mine - self._balance(span, z, share)) ** 2)
-            stored += float(ds @ mine**2)
-        return math.sqrt(wrong / stored)
-
-    def _balance(self, span: _Span, z: Array, share: float) -> Array:
-        points = z[span.points].reshape(-1, 2)
-        return balance(points, span.values, span.areas, span.u, z[span.clamp], share * span.load)
+    table = system.points if share == 1.0 else system.points.with_share(share)
+    x1, y1, x2, y2 = table.derivatives(z)
+    square = x1**2 + y1**2
+    speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
+    moment = table.moments((x1 * y2 - y1 * x2) / square / speed - table.curvature)
+    wrong, stored = 0.0, SMALLEST_MOMENT**2 * system.scales.energy
+    for rows, points, clamp, (values, areas, u), load in system.once("strips in balance", _in_balance):
+        ds = table.numbers[rows, WEIGHT] * table.speed[rows] / table.rigidity[rows]
+        held = balance(z[points].reshape(-1, 2), values, areas, u, z[clamp], share * load)
+        wrong += float(ds @ (moment[rows] - held) ** 2)
+        stored += float(ds @ moment[rows] ** 2)
+    return math.sqrt(wrong / stored)
 
 
 def balance(points: Array, values: Array, areas: Array, u: Array, reaction: Array, load: Array) -> Array:
@@ -90,30 +59,17 @@ def balance(points: Array, values: Array, areas: Array, u: Array, reaction: Arra
     return np.asarray(held)
 
 
-def _spans(system: System) -> list[_Span]:
-    scene, layout = system.scene, system.layout
-    roots = {
-        clamp.strip: layout.rows(i)
-        for i, clamp in enumerate(scene.of(Constraint))
-        if isinstance(clamp, Clamp) and clamp.end == "start"
-    }
-    spans, at = [], 0
+def _in_balance(system: System) -> list[tuple[slice, slice, slice, tuple[Array, Array, Array], Array]]:
+    """Of each strip that is clamped at its root: rows in the table of points, places of its control points
+    and of the clamp's multipliers, basis there as ``balance`` takes it, and weight per du (2,) [N]."""
+    scene, found, at = system.scene, [], 0
     for bending in scene.of(Bending):
         strip = scene.strip(bending.strip)
         u = strip.basis.gauss_rule(bending.gauss_points)[0]
-        rows = slice(at, at + len(u))
-        at += len(u)
-        if bending.strip not in roots or bending.flexural_rigidity == 0.0:
-            continue
-        spans.append(
-            _Span(
-                rows=rows,
-                points=layout.strip(bending.strip),
-                values=strip.basis.evaluate(u),
-                areas=strip.basis.areas(u),
-                clamp=roots[bending.strip],
-                u=u,
-                load=scene.weight_of(bending.strip),
-            )
-        )
-    return spans
+        rows, clamp = slice(at, at + len(u)), scene.clamps.get((strip.name, "start"))
+        at = rows.stop
+        if clamp is not None and bending.flexural_rigidity != 0.0:
+            basis = strip.basis.evaluate(u), strip.basis.areas(u), u
+            points, load = system.layout.strip(strip.name), scene.weight_of(strip.name)
+            found.append((rows, points, clamp, basis, load))
+    return found

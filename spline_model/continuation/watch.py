@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
-from spline_model.continuation.followed import Followed, correct
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point, directed, done_by_load_factor, jumped, reached
 from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
 from spline_model.effects.base import Constraint, Load
+from spline_model.newton import correct
 from spline_model.sections import centre_lines
 from spline_model.solution import CriticalPoint, Path, Status
 
@@ -41,18 +42,22 @@ PLAIN = 1e-2, 1e4
 class Watch:
     """The checks of one path, and the critical points that were met on it.
 
+    Too few Gauss points do not see a bend between them. The tangent then loses its stiffness there while all
+    else still looks sound, and ends in a critical point that the strips do not have: the same system with
+    twice the points, whose unknowns are the same ones, has to agree.
+
     by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
     whether the path is to leave its branch at the next bifurcation; place: what a load factor is
     called; before: what is to be said of what came before the path; first: load factor and z of its
     first state.
     """
 
-    def __init__(self, work: Followed, *, leaves: bool, by_load: bool, place: Place | None = None) -> None:
+    def __init__(self, work: Followed, *, leaves: bool, by_load: bool) -> None:
         self.work, self.leaves, self.by_load = work, leaves, by_load
-        self.place, self.before = place or Place(system=work.system), ""
+        self.place, self.before = _Place(system=None if work.grows else work.system), ""
         self.critical: list[CriticalPoint] = []
         self.note, self.first = "", None  # type: str, tuple[float, Array] | None
-        self._finer: _Finer | None = None
+        self._finer: Followed | None = None
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
         """Why a converged state is not the next one; empty if it may be."""
@@ -105,13 +110,24 @@ class Watch:
         return directed(self.work, branched, away, onward), ""
 
     def _confirmed(self, here: Point, point: Point, step: float) -> bool:
-        if self._finer is None:
-            self._finer = _Finer(self.work)
-        return self._finer.confirms(self.work, here, point, step)
+        """Whether a critical point lies between two states with twice the Gauss points as well."""
+        self._finer = self._finer or self.work.finer()
+        plane = Bracket(work=self.work, before=here, after=point, step=step).plane()
+        ends = [corrected(self._finer, p.z, p.load_factor, *plane) for p in (here, point)]
+        if ends[0] is None or ends[1] is None:
+            return False
+        return bool(between(self._finer, ends[0], ends[1], step))
 
     def is_resolved(self, point: Point) -> bool:
-        """Whether a point near a vanishing stiffness is not spoilt by too few Gauss points."""
-        return self._finer is None or self._finer.agrees(point)
+        """Whether a point near a vanishing stiffness, the rate of what does work on the load factor, keeps it
+        with twice the Gauss points."""
+        if self._finer is None:
+            return True
+        other = corrected(self._finer, point.z, point.load_factor, 0.0 * point.z, 1.0)
+        if other is None:
+            return False
+        change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
+        return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
 
     def stopped(self, here: Point, aim: float, reason: str) -> str:
         """That a path goes no further than ``here`` on its way to a load factor, and why."""
@@ -173,36 +189,8 @@ def _leave(work: Followed, crossing: Crossing) -> Point | None:
     return None
 
 
-class _Finer:
-    """A system with twice the Gauss points: its unknowns are the same ones.
-
-    Too few points do not see a bend between them. The tangent then loses its stiffness there
-    while all else still looks sound, and ends in a critical point that the strips do not have.
-    """
-
-    def __init__(self, work: Followed) -> None:
-        self.work = work.finer()
-
-    def confirms(self, work: Followed, before: Point, after: Point, step: float) -> bool:
-        """Whether a critical point lies between two states here as well."""
-        plane = Bracket(work=work, before=before, after=after, step=step).plane()
-        ends = [corrected(self.work, p.z, p.load_factor, *plane) for p in (before, after)]
-        if ends[0] is None or ends[1] is None:
-            return False
-        return bool(between(self.work, ends[0], ends[1], step))
-
-    def agrees(self, point: Point) -> bool:
-        """Whether a state keeps its stiffness, the rate of what does work on the load factor."""
-        normal = 0.0 * point.z
-        other = corrected(self.work, point.z, point.load_factor, normal, 1.0)
-        if other is None:
-            return False
-        change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
-        return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Place:
+class _Place:
     """What the load factors of a path are called, with rotation [deg], ways [mm], forces [N], moments [N m].
 
     system: None where they are shares of weight and pre-strain.

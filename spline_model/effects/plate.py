@@ -141,7 +141,7 @@ def _across(ratio: complex) -> tuple[Array, Array, Array, Array, complex]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Profile:
+class _Profile:
     """g(s) of a strip by its size A, its reach l over L, both complex for a complex width, and its Poisson
     ratio."""
 
@@ -171,7 +171,7 @@ def _decay(s: Array, reach: complex) -> Array:
 
 
 @lru_cache(maxsize=256)
-def profile_of(ratio: complex, poisson_ratio: float) -> Profile:
+def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
     """The profile of a strip of width over length ``ratio``; kept, for the plate takes some milliseconds.
 
     Newton's method in log A and log l; of a complex ratio in the real part, and one step more for the rest.
@@ -182,7 +182,7 @@ def profile_of(ratio: complex, poisson_ratio: float) -> Profile:
         logs = np.log([own.size, own.reach]).astype(complex)
         if poisson_ratio > 0.0:
             logs += 1j * np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), aim.imag)
-        return Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+        return _Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
     ratio, logs = ratio.real, np.log([1.0, 0.2 * ratio.real])
     square = poisson_ratio**2
     for _ in range(MOST_STEPS if square > 0.0 else 0):
@@ -193,7 +193,7 @@ def profile_of(ratio: complex, poisson_ratio: float) -> Profile:
         logs += change * min(1.0, 0.5 / np.abs(change).max())
     else:
         assert square == 0.0, f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}"
-    return Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+    return _Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
 
 
 def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
@@ -206,7 +206,7 @@ def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
     """1 / f_b and 1 / f_s of a profile."""
     s, weight = _graded(ratio, (0.0, 1.0), 16)
     size, reach = np.exp(logs)
-    c = Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
+    c = _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
     return np.array([weight @ c, 12.0 * weight @ (c * (s - 0.5) ** 2)])
 
 

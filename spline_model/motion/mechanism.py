@@ -18,8 +18,7 @@ from spline_model.motion.arrays import Flexures, Masses, Scratch, State, sizes_o
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.run import set_points
 from spline_model.motion.start import Motion
-from spline_model.reduced.ends import Ends, ends_of
-from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, shape_of, strips_of
+from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE, Ends, ends_of, shape_of, strips_of
 from spline_model.strip.element import CURL, DROP
 
 Array = NDArray[np.float64]

@@ -21,8 +21,7 @@ from spline_model.motion.step import FOLDS, REFUSED, SNAPS, STEPS, load_at
 from spline_model.reduced.arrays import NEGATIVE, SLOWEST
 from spline_model.reduced.assembly import assemble, factorise
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
-from spline_model.reduced.states import unknowns_of
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import unknowns_of, whole_tangents
 from spline_model.strip.compiled import copy, kernel, part
 from spline_model.strip.element import ON_POINTS, POINTS
 from spline_model.strip.ends import place_points

@@ -16,7 +16,7 @@ from spline_model.mechanism import Mechanism
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.many import Designs
 from spline_model.reduced.model import Reduced, at_rest
-from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section
+from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section, place_of
 from spline_model.strip.element import PER_U, REACH, ROOT, SHEAR, SPRING, STRETCHING, TIP
 
 Array = NDArray[np.float64]
@@ -179,7 +179,6 @@ def pivots(
 def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
     """Designs of a mechanism whose numbers are replaced by ``values``, by the names of the parameters."""
     design = mechanism.design
-    strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
     columns = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in values.items()}
     count = max([count, *(len(column) for column in columns.values())])
     one, sides = Given.of(design), np.array([(s.thickness, s.width) for s in map(Section.of, design.strips)])
@@ -187,20 +186,15 @@ def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1
     side = np.repeat(sides[None], count, axis=0)
     for name in values:
         column = one_each(name, columns[name], count)
-        owner, _, field = name.rpartition(".")
-        mine = [i for i, strip in enumerate(strips) if owner in ("", strip)]
-        if field in (*MATERIAL, *SECTION) and mine:
+        part, at = place_of(design, name)
+        if part in ("section", "sides"):
             _refuse({name: column}, name, column > 0.0, "a finite number > 0")
-            part, names = (side, SECTION) if field in SECTION else (given.section, MATERIAL)
-            part[:, mine, names.index(field)] = column[:, None]
-            if field in SECTION:
-                h, b = np.moveaxis(side[:, mine], -1, 0)
-                given.section[:, mine, 0], given.section[:, mine, 1] = b * h, b * h**3 / 12.0
-        elif field in POINTS and owner in strips and design.strips[mine[0]].rise == 0.0:
-            end, axis = divmod(POINTS.index(field), 2)
-            given.ends[:, mine[0], end, axis] = column
-        elif field in CENTRES and owner in bodies:
-            given.centres[:, bodies.index(owner), CENTRES.index(field)] = column
+            (given.section if part == "section" else side)[:, at[0], at[1]] = column[:, None]
+            if part == "sides":
+                h, b = np.moveaxis(side[:, at[0]], -1, 0)
+                given.section[:, at[0], 0], given.section[:, at[0], 1] = b * h, b * h**3 / 12.0
+        elif part == "centres" or (part == "ends" and design.strips[at[0]].rise == 0.0):
+            getattr(given, part)[(slice(None), *at)] = column
         else:
             one_of = f"STRIP.{', STRIP.'.join(POINTS)} of a straight strip or BODY.{', BODY.'.join(CENTRES)}"
             raise InvalidParameter("values", name, f"one of {', '.join((*MATERIAL, *SECTION))}, {one_of}")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.compile import System
-from spline_model.continuation.followed import Bordered, Energies, Followed
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
@@ -32,8 +32,7 @@ from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITE
 from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.preload import Preload, act, apart
-from spline_model.reduced.states import by_state, unknowns_of
-from spline_model.reduced.whole import add_strip
+from spline_model.reduced.states import add_strip, by_state, unknowns_of
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import ON_POINTS
 
@@ -93,14 +92,9 @@ class Elements(Followed):
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        return cls.on(model)
-
-    @classmethod
-    def on(cls, model: Reduced) -> Self:
-        """The elements of a reduced mechanism."""
         size = model.size + len(model.bodies.held)
         return cls(
-            system=model.system,
+            system=system,
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
             model=model,
@@ -112,7 +106,7 @@ class Elements(Followed):
     def place(self) -> NDArray[np.int64]:
         """Place of each entry of y in z (Y,)."""
         poses, (count, modes) = len(self.model.bodies.rest), self.model.strips.compliance.shape
-        return places(poses, count, (self.model.size - poses) // count - modes, modes)
+        return _places(poses, count, (self.model.size - poses) // count - modes, modes)
 
     @cached_property
     def preload(self) -> Preload:
@@ -189,7 +183,7 @@ class Elements(Followed):
         z[:, self.place], z[:, self.model.size :] = y, reaction
         return z
 
-    def fill(self, z: Array, load_factor: float, share: float) -> Energies:
+    def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Gradient, tangent and energies at z."""
         model, size = self.model, self.model.size
         arrays = self.arrays if share == 1.0 else self.loose
@@ -222,7 +216,7 @@ class Elements(Followed):
         last = own.shape[1] - self.model.strips.compliance.shape[1]
         if (z[own[:, last - 2 : last]] > 0.0).all() and self.out[SLOWEST] > checks.SLOWEST_SPEED:
             return ""
-        return checks.refuse(self.system, self.unknowns(z))
+        return super().refuse(self.unknowns(z))
 
     def defect(self, z: Array, load_factor: float) -> float:
         """The moment defect of a state."""
@@ -257,7 +251,7 @@ class Elements(Followed):
             for name in ("z", "load_factor", "stiffness", "energies", "inertia")
         )
         size = self.model.size
-        answer = Answer.empty(len(points), size, len(self.model.bodies.held))._replace(
+        answer = Answer(
             y=self.y(z),
             reaction=z[:, size:],
             stiffness=stiffness,
@@ -265,12 +259,13 @@ class Elements(Followed):
             done=np.array(done),
             inertia=inertia,
             defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
+            counters=np.zeros(4, dtype=np.int64),
         )
         return by_state(self.model, factor, answer)
 
 
 @lru_cache(maxsize=64)
-def places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
+def _places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
     """Place of each entry of y in z, for strips of ``own`` coordinates w and that many axial forces a."""
     w = poses + np.arange(count * own).reshape(count, own)
     a = poses + count * own + np.arange(count * modes).reshape(count, modes)
@@ -283,4 +278,4 @@ def followed(system: System, method: str = "condensed") -> Followed:
     if model is None and system.scene.of(Shear):
         known = 'none beside method="multipliers", long B-splines or own effects'
         raise InvalidParameter("effects", "shear", known)
-    return Bordered.of(system) if model is None else Elements.on(model)
+    return Followed.of(system) if model is None else Elements.of(system)

@@ -3,44 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
-from spline_model.basis import SlideModes, SplineBasis
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
-from spline_model.effects.base import Constraint
-from spline_model.effects.elastic import MEASURES
+from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Shear, Stretching
 from spline_model.reduced.arrays import Arrays, Bodies, Space
-from spline_model.reduced.ends import Ends, bodies_of, ends_of
-from spline_model.reduced.numbers import numbers_of, orthonormal_modes, speeds
+from spline_model.reduced.numbers import GAIN, Ends, ends_of, shape_of, strips_of
 from spline_model.scene import Scene
-from spline_model.strip.element import (
-    CURL,
-    CURVATURE,
-    DROP,
-    MODES,
-    RIGIDITY,
-    SHEAR,
-    SPEED,
-    SPRING,
-    WHERE,
-    Local,
-    Shape,
-    Strips,
-)
+from spline_model.strip.element import SHEAR, SPRING, Local, Shape, Strips
+from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
-LEAST_COMPLIANCE = 1e-4
-"""Axial compliance in L^2/EI below which an axial force stays beside w (L/h above 29): condensed, it would be
-the strain's round-off over the compliance; beside w it follows from equilibrium."""
-GAIN = 100.0
-"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
-that no digit is lost."""
 ELASTIC: tuple[type[Bending | MixedStretching | Stretching], ...] = (Bending, MixedStretching, Stretching)
 MOST_CONTROL_POINTS = 24
 """Longer B-splines are narrow bands, which the element's dense tangent does not use along a path."""
@@ -110,7 +87,7 @@ class Reduced:
     def as_slender(self, *, slender: bool) -> Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
         strips, modes = self.strips, int(self.strips.compliance.shape[1])
-        bodies = bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
+        bodies = _bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
         assert bodies is not None, "the mechanism is known already"
         coupled = modes if strips.measure else (slender or self.shears) * strips.split
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
@@ -147,7 +124,7 @@ def _reduced(system: System) -> Reduced | None:
     shape = shape_of(basis, points, bool(scene.of(RootCompliance)) + bool(scene.of(Shear)))
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
-    bodies = bodies_of(system, ends, strips.outer * len(scene.strips))
+    bodies = _bodies_of(system, ends, strips.outer * len(scene.strips))
     if bodies is None:
         return None
     return Reduced(
@@ -177,72 +154,48 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
     )
 
 
-@lru_cache(maxsize=64)
-def shape_of(basis: SplineBasis, points: int, beside: int) -> Shape:
-    """The basis at the Gauss points; beside: points more on no curve (``spline_model.strip.ends``)."""
-    n = basis.control_points
-    order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
-    u, weight = basis.gauss_rule(points)
-    whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
-    values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
-    tables = np.ascontiguousarray(np.array(values)[:, :, order])
-    if beside:
-        order = np.concatenate((np.arange(n, n + beside), order))
-        tables = np.concatenate((np.zeros((*tables.shape[:2], beside)), tables), axis=2)
-    return Shape.of(order, tables, np.array((u, weight)))
-
-
-def strips_of(
-    system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
-) -> tuple[Strips, Array, Array]:
-    """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    bending, consistent = {e.strip: e for e in scene.of(Bending)}, {e.strip: e for e in scene.of(Stretching)}
-    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
-    for effect in scene.of(MixedStretching):
-        mixed[effect.strip].append(effect)
-    parts, bends = list(mixed.values()), [bending[name] for name in mixed]
-    speed, rest = speeds(shape, np.array([strip.control_points for strip in scene.strips]) / length)
-    modes, to_modes = orthonormal_modes(
-        [tuple(e.modes for e in each) for each in parts], basis, points, speed
+def _bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
+    """The bodies and what acts on them; None where a load acts on a clamped end."""
+    scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
+    length, force = system.scales.length, system.scales.energy / system.scales.length
+    rest = [v for body in scene.bodies for v in (*(at / length for at in body.centre.tolist()), 0.0)]
+    places = {
+        layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)
+    }
+    for strip in scene.strips:
+        start, count = layout.strips[strip.name]
+        for end, at in (("start", start), ("end", start + 2 * count - 2)):
+            if (strip.name, end) not in scene.clamps:
+                for k in range(2):
+                    places[at + k] = len(rest) + k
+                point = strip.control_points[0 if end == "start" else -1]
+                rest += [*(point / length), 0.0]
+    load, weight = np.zeros(len(rest) + outer), np.zeros(len(rest) + outer)
+    for coordinate, value in zip(loads.coordinate.tolist(), loads.value.tolist(), strict=True):
+        if coordinate not in places:
+            return None
+        load[places[coordinate]] += value
+    for coordinate, value in steady_loads(scene, layout):
+        if coordinate not in places:
+            return None
+        weight[places[coordinate]] += value
+    for gravity in scene.of(BodyGravity):
+        at = places[layout.bodies[gravity.body]]
+        weight[at : at + 2] += gravity.mass * np.asarray(gravity.acceleration)
+    for part in (load, weight):
+        part[: len(rest)] /= force
+        part[2 : len(rest) : 3] /= length
+    held, turns = [places[c] for c in drives.coordinate.tolist()], drives.turns.tolist()
+    if len(set(held)) != len(held):
+        return None
+    return Bodies(
+        rest=np.array(rest),
+        load=load,
+        weight=weight,
+        free=np.array([i for i in range(len(rest) + outer) if i not in held], dtype=np.int64),
+        held=np.array(held, dtype=np.int64),
+        driven=turns.index(1) if 1 in turns else -1,
     )
-    split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
-    measure = MEASURES.index(bends[0].measure)
-    c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
-    c *= energy / length
-    small = c < LEAST_COMPLIANCE
-    outer = int(small[:, :split].any())
-    for shear in scene.of(Shear):
-        c[list(mixed).index(shear.strip), :split] -= shear.compliance * energy / length
-    beside_w = bool(scene.of(Shear)) or outer
-    small |= c < 0.0
-    starts, tips = ([ends[name, end] for name in mixed] for end in ("start", "end"))
-    strips = Strips(
-        along=_along(system, bends, shape.rule[WHERE], speed, rest, modes),
-        compliance=c,
-        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
-        numbers=numbers_of(system, shape, parts, consistent, starts, tips),
-        roots=np.array([end.body for end in starts], dtype=np.int64),
-        tips=np.array([end.body for end in tips], dtype=np.int64),
-        split=split,
-        coupled=c.shape[1] if measure else beside_w * split,
-        outer=outer,
-        measure=measure,
-    )
-    return strips, rest, to_modes
-
-
-def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: Array, modes: Array) -> Array:
-    """What changes along the strips (S, G, 5 + K), at Gauss points u (G,)."""
-    basis, (length, energy) = system.scene.strips[0].basis, (system.scales.length, system.scales.energy)
-    along = np.zeros((*speed.shape, MODES + modes.shape[-1]))
-    along[..., SPEED], along[..., MODES:] = speed, modes
-    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
-    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
-    for row, curl in zip(along, (e.curl for e in bends), strict=True):
-        if curl is not None:
-            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
-    return along
 
 
 def at_rest(model: Reduced) -> Array:
@@ -259,11 +212,6 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
     """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
-    roots = {
-        c.strip: layout.rows(i)
-        for i, c in enumerate(scene.of(Constraint))
-        if isinstance(c, Clamp) and c.end == "start"
-    }
     for i, body in enumerate(scene.bodies):
         y[..., 3 * i : 3 * i + 3] = z[..., layout.body(body.name)] / [model.length, model.length, 1.0]
     for s, strip in enumerate(scene.strips):
@@ -272,7 +220,7 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
         apart = np.zeros((*z.shape[:-1], 2))
         if model.shears:  # the force of the clamp at the root is minus that along the strip
             unit = model.length / model.energy / strips.numbers[s, SHEAR]
-            apart = z[..., roots[strip.name]][..., :2] * unit
+            apart = z[..., scene.clamps[strip.name, "start"]][..., :2] * unit
             at = w.start + 2 * model.yields
             y[..., at : at + 2] = apart
         y[..., w.stop + 6 - 2 * n : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)

@@ -1,34 +1,88 @@
-"""What tells the strips' elements of a scene from one another: the numbers of each, in one row."""
+"""What tells the strips' elements of a scene from one another: their ends, and what stands along each."""
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
 from spline_model.compile import System
-from spline_model.effects import MixedStretching, RootCompliance, Shear, Stretching, StripGravity
-from spline_model.reduced.ends import End
+from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
+from spline_model.effects.base import Constraint
+from spline_model.effects.elastic import MEASURES
 from spline_model.strip.element import (
+    CURL,
+    CURVATURE,
+    DROP,
     FIRST,
+    GROUNDED,
+    MODES,
     ON_POINTS,
     PER_U,
     REACH,
+    RIGIDITY,
     ROOT,
     SECOND,
     SHEAR,
+    SPEED,
     SPRING,
     STRAIN,
     STRETCHING,
     TIP,
+    WHERE,
     Shape,
+    Strips,
 )
 from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
+
+LEAST_COMPLIANCE = 1e-4
+"""Axial compliance in L^2/EI below which an axial force stays beside w (L/h above 29): condensed, it would be
+the strain's round-off over the compliance; beside w it follows from equilibrium."""
+GAIN = 100.0
+"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
+that no digit is lost."""
+ROUND_OFF = 1e-14
+"""Difference of speeds along a strip, in its mean, that is none."""
+
+
+class End(NamedTuple):
+    """An end of a strip: its body or GROUNDED, point there [m], direction at rest."""
+
+    body: int
+    point: tuple[float, float]
+    direction: float
+
+
+Ends = dict[tuple[str, str], End]
+"""Ends by (strip, \"start\" or \"end\")."""
+
+
+def ends_of(system: System) -> Ends:
+    """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
+    scene, free = system.scene, len(system.scene.bodies)
+    ends: Ends = {}
+    bodies = {body.name: (i, body.centre.tolist()) for i, body in enumerate(scene.bodies)}
+    clamped = (c for c in scene.of(Constraint) if isinstance(c, Clamp))
+    clamps: dict[tuple[str, str], str] = {(c.strip, c.end): c.to for c in clamped}
+    for strip in scene.strips:
+        points = strip.control_points.tolist()
+        for end, at, inner, sign in (("start", 0, 1, 1.0), ("end", -1, -2, -1.0)):
+            (x, y), (there_x, there_y) = points[at], points[inner]
+            direction = math.atan2(sign * (there_y - y), sign * (there_x - x))
+            if to := clamps.get((strip.name, end)):
+                body, (left, low) = bodies.get(to, (GROUNDED, (0.0, 0.0)))
+                ends[strip.name, end] = End(body, (x - left, y - low), direction)
+            else:
+                ends[strip.name, end] = End(free, (0.0, 0.0), direction)
+                free += 1
+    return ends
 
 
 def in_order(points: Array, shape: Shape) -> Array:
@@ -37,7 +91,117 @@ def in_order(points: Array, shape: Shape) -> Array:
     return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
 
 
-def speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
+@lru_cache(maxsize=64)
+def shape_of(basis: SplineBasis, points: int, beside: int) -> Shape:
+    """The basis at the Gauss points; beside: points more on no curve (``spline_model.strip.ends``)."""
+    n = basis.control_points
+    order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
+    u, weight = basis.gauss_rule(points)
+    whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
+    values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
+    tables = np.ascontiguousarray(np.array(values)[:, :, order])
+    if beside:
+        order = np.concatenate((np.arange(n, n + beside), order))
+        tables = np.concatenate((np.zeros((*tables.shape[:2], beside)), tables), axis=2)
+    return Shape.of(order, tables, np.array((u, weight)))
+
+
+def strips_of(
+    system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
+) -> tuple[Strips, Array, Array]:
+    """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    bending = {e.strip: e for e in scene.of(Bending)}
+    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
+    for effect in scene.of(MixedStretching):
+        mixed[effect.strip].append(effect)
+    parts, bends = list(mixed.values()), [bending[name] for name in mixed]
+    speed, rest = _speeds(shape, np.array([strip.control_points for strip in scene.strips]) / length)
+    modes, to_modes = _orthonormal_modes(
+        [tuple(e.modes for e in each) for each in parts], basis, points, speed
+    )
+    split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
+    measure = MEASURES.index(bends[0].measure)
+    c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
+    c *= energy / length
+    small = c < LEAST_COMPLIANCE
+    outer = int(small[:, :split].any())
+    for shear in scene.of(Shear):
+        c[list(mixed).index(shear.strip), :split] -= shear.compliance * energy / length
+    beside_w = bool(scene.of(Shear)) or outer
+    small |= c < 0.0
+    roots, tips = ([ends[name, end].body for name in mixed] for end in ("start", "end"))
+    strips = Strips(
+        along=_along(system, bends, shape.rule[WHERE], speed, rest, modes),
+        compliance=c,
+        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        numbers=_numbers_of(system, shape, ends),
+        roots=np.array(roots, dtype=np.int64),
+        tips=np.array(tips, dtype=np.int64),
+        split=split,
+        coupled=c.shape[1] if measure else beside_w * split,
+        outer=outer,
+        measure=measure,
+    )
+    return strips, rest, to_modes
+
+
+def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: Array, modes: Array) -> Array:
+    """What changes along the strips (S, G, 5 + K), at Gauss points u (G,)."""
+    basis, (length, energy) = system.scene.strips[0].basis, (system.scales.length, system.scales.energy)
+    along = np.zeros((*speed.shape, MODES + modes.shape[-1]))
+    along[..., SPEED], along[..., MODES:] = speed, modes
+    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
+    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
+    for row, curl in zip(along, (e.curl for e in bends), strict=True):
+        if curl is not None:
+            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
+    return along
+
+
+def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
+    """The numbers of ``Strips``, (S, 15 + 2 n)."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
+    roots = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
+    mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
+    consistent = {e.strip: e for e in scene.of(Stretching)}
+    shears = {e.strip: e for e in scene.of(Shear)}
+    for row, strip in zip(numbers, scene.strips, strict=True):
+        name, points = strip.name, strip.control_points.tolist()
+        if name in mixed:
+            row[STRAIN] = mixed[name].natural_strain
+        if name in consistent:
+            row[STRAIN] = consistent[name].natural_strain
+            row[STRETCHING] = consistent[name].axial_rigidity * length / energy
+        for place, end in ((ROOT, "start"), (TIP, "end")):
+            (x, y), direction = ends[name, end].point, ends[name, end].direction
+            row[place : place + 3] = x / length, y / length, direction
+        row[REACH] = math.dist(points[1], points[0]) / length
+        row[REACH + 1] = math.dist(points[-1], points[-2]) / length
+        if roots:  # a free end has a frame of its own, against which it does not turn
+            row[SPRING:SHEAR] = [roots.get((name, end), energy) / energy for end in ("start", "end")]
+        if name in shears:
+            whole = float(strip.share_of_length().sum())
+            row[SHEAR] = length**2 / (energy * shears[name].compliance * whole)
+    if system.weight.size:
+        _add_dead(system, shape, numbers)
+    return numbers
+
+
+def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
+    """Dead loads on the control points, in the order of elimination, and per du."""
+    scene, weight = system.scene, system.weight.copy()
+    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
+        weight[place] -= value
+    force = system.scales.energy / system.scales.length
+    for row, strip in zip(numbers, scene.strips, strict=True):
+        dead = weight[system.layout.strip(strip.name)].reshape(-1, 2)
+        row[ON_POINTS:] = in_order(dead, shape).ravel() / force
+        row[PER_U:ON_POINTS] = scene.weight_of(strip.name) / force
+
+
+def _speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
     """Speed and curvature at rest (S, G) of strips of control points (S, n, 2)."""
     curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(control_points, shape)
     (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
@@ -45,66 +209,7 @@ def speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
     return speed, (x1 * y2 - y1 * x2) / speed**3
 
 
-def numbers_of(
-    system: System,
-    shape: Shape,
-    mixed: list[list[MixedStretching]],
-    consistent: dict[str, Stretching],
-    starts: list[End],
-    tips: list[End],
-) -> Array:
-    """The numbers of ``Strips``, (S, 15 + 2 n)."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
-    for row, strip, parts in zip(numbers, scene.strips, mixed, strict=True):
-        stretching, points = consistent.get(strip.name), strip.control_points.tolist()
-        row[STRETCHING] = 0.0 if stretching is None else stretching.axial_rigidity * length / energy
-        row[STRAIN] = _natural_strain(parts, stretching)
-        row[REACH:SPRING] = (
-            math.dist(points[1], points[0]) / length,
-            math.dist(points[-1], points[-2]) / length,
-        )
-    roots = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
-    if roots:  # a free end has a frame of its own, against which it does not turn
-        for row, strip in zip(numbers, scene.strips, strict=True):
-            springs = [roots.get((strip.name, end), energy) / energy for end in ("start", "end")]
-            row[SPRING:SHEAR] = springs
-    for shear in scene.of(Shear):
-        s = [strip.name for strip in scene.strips].index(shear.strip)
-        whole = float(scene.strips[s].share_of_length().sum())
-        numbers[s, SHEAR] = length**2 / (energy * shear.compliance * whole)
-    numbers[:, ROOT:TIP], numbers[:, TIP:REACH] = _frames(starts, length), _frames(tips, length)
-    if system.weight.size:
-        numbers[:, ON_POINTS:], numbers[:, PER_U:ON_POINTS] = _dead(system, shape)
-    return numbers
-
-
-def _frames(ends: list[End], length: float) -> Array:
-    """Point over the length and direction of each end, (S, 3)."""
-    return np.array([(e.point[0] / length, e.point[1] / length, e.direction) for e in ends])
-
-
-def _dead(system: System, shape: Shape) -> tuple[Array, Array]:
-    """Dead load on the control points (S, 2 n), in the order of elimination, and per du (S, 2)."""
-    scene, weight = system.scene, system.weight.copy()
-    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
-        weight[place] -= value
-    force = system.scales.energy / system.scales.length
-    dead, per_u = np.zeros((len(scene.strips), 2 * len(shape.order))), np.zeros((len(scene.strips), 2))
-    for s, strip in enumerate(scene.strips):
-        dead[s] = in_order(weight[system.layout.strip(strip.name)].reshape(-1, 2), shape).ravel() / force
-        for effect in scene.of(StripGravity):
-            if effect.strip == strip.name:
-                mass = effect.linear_density * float(strip.share_of_length().sum())
-                per_u[s] += mass * np.asarray(effect.acceleration) / force
-    return dead, per_u
-
-
-ROUND_OFF = 1e-14
-"""Difference of speeds along a strip, in its mean, that is none."""
-
-
-def orthonormal_modes(
+def _orthonormal_modes(
     parts: list[tuple[AxialModes, ...]], basis: SplineBasis, points: int, speed: Array
 ) -> tuple[Array, Array]:
     """Modes (S, G, K) orthonormal along strips of a speed (S, G), and the scene's modes from them (S, K, K).
@@ -137,10 +242,3 @@ def _modes_of(
         k, m = len(back), modes.count
         back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
     return values, back
-
-
-def _natural_strain(parts: list[MixedStretching], consistent: Stretching | None) -> float:
-    """Stress-free strain of a strip."""
-    if consistent is not None:
-        return consistent.natural_strain
-    return parts[0].natural_strain if parts else 0.0

@@ -1,4 +1,5 @@
-"""From the states of a reduced path to the unknowns of the scene, multipliers included."""
+"""From states of a reduced path to the unknowns of the scene, multipliers included, and how these change: the
+tangent with nothing condensed, and how control points move."""
 
 from __future__ import annotations
 
@@ -8,15 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects import Clamp, MixedStretching
-from spline_model.effects.base import Constraint
-from spline_model.reduced.arrays import Answer
+from spline_model.effects import MixedStretching
+from spline_model.reduced.arrays import AXIAL, Answer
+from spline_model.reduced.assembly import place_of
 from spline_model.reduced.model import Reduced
 from spline_model.solution import Later
-from spline_model.strip.compiled import kernel
-from spline_model.strip.element import GRADIENT, POINTS, SHEAR
-from spline_model.strip.ends import place_points
-from spline_model.strip.points import evaluate_residual
+from spline_model.strip.compiled import called, kernel
+from spline_model.strip.element import GRADIENT, LAST, POINTS, SHEAR
+from spline_model.strip.ends import place_points, to_element
+from spline_model.strip.laws import MATERIAL
+from spline_model.strip.points import evaluate_points, evaluate_residual
 
 Array = NDArray[np.float64]
 
@@ -86,9 +88,6 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     for i, body in enumerate(scene.bodies):
         z[..., layout.body(body.name)] = y[..., 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
     unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
-    rows: dict[tuple[str, str], slice] = {
-        (c.strip, c.end): layout.rows(i) for i, c in enumerate(scene.of(Constraint)) if isinstance(c, Clamp)
-    }
     for s, strip in enumerate(scene.strips):
         in_order = np.empty((*many, n, 2), dtype=points.dtype)
         in_order[..., shape.order, :] = points[..., s, :].reshape(*many, n, 2)
@@ -101,8 +100,8 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
                 z[..., layout.axial_modes(i)] = force[..., done : done + effect.modes.count]
                 done += effect.modes.count
         for end, place in (("start", 0), ("end", 1)):
-            if (strip.name, end) in rows:
-                z[..., rows[strip.name, end]] = forces[..., s, place, :] * unit
+            if (strip.name, end) in scene.clamps:
+                z[..., scene.clamps[strip.name, end]] = forces[..., s, place, :] * unit
     drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
@@ -121,3 +120,92 @@ def _energies(model: Reduced, answer: Answer) -> Array:
     held = spring * (apart**2).sum(axis=-1) - (force**2).sum(axis=-1) / (spring * length)
     shear, (bending, axial) = 0.5 * held.sum(axis=1), answer.energies.T
     return np.stack((bending, axial - shear, shear), axis=1)
+
+
+def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
+    """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' energy in y (S, Y), in EI/L, axial forces among y.
+
+    Dead loads on the strips are in it; weight of, and loads on, the bodies are not.
+    """
+    count, size = y.shape
+    gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
+    poses, local = len(model.bodies.rest), model.local()
+    _assemble(y, poses, model.strips, model.shape, local, np.zeros(5), gradient, hessian)
+    return gradient, hessian
+
+
+@kernel()
+def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
+    """Add all strips of all states."""
+    modes = strips.compliance.shape[1]
+    own = 2 * shape.order.size - 6
+    for row in range(y.shape[0]):
+        for s in range(strips.roots.size):
+            at = poses + s * (own + modes)
+            add_strip(s, at, at, at + own, y[row], strips, shape, local, out, gradient[row], hessian[row])
+
+
+@called()
+def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
+    """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
+
+    The axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    """
+    n, modes = shape.order.size, strips.compliance.shape[1]
+    own = 2 * n - 6
+    a = y[at + own : at + own + modes]
+    place_points(s, y[at : at + own], y, strips, local)
+    evaluate_points(s, a, n, shape, strips, local, out)
+    size, h, gram = to_element(s, n, 0, strips, local), local.reduced[s], local.axial[s]
+    g, gap, width = h[LAST], gram[LAST], h.shape[1]
+    for i in range(size):
+        row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
+        gradient[row] += g[i]
+        hessian[row, row] += h[i, i]
+        for j in range(i + 1, size):
+            column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
+            hessian[row, column] += h[i, j]
+            hessian[column, row] += h[i, j]
+        for k in range(modes):
+            hessian[row, axial + k] += h[width + k, i]
+            hessian[axial + k, row] += h[width + k, i]
+    for k in range(modes):
+        gradient[axial + k] = gap[k]
+        if strips.measure == MATERIAL:
+            out[AXIAL] += a[k] * gap[k]
+            hessian[axial + k, axial + k] = -strips.compliance[s, k]
+        else:
+            for j in range(modes):
+                hessian[axial + k, axial + j] = -gram[k, j]
+
+
+def coordinates_by(model: Reduced, y: Array) -> Array:
+    """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
+    strips, scene, layout = model.strips, model.system.scene, model.system.layout
+    by = np.zeros((layout.coordinate_count, model.size))
+    for i, body in enumerate(scene.bodies):
+        by[layout.body(body.name), 3 * i : 3 * i + 3] = np.diag((model.length, model.length, 1.0))
+    for s, strip in enumerate(scene.strips):
+        w, n = model.places(s)[0], strip.basis.control_points
+        mine = np.zeros((n, 2, model.size))
+        mine[2 : n - 2].reshape(2 * n - 8, model.size)[:, w.stop + 6 - 2 * n : w.stop - 2] = np.eye(2 * n - 8)
+        reach = y[w.stop - 2 : w.stop]
+        for end, (bodies, frames, outer, inner) in enumerate(
+            ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
+        ):
+            body, (px, py, turn) = bodies[s], frames[s]
+            angle = y[3 * body + 2] if body >= 0 else 0.0
+            cos, sin = np.cos(angle), np.sin(angle)
+            arm = np.array([cos * px - sin * py, sin * px + cos * py])
+            turn += y[w.start + end] if model.yields else 0.0
+            stick = strips.reach[s, end] * np.array([np.cos(angle + turn), np.sin(angle + turn)])
+            stick *= 1.0 - 2.0 * end
+            mine[inner, :, w.stop - 2 + end] = stick
+            if model.yields:
+                mine[inner, :, w.start + end] = reach[end] * np.array((-stick[1], stick[0]))
+            if body >= 0:
+                for point, lever in ((outer, arm), (inner, arm + reach[end] * stick)):
+                    mine[point, :, 3 * body : 3 * body + 2] += np.eye(2)
+                    mine[point, :, 3 * body + 2] += -lever[1], lever[0]
+        by[layout.strip(strip.name)] = model.length * mine.reshape(2 * n, -1)
+    return by

@@ -61,6 +61,22 @@ class Section:
         return (b, b * h**2 / 4.0) if name == "thickness" else (h, h**3 / 12.0)
 
 
+def place_of(design: Design, name: str) -> tuple[str, tuple[Any, ...]]:
+    """Where the numbers of that name stand: "section" or "sides" of strips, "ends" of one or "centres", as in
+    ``Rates``, and the place there; "" for no name of a strip's or body's."""
+    owner, _, field = name.rpartition(".")
+    strips = [i for i, strip in enumerate(design.strips) if owner in ("", strip.name)]
+    bodies = [i for i, body in enumerate(design.bodies) if owner == body.name]
+    for part, names in (("section", MATERIAL), ("sides", SECTION)):
+        if field in names and strips:
+            return part, (strips, names.index(field))
+    if field in POINTS and owner and strips:
+        return "ends", (strips[0], *divmod(POINTS.index(field), 2))
+    if field in CENTRES and bodies:
+        return "centres", (bodies[0], CENTRES.index(field))
+    return "", ()
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rates:
     """Derivatives by P parameters of a design of G strips and B bodies, over the parameter's own unit.
@@ -79,27 +95,26 @@ class Rates:
         """The rates of a design by the names of its parameters; refuses unknown and doubled ones."""
         if not names or len(set(names)) != len(names):
             raise InvalidParameter("parameters", list(names), "at least one name, each once")
-        design = asked.design
-        strips, bodies = [s.name for s in design.strips], [b.name for b in design.bodies]
+        design, count = asked.design, len(names)
         rates = cls(
-            section=np.zeros((len(names), len(strips), 3)),
-            ends=np.zeros((len(names), len(strips), 2, 2)),
-            centres=np.zeros((len(names), len(bodies), 2)),
-            crossing=np.zeros((len(names), 2)),
+            section=np.zeros((count, len(design.strips), 3)),
+            ends=np.zeros((count, len(design.strips), 2, 2)),
+            centres=np.zeros((count, len(design.bodies), 2)),
+            crossing=np.zeros((count, 2)),
         )
         for i, name in enumerate(names):
-            owner, _, field = name.rpartition(".")
             if isinstance(asked, Pivot) and name in SHAPE:
                 rates.ends[i], rates.crossing[i] = _shape_rates(asked, name)
                 rates.centres[i] = rates.ends[i, :, 1].mean(axis=0)
-            elif field in (*MATERIAL, *SECTION) and owner in ("", *strips):
-                _set_section(rates.section[i], design, owner, field)
-            elif field in POINTS and owner in strips:
-                if design.strips[strips.index(owner)].rise != 0.0:
-                    raise InvalidParameter("parameters", name, "an end of a straight strip")
-                rates.ends[i, strips.index(owner)].flat[POINTS.index(field)] = 1.0
-            elif field in CENTRES and owner in bodies:
-                rates.centres[i, bodies.index(owner), CENTRES.index(field)] = 1.0
+                continue
+            part, at = place_of(design, name)
+            if part == "ends" and design.strips[at[0]].rise != 0.0:
+                raise InvalidParameter("parameters", name, "an end of a straight strip")
+            if part == "sides":
+                for s in at[0]:
+                    rates.section[i, s, :2] = Section.of(design.strips[s]).rates(SECTION[at[1]])
+            elif part:
+                getattr(rates, part)[(i, *at)] = 1.0
             else:
                 known = (*(SHAPE if isinstance(asked, Pivot) else ()), *MATERIAL, *SECTION)
                 one = f"STRIP.{', STRIP.'.join(POINTS)} or BODY.{', BODY.'.join(CENTRES)}"
@@ -146,16 +161,6 @@ def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
     ends[1, 0] = reach[0] - reach[1]
     ends[:, 1] = ends[:, 0] + by_length * tangents + length * turned
     return ends, reach[0]
-
-
-def _set_section(section: Array, design: Design, owner: str, field: str) -> None:
-    """Rates (G, 3) of A, I and E of one strip, or of all."""
-    for rate, strip in zip(section, design.strips, strict=True):
-        if owner in ("", strip.name):
-            if field in SECTION:
-                rate[:2] = Section.of(strip).rates(field)
-            else:
-                rate[MATERIAL.index(field)] = 1.0
 
 
 class Varied(NamedTuple):

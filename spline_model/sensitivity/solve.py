@@ -19,13 +19,12 @@ from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.numbers import in_order
-from spline_model.reduced.states import gathered
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import gathered, whole_tangents
 from spline_model.scene import Layout
+from spline_model.sections import STATIONS
 from spline_model.sensitivity.element import Curve, Elements, times_each, turned
 from spline_model.sensitivity.parameters import KEYWORDS, Rates, Varied
 from spline_model.static_answers import StaticSolution
-from spline_model.statics import STATIONS
 from spline_model.strip import laws
 
 Array = NDArray[np.float64]
@@ -65,12 +64,11 @@ def sensitivities(
     if asked.design.discretisation.control_points is None:
         asked = asked.with_control_points(solution.control_points)
     rates = Rates.of(asked, parameters)
-    mechanism = asked
     driven = not np.isnan(solution.torque).all()
-    system = compile_scene(mechanism.driven(1.0, body) if driven else mechanism.scene)
+    system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
     z = solution.states
     model = _model_of(system, z)
-    y, varied = from_unknowns(model, z), Varied.of(model, mechanism.design, rates)
+    y, varied = from_unknowns(model, z), Varied.of(model, asked.design, rates)
     still = Elements(model=model, varied=varied, y=y[None] + 0j)
     changes, rate = _differentiate(still, solution, rates.held(model))
     moved = Elements(model=model, varied=varied, y=y + 1j * STEP * changes)

@@ -8,7 +8,7 @@ from mpmath import ellipk, mp
 
 from spline_model.compile import compile_scene
 from spline_model.continuation.critical import ReducedTangent
-from spline_model.continuation.followed import Bordered
+from spline_model.continuation.followed import Followed
 from spline_model.errors import InvalidParameter
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_loads, solve_mechanism, solve_statics
@@ -140,7 +140,7 @@ def test_inertia_counts_the_negative_eigenvalues():
     pivot = opposed(offset=0.03, control_points=7)
     rotation = -0.05
     path = solve_mechanism(pivot, rotation=rotation, increments=8)
-    work = Bordered.of(compile_scene(pivot.driven(rotation)))
+    work = Followed.of(compile_scene(pivot.driven(rotation)))
     assert path.inertia.max() > 0
     for z, factor, inertia in zip(path.states, path.load_factor, path.inertia, strict=True):
         work.evaluate(z, factor)
@@ -154,7 +154,7 @@ def test_a_critical_point_is_where_an_eigenvalue_vanishes():
     path = solve_mechanism(pivot, rotation=-0.1, increments=10)
     (point,) = [c for c in path.critical_points if c.kind == "bifurcation"]
     system = compile_scene(pivot.driven(-0.1))
-    work = Bordered.of(system)
+    work = Followed.of(system)
     work.evaluate(point.z, point.load_factor)
     tangent = ReducedTangent.of(work)
     values = np.linalg.eigvalsh(tangent.stiffness)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from spline_model.compile import compile_scene
+from spline_model.continuation.followed import Followed
 from spline_model.dynamics import solve_motion
 from spline_model.effects import registry
 from spline_model.effects.base import OpenPotential
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter
 from spline_model.modes import natural_frequencies
-from spline_model.newton import Workspace
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_mechanism
 from tests.spline.effect_scenes import scene_with
@@ -89,5 +89,5 @@ def test_a_new_effect_is_one_class_and_one_line(monkeypatch):
     assert run.status.value == "converged"
     with pytest.raises(InvalidParameter, match="generalised-alpha"):
         solve_motion(pivot, start=1.0, duration=0.002)
-    work = Workspace.of(compile_scene(pivot.scene))
+    work = Followed.of(compile_scene(pivot.scene))
     assert work.system.open_potentials[0].stiffness == 1e5

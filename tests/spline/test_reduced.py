@@ -12,7 +12,7 @@ from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.model import at_rest, from_unknowns, reduced
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import whole_tangents
 from spline_model.statics import solve_statics
 from tests.spline.frames import column, opposed, toggle
 from tests.spline.test_branches import heavy, strained

@@ -16,7 +16,7 @@ from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.modes import natural_frequencies
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.model import at_rest, reduced
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import whole_tangents
 from spline_model.sequential_impulse import solve_impulses
 from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates

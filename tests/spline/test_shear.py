@@ -13,7 +13,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.held import HeldPivot
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.reduced.model import at_rest, reduced
-from spline_model.reduced.whole import whole_tangents
+from spline_model.reduced.states import whole_tangents
 from spline_model.statics import solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import SIX

@@ -5,7 +5,8 @@ import pytest
 
 from spline_model import newton
 from spline_model.compile import compile_scene
-from spline_model.newton import Workspace, filled_entries
+from spline_model.continuation.followed import Followed
+from spline_model.newton import filled_entries
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests import gates
@@ -43,7 +44,7 @@ def difference(one, other, *names):
 )
 def test_both_factorisations_give_the_same_answer(monkeypatch, settings):
     """Requirement: sparse and dense factorisation agree to 1e-10, the stiffness to its round-off."""
-    assert Workspace.of(compile_scene(pivot(**settings).driven(1.0))).pattern is not None
+    assert Followed.of(compile_scene(pivot(**settings).driven(1.0))).pattern is not None
     sparse, dense = both(monkeypatch, **settings)
     gates.check("spline_sparse_path", difference(sparse, dense, *FIELDS))
     gates.check("spline_sparse_stiffness", difference(sparse, dense, "stiffness"))
@@ -74,7 +75,7 @@ def test_the_gates_of_the_sparse_path_have_teeth(monkeypatch, gate, names):
 def test_the_pattern_holds_every_entry(settings):
     """Requirement: no entry of the tangent at a crooked state lies outside of the pattern."""
     system = compile_scene(pivot(**settings).driven(1.0))
-    work = Workspace.of(system)
+    work = Followed.of(system)
     generator = np.random.default_rng(5)
     work.evaluate(system.rest + system.scales.unit * 0.01 * generator.normal(size=system.layout.size), 0.5)
     filled = filled_entries(system)
@@ -98,12 +99,12 @@ def test_both_factorisations_count_the_same_inertia(monkeypatch):
 def test_short_splines_and_bezier_curves_stay_dense():
     """Requirement: where a dense factorisation is the faster one it is taken."""
     for settings in ({"control_points": 12}, {"basis": "bezier", "control_points": 30}):
-        assert Workspace.of(compile_scene(pivot(**settings).driven(1.0))).pattern is None
+        assert Followed.of(compile_scene(pivot(**settings).driven(1.0))).pattern is None
 
 
 def test_entries_that_are_not_finite_or_singular_are_refused():
     """Requirement: the sparse factorisation refuses what the dense one refuses, in the same words."""
-    work = Workspace.of(compile_scene(pivot().driven(1.0)))
+    work = Followed.of(compile_scene(pivot().driven(1.0)))
     work.hessian[:] = np.nan
     with pytest.raises(np.linalg.LinAlgError, match="not finite"):
         work.solve(work.gradient)

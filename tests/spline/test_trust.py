@@ -8,13 +8,13 @@ import pytest
 
 from spline_model.batch import solve_many
 from spline_model.compile import compile_scene
-from spline_model.continuation.followed import Bordered
+from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import jumped, stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
 from spline_model.design import Discretisation, StripDesign
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.mechanism import mechanism
-from spline_model.newton import Workspace, solve
+from spline_model.newton import solve
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.path import is_work, work_of
@@ -105,7 +105,7 @@ def test_energy_tells_branches_apart():
     """Requirement: two states of one path are continuous in energy, two of different branches are not."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, gauss_points=12)
     system = compile_scene(pivot.driven(1.0))
-    work = Bordered.of(system)
+    work = Followed.of(system)
     path = follow(system, [0.9, 1.0])
     points = [
         stand(work, z, t, work.evaluate(z, t)) for z, t in zip(path.states, path.load_factor, strict=True)
@@ -163,7 +163,7 @@ def test_wrong_branches_near_the_right_one_are_not_believed():
     """Requirement: other equilibria of the discrete strips that Newton finds are left for the right one."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=6)
     system = compile_scene(pivot.driven(2.5))
-    layout, work = system.layout, Workspace.of(system)
+    layout, work = system.layout, Followed.of(system)
     right, rng = solve_mechanism(pivot, rotation=2.5).states[-1], np.random.default_rng(1)
     others = []
     with np.errstate(all="ignore"):
@@ -184,7 +184,7 @@ def test_a_pivot_wound_up_the_other_way_round_is_not_believed():
     wound = solve_mechanism(pivot, rotation=0.3 - 2 * math.pi, increments=72).states[-1].copy()
     system = compile_scene(pivot.driven(0.3))
     wound[system.layout.body("body").stop - 1] += 2 * math.pi
-    work = Workspace.of(system)
+    work = Followed.of(system)
     assert solve(work, wound, 1.0).reason == ""
     found = solve_from(pivot, rotation=0.3, guess=wound)
     assert "another branch" in found.message

@@ -9,11 +9,12 @@ from fe_reference import law
 from fe_reference.mechanism import cross_axis_pivot as element_pivot
 from fe_reference.structure import structure_of
 from spline_model.compile import compile_scene
+from spline_model.continuation.followed import Followed
 from spline_model.motion import forces
 from spline_model.motion.arrays import Flexures
 from spline_model.motion.mechanism import Moving
 from spline_model.motion.start import set_in_motion
-from spline_model.newton import LEAST_SIZE, Workspace
+from spline_model.newton import LEAST_SIZE
 from spline_model.path import follow
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced import beside
@@ -137,7 +138,7 @@ def test_sizes_are_those_of_the_models(settings):
 def test_operations_of_the_sparse_factorisation(n):
     """The factors of a long B-spline hold what the constants say, within 3 %."""
     system = compile_scene(cross_axis_pivot(**TABLE_ONE, control_points=n, basis="bspline").driven(1.0))
-    workspace, size = Workspace.of(system), system.layout.size
+    workspace, size = Followed.of(system), system.layout.size
     workspace.evaluate(follow(system, [0.2]).states[-1], 0.2)
     factors = workspace.pattern.factorise(workspace.hessian)
     below, right = (np.diff(part.indptr) - 1 for part in (factors.L.tocsc(), factors.U.tocsr()))
