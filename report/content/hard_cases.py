@@ -1,6 +1,6 @@
 """The hard cases: every model judged with its own warnings and without."""
 
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import pandas as pd
