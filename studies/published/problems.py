@@ -23,10 +23,10 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
+from studies.published.arcs import LIMIT, Arc, arc_of
 from studies.published.case import (
     AT_LEAST,
     AT_MOST,
@@ -42,13 +42,10 @@ from studies.published.case import (
     SHEAR,
     SHEARED,
     Value,
-    loaded,
     published,
 )
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
-from studies.stability.frames import SIDE, Arc, frame_of, spline_arc
-from studies.stability.questions import LIMIT, element_arc
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
@@ -88,30 +85,16 @@ def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
 @cache
 def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
     """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
-    problem = published(name)
-    assert isinstance(problem.design, Mechanism)
-    response = answer_static(loaded(problem.design, answer, load), SETTINGS[model])
-    rest = next(body.centre for body in problem.design.bodies if body.name == problem.body)
-    way = response.bodies[problem.body][-1] - (*rest, 0.0) if response.converged else np.full(3, np.nan)
+    frame = published(name).frame(load, answer)
+    response = answer_static(frame.design, SETTINGS[model])
+    way = response.bodies[frame.body][-1] - (*frame.rest, 0.0) if response.converged else np.full(3, np.nan)
     return tuple(float(part) for part in way)
 
 
 @cache
 def _arc(name: str, model: str, answer: str, load: float, bends: bool) -> Arc:
     """Return the path of a problem to a load; one that `bends` leaves the straight branch."""
-    settings, bent = SETTINGS[model], {"side": SIDE} if bends else {}
-    if isinstance(settings, SplineSettings):
-        return spline_arc(frame_of(name, answer, load), settings, branch="follow" if bends else "primary")
-    return element_arc(frame_of(name, answer, load, **bent), settings)
-
-
-def _limit_load(arc: Arc, value: Value) -> float:
-    found = [point.load for point in arc.critical if point.kind == LIMIT]
-    return found[int(value.at) - 1] if value.at <= len(found) else math.nan
-
-
-def _limit_points(arc: Arc, value: Value) -> float:
-    return float(sum(point.kind == LIMIT for point in arc.critical))
+    return arc_of(published(name).frame(load, answer), SETTINGS[model], follow_branch=bends)
 
 
 def _load_at_rotation(arc: Arc, value: Value) -> float:
@@ -133,8 +116,8 @@ TURNED = 0.05
 #: Quantity -> its place among those of a body.
 AXES = {DISPLACEMENT_X: 0, DISPLACEMENT_Y: 1, ROTATION: 2}
 OF_ARCS: dict[str, Callable[[Arc, Value], float]] = {
-    LIMIT_LOAD: _limit_load,
-    LIMIT_POINTS: _limit_points,
+    LIMIT_LOAD: lambda arc, value: arc.critical_load(LIMIT, int(value.at) - 1),
+    LIMIT_POINTS: lambda arc, value: float(sum(point.kind == LIMIT for point in arc.critical)),
     LOAD_AT_ROTATION: _load_at_rotation,
 }
 

@@ -24,7 +24,7 @@ from studies.published.case import (
     read_published,
 )
 from studies.published.problems import ours
-from studies.stability.frames import load_ratio
+from studies.stability.questions import load_ratio
 from tests import gates
 
 

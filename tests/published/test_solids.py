@@ -5,8 +5,8 @@ import math
 import pytest
 
 from fe_reference import plate_factors
-from studies.model_form import account, solids
-from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
+from studies.published import account, solids
+from studies.published.solids import guide_compliance, linear_factor, solid_factor
 from tests import gates
 
 STRIP = {"width": 0.2, "thickness": 0.02}

@@ -23,17 +23,16 @@ from matplotlib.figure import Figure
 from fe_reference import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
-from studies.cases.mechanism import Mechanism
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.model_form.solids import guide_compliance, linear_factor, solid_factor
-from studies.published.case import loaded, published
+from studies.published.case import printed, published
+from studies.published.solids import guide_compliance, linear_factor, solid_factor
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 
 CASE = "parallelogram"
-#: Load of the refined mesh [EI/L^2], and what the mesh of 10 mm has there [m].
-LOAD, COARSE = 5.0, 48.3180e-3
+#: Load of the refined mesh [EI/L^2], and what a table of theirs calls the mesh of 10 mm there.
+LOAD, COARSE = 5.0, "solids, 10 mm"
 #: Loads whose displacements are in print for the mesh of 10 mm.
 LOADS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 #: Modulus of their stage over the strips', its length over theirs, and one so stiff that it is rigid.
@@ -55,27 +54,20 @@ STARS = {answer: replace(look, line="", marker="*") for answer, look in LOOKS.it
 CLOSE, ALIKE = 2e-3, 1.1
 
 
-@cache
-def guide_design() -> Mechanism:
-    design = published(CASE).design
-    assert isinstance(design, Mechanism)
-    return design
-
-
 def guide_shape() -> dict[str, float]:
-    """Return width and thickness of the strips over their length, and their distance [1]."""
-    one, other = guide_design().strips
-    length = math.dist(one.start, one.end)
+    """Return the length of the strips [m], and over it their width, thickness and distance [1]."""
+    one, other = published(CASE).design.strips
     assert one.width is not None
     assert one.thickness is not None
-    apart = math.dist(one.start, other.start) / length
-    return {"width": one.width / length, "thickness": one.thickness / length, "apart": apart}
+    apart = math.dist(one.start, other.start) / one.length
+    shape = {"width": one.width / one.length, "thickness": one.thickness / one.length, "apart": apart}
+    return shape | {"length": one.length}
 
 
 @cache
 def _factors() -> dict[str, float]:
     """Return stiffness over that of clamped beams [1] under a linear moment, and what the stage lets go."""
-    nu, shape = guide_design().strips[0].poisson_ratio, guide_shape()
+    nu, shape = published(CASE).design.strips[0].poisson_ratio, guide_shape()
     width, thickness = shape["width"], shape["thickness"]
     frame: dict[str, Any] = {
         "slenderness": 1.0 / thickness,
@@ -94,9 +86,10 @@ def _factors() -> dict[str, float]:
 
 def accounted(load: float) -> Answer:
     """Return a row a kind of answer and mesh at a load: its displacement and the difference to the solids."""
-    strip, shape, known = guide_design().strips[0], guide_shape(), _factors()
-    plate = answer_static(loaded(guide_design(), CLAMPED, load), FINE)
-    unit = strip.youngs_modulus * strip.second_moment_of_area / math.dist(strip.start, strip.end)
+    guide, shape, known = published(CASE), guide_shape(), _factors()
+    strip = guide.design.strips[0]
+    plate = answer_static(guide.frame(load, CLAMPED).design, FINE)
+    unit = strip.youngs_modulus * strip.second_moment_of_area / strip.length
     square = np.trapezoid(plate.bending_moment[-1] ** 2, plate.stations).mean()
     moment = math.sqrt(3.0 * float(square)) / unit
     shell = linear_factor(moment, width=shape["width"], thickness=shape["thickness"], nu=strip.poisson_ratio)
@@ -104,7 +97,7 @@ def accounted(load: float) -> Answer:
     stiffer[COMPLETE] = stiffer[SHELL] * known["solid"] / known["plate"] / known["stage"]
     rows = []
     for answer in LOOKS:
-        design = loaded(guide_design(), CLAMPED if answer in stiffer else answer, load)
+        design = guide.frame(load, CLAMPED if answer in stiffer else answer).design
         modulus = strip.youngs_modulus * stiffer.get(answer, 1.0)
         strips = tuple(replace(each, youngs_modulus=modulus) for each in design.strips)
         found = float(answer_static(replace(design, strips=strips), FINE).bodies["stage"][-1][1])
@@ -118,7 +111,7 @@ def accounted(load: float) -> Answer:
 def _solids(load: float) -> Iterable[tuple[float, float]]:
     """Yield the sizes of elements [mm] and the displacements [m] that are in print for a load."""
     if load == LOAD:
-        yield 10.0, COARSE
+        yield 10.0, next(found for name, found, _ in printed(CASE) if name == COARSE)
     value = next(v for v in published(CASE).values if v.load == load and v.quantity == "displacement_y")
     yield 3.0 if load == LOAD else 10.0, value.published * value.scale
 
@@ -156,7 +149,7 @@ def _flattened(account: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 STUDY = Study(
-    cases=(f"published/cases/{CASE}",),
+    cases=(f"published/cases/{CASE}", f"published/tables/{CASE}"),
     parts=(Part(at=lambda: LOADS, ask=accounted),),
     claims=(
         Claim(
