@@ -42,7 +42,7 @@ def _tables() -> dict[str, pd.DataFrame]:
     }.items():
         for model in DRAWN:
             bends = part == questions.COLUMN
-            arc = arc_of(frame, (family.COLUMNS | family.FINER)[model], follow_branch=bends)
+            arc = arc_of(frame, family.ARCS[model], follow_branch=bends)
             curves += _states(part, model, frame, arc)
             for point in arc.critical:
                 at = _at(part, frame, point.load, point.place)
@@ -97,7 +97,7 @@ def _elastica() -> list[dict[str, Any]]:
 
 def _branch(frame: Frame, model: str, branch: str) -> dict[str, Any]:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
-    arc = arc_of(frame, (family.COLUMNS | family.FINER)[model], follow_branch=branch == OTHER)
+    arc = arc_of(frame, family.ARCS[model], follow_branch=branch == OTHER)
     return {
         "model": model,
         "branch": branch,

@@ -112,9 +112,10 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
         reason=message,
         fault=f"the constraint residual grows {growth:.2g} times" if growth > GROWTH else "",
         counters={"newton_iterations": int(drift["newton_iterations"].sum())},
+        measured={"growth": growth},
     )
     name = f"{int(drift['steps'].max())} steps"
-    return {"case": name, "model": model, **family.judged(lambda: found, DRIFT), "growth": growth}
+    return {"case": name, "model": model, **family.judged(lambda: found, DRIFT, model)}
 
 
 LONG_RUN = family.study(
@@ -251,7 +252,7 @@ ENVIRONMENT = family.study(
     figures={
         "stability_environment": lambda tables: maps.listed(
             tables["outcomes"],
-            family.names(_tasks()),
+            [case for case, *_ in _tasks()],
             title=f"The same torque, path and motion to {TOLERANCE:g}, "
             f"the same modes to {FREQUENCY_TOLERANCE:g}",
         )

@@ -1,7 +1,7 @@
 """What families show: maps of where each model is right, refuses, is wrong or cannot be asked, and counts."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pandas as pd
@@ -96,17 +96,18 @@ def _grid(count: int) -> tuple[Figure, list[Axes], int]:
     return figure, panels[:count], across
 
 
-def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figure:
+def listed(outcomes: pd.DataFrame, cases: Iterable[str], *, title: str) -> Figure:
     """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
-    place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
+    names = list(dict.fromkeys(cases))
+    place = {name: len(names) - 1 - i for i, name in enumerate(names)}
     models = [model for model in ORDER if (outcomes["model"] == model).any()]
     across = {model: i for i, model in enumerate(models)}
-    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(cases))
+    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(names))
     panel = figure.subplots()
     _marked(panel, outcomes, outcomes["model"].map(across), outcomes["case"].map(place), markersize=6.0)
     panel.set_xticks(range(len(models)), labels=[_broken(model) for model in models], fontsize=7.5)
     panel.set_yticks(list(place.values()), labels=list(place), fontsize=7.5)
-    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(cases) - 0.3))
+    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(names) - 0.3))
     figure.legend(loc="outside lower center", ncols=len(LOOKS))
     figure.suptitle(title)
     return figure

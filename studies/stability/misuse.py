@@ -39,10 +39,9 @@ def _reference() -> Response:
 
 def _outcome_of(panel: str, model: str, count: int, other: int, settings: SplineSettings) -> Answer:
     """Return how one discretisation ends."""
-    checked = model not in family.UNCHECKED
-    attempt = partial(family.attempted, _design(), settings, _reference(), checked=checked)
+    attempt = partial(family.attempted, _design(), settings, _reference())
     place = {"panel": panel, "model": model, "x": count, "y": other}
-    return {"outcomes": {**place, **family.judged(attempt, family.TOLERANCE)}}
+    return {"outcomes": {**place, **family.judged(attempt, family.TOLERANCE, model)}}
 
 
 def _independent() -> Answer:
@@ -127,7 +126,7 @@ def _outcomes_of_starts(model: str, degrees: float) -> Answer:
     for name, guess in _guesses(pivot, settings, given.rotation):
         attempt = partial(_recovered, pivot, given.rotation, guess, path)
         place = {"case": f"{name}, {degrees} deg", "guess": name, "x": degrees, "model": model}
-        rows.append(place | family.judged(attempt, TOLERANCE))
+        rows.append(place | family.judged(attempt, TOLERANCE, model))
     return {"outcomes": rows}
 
 

@@ -16,14 +16,12 @@ from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.stability.family import (
+    ARCS,
     CHECK,
-    COLUMNS,
     FE,
-    FINER,
     INDEPENDENT,
     REFINED,
     TOLERANCE,
-    UNCHECKED,
     Found,
     judged,
 )
@@ -87,6 +85,10 @@ class BucklingCase:
     follow_branch: bool = False
     exact: float = math.nan
     published: float = math.nan
+
+    def arc(self, settings: Settings) -> Arc:
+        """Return the path that is asked about."""
+        return arc_of(self.frame, settings, follow_branch=self.follow_branch)
 
 
 def _cases() -> Iterator[BucklingCase]:
@@ -176,26 +178,19 @@ def _pushed_pivot(depth: float) -> Frame:
 
 def _outcomes_of(case: BucklingCase) -> Answer:
     """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
-    refined = case.value(_answer(case, REFINED))
+    refined = case.value(case.arc(REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
-    spread = max(_difference(case.value(_answer(case, CHECK)), refined), _difference(refined, reference))
-    gap = _difference(case.value(_answer(case, INDEPENDENT)), reference)
+    spread = max(_difference(case.value(case.arc(CHECK)), refined), _difference(refined, reference))
+    gap = _difference(case.value(case.arc(INDEPENDENT)), reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}
     rows = []
-    for model, settings in (COLUMNS | FINER).items():
-        values = [math.nan]
-        attempt = partial(_attempt, case, settings, reference, values, checked=model not in UNCHECKED)
-        verdict = judged(attempt, TOLERANCE)
-        asked = {**place, "model": model, "load": case.frame.load}
-        rows.append({**asked, "found": values[-1], **known, **verdict})
+    for model, settings in ARCS.items():
+        asked = {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
+        rows.append(asked | judged(partial(_attempt, case, settings, reference), TOLERANCE, model))
     reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
-
-
-def _answer(case: BucklingCase, settings: Settings) -> Arc:
-    return arc_of(case.frame, settings, follow_branch=case.follow_branch)
 
 
 def _difference(found: float, reference: float) -> float:
@@ -203,22 +198,19 @@ def _difference(found: float, reference: float) -> float:
     return abs(found - reference) / (abs(reference) or 1.0)
 
 
-def _attempt(
-    case: BucklingCase, settings: Settings, reference: float, values: list[float], *, checked: bool
-) -> Found:
-    """Answer a case, note the number that was found, and compare it."""
-    arc = _answer(case, settings)
+def _attempt(case: BucklingCase, settings: Settings, reference: float) -> Found:
+    """Answer a case, and compare the number that was found."""
+    arc = case.arc(settings)
     value = case.value(arc)
-    values.append(value)
-    warning = arc.warning if checked else ""
     return Found(
         error=_difference(value, reference),
         reached=arc.reached,
-        reason=(warning if arc.reached else "") or arc.message,
+        reason=arc.message,
         # a path that says where it stopped does not claim what lies beyond
-        states_limit=bool(warning) or not arc.reached,
-        warned=bool(arc.warning),
+        states_limit=not arc.reached,
+        warning=arc.warning,
         counters=arc.counters,
+        measured={"found": value},
     )
 
 
