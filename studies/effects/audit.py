@@ -11,15 +11,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.beyond import prices
-from studies.effects.scenes import (
-    SIZES,
-    Answer,
-    Outcome,
-    Run,
-    Unanswered,
-    Variant,
-    beside,
-)
+from studies.effects.scenes import SIZES, Answer, Outcome, Run, Unanswered, Variant
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -119,10 +111,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
 def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
     """Return a row for each effect beside the design's own that makes a stable design unstable at rest."""
     rows: list[Outcome] = []
-    for name in beside(design.effects):
-        variant = Variant(
-            dropped=(), added=(name,), effects=design.effects.renamed([*design.effects.names, name])
-        )
+    for variant in Variant.beside(design.effects):
         try:
             Run.of(variant.of(design), settings)
         except Unanswered as error:

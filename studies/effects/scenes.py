@@ -1,7 +1,7 @@
 """The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self, TypeVar
 
@@ -62,8 +62,16 @@ class Variant:
     @classmethod
     def full(cls, effects: Effects, omitted: Iterable[str] = ()) -> Self:
         """Return the scene with what could matter beside its own effects, but for what is omitted."""
-        names = [*effects.names, *(name for name in beside(effects) if name not in omitted)]
+        added = [variant.added[0] for variant in cls.beside(effects)]
+        names = [*effects.names, *(name for name in added if name not in omitted)]
         return cls(dropped=(), effects=effects.renamed(names))
+
+    @classmethod
+    def beside(cls, effects: Effects) -> Iterator[Self]:
+        """Yield the scene with each effect that it does not have but that could matter."""
+        for name, base in BESIDE.items():
+            if name not in effects.names and base in effects.names:
+                yield cls(dropped=(), added=(name,), effects=effects.renamed([*effects.names, name]))
 
     def without(self, dropped: Iterable[str]) -> Self:
         """Return the scene without these effects, or with their simpler forms."""
@@ -71,11 +79,6 @@ class Variant:
         gone = {*chosen, *(other for name in chosen for other in TOGETHER.get(name, ()))}
         names = [SIMPLER.get(name, "") if name in gone else name for name in self.effects.names]
         return replace(self, dropped=chosen, effects=self.effects.renamed([name for name in names if name]))
-
-
-def beside(effects: Effects) -> list[str]:
-    """Return the effects that a scene does not have but that could matter."""
-    return [name for name, base in BESIDE.items() if name not in effects.names and base in effects.names]
 
 
 #: What says how large a scene is, and what its change against the full one is told by.

@@ -24,7 +24,7 @@ from fe_reference import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.engine.study import Answer, Claim, Part, Study, Tables
-from studies.published.case import printed, published
+from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.published.solids import guide_compliance, linear_factor, solid_factor
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
@@ -38,13 +38,11 @@ LOADS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 #: Modulus of their stage over the strips', its length over theirs, and one so stiff that it is rigid.
 STAGE, STAGE_LENGTH, RIGID = 5000.0 / 210.0, 0.2, 1000.0
 FINE = SplineSettings(control_points=12)
-BEAM, CLAMPED, BOTH = "beam", "clamped_width", "clamped_width, anticlastic"
-SHEARED = "clamped_width, shear"
-SHELL, COMPLETE = "shell", "complete"
+BOTH, SHELL, COMPLETE = "clamped_width, anticlastic", "shell", "complete"
 #: Looks of the kinds of answer, and those of them that are held against the finest mesh.
 LOOKS = {
     BEAM: Look(label="beam", colour=GREY, marker="o"),
-    CLAMPED: Look(label="clamped width", colour=BLUE, marker="o"),
+    CLAMPED_WIDTH: Look(label="clamped width", colour=BLUE, marker="o"),
     SHEARED: Look(label="and shear", colour=BLACK, marker="o"),
     BOTH: Look(label="and anticlastic", colour=ORANGE, marker="o"),
     SHELL: Look(label="flattened as a shell", colour=PURPLE, marker="o"),
@@ -88,7 +86,7 @@ def accounted(load: float) -> Answer:
     """Return a row a kind of answer and mesh at a load: its displacement and the difference to the solids."""
     guide, shape, known = published(CASE), guide_shape(), _factors()
     strip = guide.design.strips[0]
-    plate = answer_static(guide.frame(load, CLAMPED).design, FINE)
+    plate = answer_static(guide.frame(load, CLAMPED_WIDTH).design, FINE)
     unit = strip.youngs_modulus * strip.second_moment_of_area / strip.length
     square = np.trapezoid(plate.bending_moment[-1] ** 2, plate.stations).mean()
     moment = math.sqrt(3.0 * float(square)) / unit
@@ -97,7 +95,7 @@ def accounted(load: float) -> Answer:
     stiffer[COMPLETE] = stiffer[SHELL] * known["solid"] / known["plate"] / known["stage"]
     rows = []
     for answer in LOOKS:
-        design = guide.frame(load, CLAMPED if answer in stiffer else answer).design
+        design = guide.frame(load, CLAMPED_WIDTH if answer in stiffer else answer).design
         modulus = strip.youngs_modulus * stiffer.get(answer, 1.0)
         strips = tuple(replace(each, youngs_modulus=modulus) for each in design.strips)
         found = float(answer_static(replace(design, strips=strips), FINE).bodies["stage"][-1][1])
@@ -144,7 +142,7 @@ def _figure(tables: Tables) -> Figure:
 def _flattened(account: pd.DataFrame) -> list[dict[str, Any]]:
     """Return how many times as much both effects of the models flatten the guide as a shell does, by load."""
     at = account[account["mesh_mm"] == 10.0].pivot(index="load", columns="answer", values="found")
-    ratio = (at[CLAMPED] - at[BOTH]) / (at[CLAMPED] - at[SHELL])
+    ratio = (at[CLAMPED_WIDTH] - at[BOTH]) / (at[CLAMPED_WIDTH] - at[SHELL])
     return [{"load": load, "ratio": value} for load, value in ratio.items()]
 
 

@@ -28,7 +28,7 @@ LIMIT, BIFURCATION = "limit point", "bifurcation"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Critical:
+class _Critical:
     """A critical point: "limit point" or "bifurcation", its load and the place (3,) of the reported body."""
 
     kind: str
@@ -53,7 +53,7 @@ class Arc:
     place: Array
     energy: Array
     inertia: NDArray[np.int64]
-    critical: tuple[Critical, ...]
+    critical: tuple[_Critical, ...]
     reached: bool
     message: str
     warning: str = ""
@@ -112,7 +112,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
         energy=path.bending_energy + path.axial_energy,
         inertia=path.inertia,
         critical=tuple(
-            Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
+            _Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
             for point in path.critical_points
         ),
         reached=path.status.value == "converged",
@@ -164,7 +164,7 @@ def _of_elements(model: Model, frame: Frame, path: ArcPath, message: str) -> Arc
     structure = structure_of(model)
     at, rest = structure.body_slice(model.body_index(frame.body)), np.array([*frame.rest, 0.0])
     critical = tuple(
-        Critical(kind=point.kind, load=frame.load * point.parameter, place=rest + point.y[at])
+        _Critical(kind=point.kind, load=frame.load * point.parameter, place=rest + point.y[at])
         for point in path.critical
     )
     return Arc(

@@ -111,6 +111,13 @@ class Value:
     bound: str = EQUAL
     limits: Mapping[str, float]
 
+    def met(self, found: float, limit: float) -> bool:
+        """Return whether a number meets the value: within its uncertainty and the limit."""
+        slack = self.uncertainty + limit * abs(self.published)
+        over = {EQUAL: abs(found - self.published), AT_MOST: found - self.published}
+        over[AT_LEAST] = self.published - found
+        return bool(over[self.bound] <= slack * (1.0 + 1e-12))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
@@ -185,11 +192,6 @@ class _Published:
 def printed(name: str) -> list[tuple[Any, ...]]:
     """Return the rows of a table that is in print; its file says what they hold."""
     return [tuple(row) for row in document.parsed(TABLES / f"{name}.toml")["rows"]]
-
-
-def names() -> tuple[str, ...]:
-    """Return the names of all published problems."""
-    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
 
 
 @cache

@@ -18,20 +18,9 @@ from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_strips import guide
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
-from studies.published.account import (
-    BEAM,
-    BOTH,
-    CASE,
-    CLAMPED,
-    CLOSE,
-    LOAD,
-    SHEARED,
-    SHELL,
-    accounted,
-    guide_shape,
-)  # fmt: skip
+from studies.published.account import BOTH, CASE, CLOSE, LOAD, SHELL, accounted, guide_shape
 from studies.published.account import LOOKS as WORDS
-from studies.published.case import printed, published
+from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.progress import measure
@@ -47,7 +36,11 @@ SETTINGS: dict[str, tuple[Settings, ...]] = {
     "fe-shear": tuple(FeSettings(elements=n, element="reissner") for n in (4, 8, 20, 40)),
 }
 #: Kinds of answer that each is asked for.
-KINDS = {"spline": (BEAM, CLAMPED, BOTH, SHEARED), "fe": (BEAM, CLAMPED, BOTH), "fe-shear": (SHEARED,)}
+KINDS = {
+    "spline": (BEAM, CLAMPED_WIDTH, BOTH, SHEARED),
+    "fe": (BEAM, CLAMPED_WIDTH, BOTH),
+    "fe-shear": (SHEARED,),
+}
 FINEST = {("spline", 12), ("fe", 40), ("fe-shear", 40)}
 #: Beams a strip of the constraint model, and steps to the load.
 BEAMS, STEPS = (1, 4, 8), 10
@@ -99,9 +92,9 @@ def _theirs() -> Answer:
 #: Model and kind of answer -> label, which of its points it stands beside, how far [pt], and on which side.
 LINES = {
     ("spline", BEAM): ("splines,\nbeam", 0, (-8, -36), "right"),
-    ("spline", CLAMPED): ("splines,\nclamped width", 2, (-5, -21), "right"),
+    ("spline", CLAMPED_WIDTH): ("splines,\nclamped width", 2, (-5, -21), "right"),
     ("fe", BEAM): ("elements, beam", 0, (4, 8), "right"),
-    ("fe", CLAMPED): ("elements,\nclamped width", 1, (8, -2), "left"),
+    ("fe", CLAMPED_WIDTH): ("elements,\nclamped width", 1, (8, -2), "left"),
     ("spline", SHEARED): ("splines,\nclamped width\nand shear", 2, (-5, -28), "right"),
     ("fe-shear", SHEARED): ("elements, clamped\nwidth and shear", 3, (8, -9), "left"),
     ("constraint model", BEAM): ("constraint model,\n1, 4, 8 beams", 0, (5, 3), "left"),

@@ -26,24 +26,9 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
+from studies.published import case
 from studies.published.arcs import LIMIT, Arc, arc_of
-from studies.published.case import (
-    AT_LEAST,
-    AT_MOST,
-    BEAM,
-    CLAMPED_WIDTH,
-    DISPLACEMENT_X,
-    DISPLACEMENT_Y,
-    EQUAL,
-    LIMIT_LOAD,
-    LIMIT_POINTS,
-    LOAD_AT_ROTATION,
-    ROTATION,
-    SHEAR,
-    SHEARED,
-    Value,
-    published,
-)
+from studies.published.case import Value, published
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
 
@@ -71,7 +56,7 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     elif value.quantity in AXES:
         found = moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
-        arc = _arc(name, model, answer, value.load, value.quantity == LOAD_AT_ROTATION)
+        arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
     return found / value.scale
 
@@ -114,11 +99,11 @@ def _load_at_rotation(arc: Arc, value: Value) -> float:
 #: Turn from which a column counts as buckled [rad].
 TURNED = 0.05
 #: Quantity -> its place among those of a body.
-AXES = {DISPLACEMENT_X: 0, DISPLACEMENT_Y: 1, ROTATION: 2}
+AXES = {case.DISPLACEMENT_X: 0, case.DISPLACEMENT_Y: 1, case.ROTATION: 2}
 OF_ARCS: dict[str, Callable[[Arc, Value], float]] = {
-    LIMIT_LOAD: lambda arc, value: arc.critical_load(LIMIT, int(value.at) - 1),
-    LIMIT_POINTS: lambda arc, value: float(sum(point.kind == LIMIT for point in arc.critical)),
-    LOAD_AT_ROTATION: _load_at_rotation,
+    case.LIMIT_LOAD: lambda arc, value: arc.critical_load(LIMIT, int(value.at) - 1),
+    case.LIMIT_POINTS: lambda arc, value: float(sum(point.kind == LIMIT for point in arc.critical)),
+    case.LOAD_AT_ROTATION: _load_at_rotation,
 }
 
 
@@ -140,7 +125,9 @@ PROBLEMS = (
 LABELS = {"spline": "spline", "fe": "elements", "fe-shear": "elements with shear"}
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
 BAR = Look(label="_", colour=GREY, line="", marker="|")
-MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s", SHEAR: "^", SHEARED: "D"}
+MARKERS = {case.BEAM: "o", case.CLAMPED_WIDTH: "s", case.SHEAR: "^", case.SHEARED: "D"}
+#: What a value in print says of itself in the table.
+OF_VALUES = ("quantity", "at", "load", "unit", "bound", "published", "uncertainty")
 #: Differences below it are drawn at it [1].
 FLOOR = 1e-6
 
@@ -154,7 +141,7 @@ def _asked() -> Iterator[tuple[str, str, str]]:
         problem = published(name)
         for model in problem.models:
             for answer in problem.answers:
-                if model == "spline" or (model == "fe-shear") == (SHEAR in answer):
+                if model == "spline" or (model == "fe-shear") == (case.SHEAR in answer):
                     yield name, model, answer
 
 
@@ -177,34 +164,20 @@ def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
         "case": name,
         "model": model,
         "answer": answer,
-        "quantity": value.quantity,
-        "at": value.at,
-        "load": value.load,
-        "unit": value.unit,
-        "bound": value.bound,
-        "published": value.published,
-        "uncertainty": value.uncertainty,
+        **{column: getattr(value, column) for column in OF_VALUES},
         "found": found,
         "error": error,
         "limit": limit,
-        "within": "yes" if met(value, found, limit) else "no",
+        "within": "yes" if value.met(found, limit) else "no",
         "message": message,
         "source": problem.source,
     }
 
 
-def met(value: Value, found: float, limit: float) -> bool:
-    """Return whether a number meets a value in print: within its uncertainty and the limit."""
-    slack = value.uncertainty + limit * abs(value.published)
-    over = {EQUAL: abs(found - value.published), AT_MOST: found - value.published}
-    over[AT_LEAST] = value.published - found
-    return bool(over[value.bound] <= slack * (1.0 + 1e-12))
-
-
 def _figure(tables: Tables) -> Figure:
     """Draw the differences to the values in print, a line a problem, beside the limits."""
     rows = tables["values"]
-    rows = rows[rows["bound"] == EQUAL]
+    rows = rows[rows["bound"] == case.EQUAL]
     known = np.maximum(np.abs(rows["published"]), 1e-300)
     slack = (rows["limit"] + rows["uncertainty"] / known).groupby(rows["problem"]).max()
     bars = slack[(slack > 0.0) & (slack < 1.0)].rename("error").reset_index()

@@ -19,7 +19,7 @@ from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
 from studies.stability import family, questions
-from studies.stability.questions import EULER, PUBLISHED, load_ratio, tip
+from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
 
 ELASTICA, PRINT = "elastica", "published"
 DRAWN = (family.PAPER, family.DEFAULT, family.TWELVE, family.FE)
@@ -33,10 +33,9 @@ BETWEEN = (3e-3, 7e-3, 1.5e-2)
 
 def _tables() -> dict[str, pd.DataFrame]:
     """Return curves and critical points (a row a state) and branches (a row a depth, model and branch)."""
-    column = questions.post_buckling(max(PUBLISHED)).frame
     curves, critical = _elastica(), []
     for part, frame in {
-        questions.COLUMN: column,
+        questions.COLUMN: bent_column(max(PUBLISHED)),
         questions.TOGGLE: published("williams_toggle").frame(),
         questions.LEE: published("lees_frame").frame(),
     }.items():
@@ -48,7 +47,7 @@ def _tables() -> dict[str, pd.DataFrame]:
                 at = _at(part, frame, point.load, point.place)
                 critical.append({"part": part, "model": model, "kind": point.kind, **at})
     branches = [
-        _branch(questions.pushed(depth).frame, model, branch)
+        _branch(pushed_pivot(depth), model, branch)
         for depth in sorted({*questions.DEPTHS, *BETWEEN})
         for model in PUSHED
         for branch in (PRIMARY, OTHER)

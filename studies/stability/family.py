@@ -214,7 +214,7 @@ class StaticCase:
     check: Settings = CHECK
 
 
-def distance(path: Response, reference: Response) -> float:
+def _distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
     Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
@@ -237,7 +237,7 @@ def outcomes_of(case: StaticCase) -> Answer:
     with it within the tolerance.
     """
     reference = answer_static(case.design, case.refined)
-    spread = distance(answer_static(case.design, case.check), reference)
+    spread = attempted(case.design, case.check, reference).error
     place = {"case": case.name, "x": case.x, "y": case.y}
     rows: list[Row] = []
     gap = float("inf")
@@ -248,7 +248,7 @@ def outcomes_of(case: StaticCase) -> Answer:
         if model == FE:
             gap = rows[-1]["error"]
     if not gap <= TOLERANCE:
-        gap = distance(answer_static(case.design, ARBITER), reference)
+        gap = attempted(case.design, ARBITER, reference).error
     settled = reference.converged and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
     known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
     return {"outcomes": rows, "references": known}
@@ -257,4 +257,4 @@ def outcomes_of(case: StaticCase) -> Answer:
 def attempted(design: Design, settings: Settings, reference: Response) -> Found:
     """Solve `design` and compare the path."""
     path = answer_static(design, settings)
-    return Found.of(path, distance(path, reference))
+    return Found.of(path, _distance(path, reference))

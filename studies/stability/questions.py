@@ -15,16 +15,8 @@ from studies.engine.study import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
-from studies.stability.family import (
-    ARCS,
-    CHECK,
-    FE,
-    INDEPENDENT,
-    REFINED,
-    TOLERANCE,
-    Found,
-    judged,
-)
+from studies.stability import family
+from studies.stability.family import TOLERANCE, Found, judged
 from studies.stability.geometry import as_mechanism
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
@@ -102,7 +94,7 @@ def _cases() -> Iterator[BucklingCase]:
         exact=_extensible_euler(SLENDERNESS),
     )
     for degrees in PUBLISHED:
-        yield post_buckling(degrees)
+        yield _post_buckling(degrees)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
             yield BucklingCase(
@@ -124,27 +116,26 @@ def _cases() -> Iterator[BucklingCase]:
     yield BucklingCase(
         name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
         part=PIVOT,
-        frame=_pushed_pivot(SHALLOW),
+        frame=pushed_pivot(SHALLOW),
         quantity="unstable directions [1]",
         value=lambda arc: float(arc.inertia[-1]),
     )
     yield BucklingCase(
         name="pivot pushed down: where its strips buckle",
         part=PIVOT,
-        frame=_pushed_pivot(DEPTHS[0]),
+        frame=pushed_pivot(DEPTHS[0]),
         quantity="bifurcation [m]",
         value=lambda arc: arc.critical_load(BIFURCATION),
     )
-    yield from map(pushed, DEPTHS)
+    yield from map(_pushed, DEPTHS)
 
 
-def post_buckling(degrees: int) -> BucklingCase:
+def _post_buckling(degrees: int) -> BucklingCase:
     """Return the column at the load at which the elastica's tip has turned by `degrees`."""
-    load = EULER * load_ratio(math.radians(degrees))
     return BucklingCase(
         name=f"column: elastica at {degrees} deg",
         part=COLUMN,
-        frame=published("column").frame(load),
+        frame=bent_column(degrees),
         quantity="tip angle [deg]",
         value=lambda arc: arc.turned,
         follow_branch=True,
@@ -153,19 +144,24 @@ def post_buckling(degrees: int) -> BucklingCase:
     )
 
 
-def pushed(depth: float) -> BucklingCase:
+def _pushed(depth: float) -> BucklingCase:
     """Return the pivot pushed down by `depth` [m], beyond the buckling of its strips, on the other branch."""
     return BucklingCase(
         name=f"pivot pushed down {1e3 * depth:g} mm: other branch",
         part=PIVOT,
-        frame=_pushed_pivot(depth),
+        frame=pushed_pivot(depth),
         quantity="turn of the body [deg]",
         value=lambda arc: arc.turned,
         follow_branch=True,
     )
 
 
-def _pushed_pivot(depth: float) -> Frame:
+def bent_column(degrees: float) -> Frame:
+    """Return the column under the load at which the elastica's tip has turned by `degrees`."""
+    return published("column").frame(EULER * load_ratio(math.radians(degrees)))
+
+
+def pushed_pivot(depth: float) -> Frame:
     """Return the pivot of Table 1 with its body's centre led down by `depth` [m], free to turn."""
     given = named_case()
     effects = Effects(
@@ -178,18 +174,18 @@ def _pushed_pivot(depth: float) -> Frame:
 
 def _outcomes_of(case: BucklingCase) -> Answer:
     """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
-    refined = case.value(case.arc(REFINED))
+    refined = case.value(case.arc(family.REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
-    spread = max(_difference(case.value(case.arc(CHECK)), refined), _difference(refined, reference))
-    gap = _difference(case.value(case.arc(INDEPENDENT)), reference)
+    spread = max(_difference(case.value(case.arc(family.CHECK)), refined), _difference(refined, reference))
+    gap = _difference(case.value(case.arc(family.INDEPENDENT)), reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}
     rows = []
-    for model, settings in ARCS.items():
+    for model, settings in family.ARCS.items():
         asked = {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
         rows.append(asked | judged(partial(_attempt, case, settings, reference), TOLERANCE, model))
-    reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
+    reached = {"model": family.FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
 
 
