@@ -17,7 +17,6 @@ from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine.study import Answer, Part
 from studies.stability import family, maps
-from studies.stability.geometry import as_mechanism
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.
 EVENTS = {family.DEFAULT: 1000, family.LOCKING_FREE: 100, family.PAPER: 100}
@@ -170,7 +169,7 @@ def _jumping(settings: Settings) -> family.Found:
 
 def _displaced(settings: Settings, millimetres: tuple[float, float]) -> family.Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
-    given = as_mechanism(named_case(), 0.0)
+    given = family.as_mechanism(named_case(), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
     effects = replace(
         given.effects,

@@ -13,6 +13,8 @@ from studies.answers.adapters import answer_static
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
+from studies.cases.mechanism import Mechanism
+from studies.cases.problem import Problem
 from studies.engine.study import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.record.store import Digits
@@ -212,6 +214,18 @@ class StaticCase:
     settings: Mapping[str, Settings] = field(default_factory=dict)
     refined: Settings = REFINED
     check: Settings = CHECK
+
+
+def as_mechanism(given: Problem, degrees: float) -> Mechanism:
+    """Return the pivot as a mechanism of two strips and a body, driven to `degrees`."""
+    return Mechanism(
+        strips=given.strips,
+        bodies=given.bodies,
+        body=given.body,
+        rotation=math.radians(degrees),
+        increments=given.increments,
+        effects=given.effects,
+    )
 
 
 def _distance(path: Response, reference: Response) -> float:

@@ -29,7 +29,6 @@ from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
 from studies.record.style import BLUE, ORANGE, RED, SKY, Look
 from studies.stability import family, maps
-from studies.stability.geometry import as_mechanism
 
 LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
@@ -193,7 +192,7 @@ def _difference(one: Mapping[str, float], other: Mapping[str, float]) -> float:
 def _reordered(case: str, settings: Settings, modes: bool) -> family.Found:
     """Answer a mechanism with its strips and bodies in the opposite order: path and motion, or `modes`."""
     design = named_design(case)
-    given = design if isinstance(design, Mechanism) else as_mechanism(design, 90.0)
+    given = design if isinstance(design, Mechanism) else family.as_mechanism(design, 90.0)
     turned = replace(given, strips=given.strips[::-1], bodies=given.bodies[::-1])
     one, other = (_answers(each, settings) for each in (given, turned))
     asked = {name: value for name, value in one.items() if name.startswith(FREQUENCY) == modes}
@@ -242,7 +241,7 @@ def _elsewhere(model: str, *, threads: int, increments: int = 20, **variables: s
 
 def _main(model: str, increments: str) -> None:
     """Print the answers of Table 1 as JSON."""
-    given = as_mechanism(named_case(), 90.0)
+    given = family.as_mechanism(named_case(), 90.0)
     print(json.dumps(_answers(given, family.COLUMNS[model], increments=int(increments))))
 
 

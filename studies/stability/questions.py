@@ -17,7 +17,6 @@ from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.stability import family
 from studies.stability.family import TOLERANCE, Found, judged
-from studies.stability.geometry import as_mechanism
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
 #: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].
@@ -168,7 +167,7 @@ def pushed_pivot(depth: float) -> Frame:
         names=("bending", "stretching", "driven_displacement"),
         tables={"driven_displacement": {"displacement": (0.0, -depth)}},
     )
-    design = replace(as_mechanism(given, 0.0), rotation=None, effects=effects)
+    design = replace(family.as_mechanism(given, 0.0), rotation=None, effects=effects)
     return Frame(design=design, load=depth, body="body", tilt=TILT * depth / given.length)
 
 

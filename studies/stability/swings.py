@@ -27,7 +27,6 @@ from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
 from studies.stability import family, maps
-from studies.stability.geometry import as_mechanism
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
@@ -234,7 +233,7 @@ def _ratios() -> Iterator[tuple[str, str, float, Design]]:
     yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
     without = [name for name in given.effects.names if name != STRIP_INERTIA]
     yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
-    cross = as_mechanism(given, START_DEG)
+    cross = family.as_mechanism(given, START_DEG)
     for factor in STIFFER:  # of another material
         second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
         stiffer = replace(cross, strips=(cross.strips[0], second))
