@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.engine.study import Part
+from studies.engine.study import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published
@@ -31,7 +31,7 @@ PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 
 
-def _tables() -> dict[str, pd.DataFrame]:
+def _tables() -> Answer:
     """Return curves and critical points (a row a state) and branches (a row a depth, model and branch)."""
     curves, critical = _elastica(), []
     for part, frame in {
@@ -52,11 +52,7 @@ def _tables() -> dict[str, pd.DataFrame]:
         for model in PUSHED
         for branch in (PRIMARY, OTHER)
     ]
-    return {
-        "curves": pd.DataFrame(curves),
-        "critical": pd.DataFrame(critical),
-        "branches": pd.DataFrame(branches),
-    }
+    return {"curves": curves, "critical": critical, "branches": branches}
 
 
 def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any]]:

@@ -10,24 +10,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.record.store import Store
-from studies.record.style import GREEN, GREY, RED, YELLOW, page
+from studies.record.style import GREEN, GREY, RED, YELLOW, Look, page
 from studies.registry import STUDIES
 from studies.stability.family import BAD_INPUT, DEFAULT, ORDER, OUTCOMES, REFUSED, RIGHT, WRONG
 
 GROUP = "stability/"
 
-#: Outcome -> colour and marker, the same in every map.
-LOOKS: dict[str, tuple[str, str]] = {
-    RIGHT: (GREEN, "o"),
-    REFUSED: (YELLOW, "D"),
-    WRONG: (RED, "X"),
-    BAD_INPUT: (GREY, "s"),
-}
-LABELS = {
-    RIGHT: "right",
-    REFUSED: "refused, or said to be unresolved",
-    WRONG: "wrong",
-    BAD_INPUT: "cannot be asked",
+#: Looks of the outcomes, the same in every map.
+LOOKS = {
+    RIGHT: Look(label="right", colour=GREEN, line="", marker="o"),
+    REFUSED: Look(label="refused, or said to be unresolved", colour=YELLOW, line="", marker="D"),
+    WRONG: Look(label="wrong", colour=RED, line="", marker="X"),
+    BAD_INPUT: Look(label="cannot be asked", colour=GREY, line="", marker="s"),
 }
 #: Size of a panel of a map [inch].
 WIDTH, HEIGHT, NARROWEST = 2.3, 3.5, 8.0
@@ -67,8 +61,8 @@ def outcome_map(
         if place % across == 0:
             panel.set_ylabel(ylabel)
     handles = [
-        Line2D([], [], linestyle="", marker=marker, color=colour, label=LABELS[name])
-        for name, (colour, marker) in LOOKS.items()
+        Line2D([], [], **look.keywords())
+        for name, look in LOOKS.items()
         if (outcomes["outcome"] == name).any()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(LOOKS))
@@ -76,12 +70,12 @@ def outcome_map(
     return figure
 
 
-def _marked(panel: Axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, **look: Any) -> None:
+def _marked(panel: Axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, **more: Any) -> None:
     """Draw a mark a row at (x, y), by its outcome."""
-    for outcome, (colour, marker) in LOOKS.items():
+    for outcome, look in LOOKS.items():
         some = rows["outcome"] == outcome
         if some.any():  # an empty line that is not clipped has no place for the layout
-            panel.plot(x[some], y[some], marker, color=colour, label=LABELS[outcome], **look)
+            panel.plot(x[some], y[some], **look.keywords(), **more)
 
 
 def _grid(count: int) -> tuple[Figure, list[Axes], int]:
