@@ -58,18 +58,16 @@ def _extensible_euler(slenderness: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BucklingCase:
+class _BucklingCase:
     """A question about a path with one number as its answer.
 
     Attributes:
-        part: frame that it is of. frame: as loaded. follow_branch: whether the path is to leave the primary
-            branch.
+        frame: as loaded. follow_branch: whether the path is to leave the primary branch.
         quantity: what is asked, with its unit. value: of a path; nan where the path does not have it.
         exact: in closed form, or nan. published: as printed, or nan.
     """
 
     name: str
-    part: str
     frame: Frame
     quantity: str
     value: Callable[[Arc], float]
@@ -82,11 +80,10 @@ class BucklingCase:
         return arc_of(self.frame, settings, follow_branch=self.follow_branch)
 
 
-def _cases() -> Iterator[BucklingCase]:
+def _cases() -> Iterator[_BucklingCase]:
     """Yield all questions."""
-    yield BucklingCase(
+    yield _BucklingCase(
         name="column: critical load",
-        part=COLUMN,
         frame=published("column").frame(BEYOND),
         quantity="bifurcation [EI/L^2]",
         value=lambda arc: arc.critical_load(BIFURCATION),
@@ -96,32 +93,28 @@ def _cases() -> Iterator[BucklingCase]:
         yield _post_buckling(degrees)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
-            yield BucklingCase(
+            yield _BucklingCase(
                 name=f"{part}: {('upper', 'lower')[place]} limit load",
-                part=part,
                 frame=published(name).frame(),
                 quantity=f"limit load [{value.unit}]",
                 value=partial(Arc.critical_load, kind=LIMIT, place=place),
                 published=value.published,
             )
-    yield BucklingCase(
+    yield _BucklingCase(
         name="toggle of rise 0.32 in: limit points",
-        part=TOGGLE,
         frame=published("williams_shallow_toggle").frame(),
         quantity="limit points [1]",
         value=lambda arc: float(len(arc.critical)),
         published=published("williams_shallow_toggle").values[0].published,
     )
-    yield BucklingCase(
+    yield _BucklingCase(
         name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
-        part=PIVOT,
         frame=pushed_pivot(SHALLOW),
         quantity="unstable directions [1]",
         value=lambda arc: float(arc.inertia[-1]),
     )
-    yield BucklingCase(
+    yield _BucklingCase(
         name="pivot pushed down: where its strips buckle",
-        part=PIVOT,
         frame=pushed_pivot(DEPTHS[0]),
         quantity="bifurcation [m]",
         value=lambda arc: arc.critical_load(BIFURCATION),
@@ -129,11 +122,10 @@ def _cases() -> Iterator[BucklingCase]:
     yield from map(_pushed, DEPTHS)
 
 
-def _post_buckling(degrees: int) -> BucklingCase:
+def _post_buckling(degrees: int) -> _BucklingCase:
     """Return the column at the load at which the elastica's tip has turned by `degrees`."""
-    return BucklingCase(
+    return _BucklingCase(
         name=f"column: elastica at {degrees} deg",
-        part=COLUMN,
         frame=bent_column(degrees),
         quantity="tip angle [deg]",
         value=lambda arc: arc.turned,
@@ -143,11 +135,10 @@ def _post_buckling(degrees: int) -> BucklingCase:
     )
 
 
-def _pushed(depth: float) -> BucklingCase:
+def _pushed(depth: float) -> _BucklingCase:
     """Return the pivot pushed down by `depth` [m], beyond the buckling of its strips, on the other branch."""
-    return BucklingCase(
+    return _BucklingCase(
         name=f"pivot pushed down {1e3 * depth:g} mm: other branch",
-        part=PIVOT,
         frame=pushed_pivot(depth),
         quantity="turn of the body [deg]",
         value=lambda arc: arc.turned,
@@ -171,7 +162,7 @@ def pushed_pivot(depth: float) -> Frame:
     return Frame(design=design, load=depth, body="body", tilt=TILT * depth / given.length)
 
 
-def _outcomes_of(case: BucklingCase) -> Answer:
+def _outcomes_of(case: _BucklingCase) -> Answer:
     """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
     refined = case.value(case.arc(family.REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
@@ -193,7 +184,7 @@ def _difference(found: float, reference: float) -> float:
     return abs(found - reference) / (abs(reference) or 1.0)
 
 
-def _attempt(case: BucklingCase, settings: Settings, reference: float) -> Found:
+def _attempt(case: _BucklingCase, settings: Settings, reference: float) -> Found:
     """Answer a case, and compare the number that was found."""
     arc = case.arc(settings)
     value = case.value(arc)
