@@ -95,7 +95,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     full, *others = _timed([full, *rows, *tried], design, run)
     progress(len(names) + 1, len(names) + 2)
     cheapest = _cheapest([full, *others], tolerance)
-    one, other = _in_turn([each.variant.of(design) for each in (full, cheapest)], run, DUELS)
+    one, other = _in_turn((full, cheapest), design, run, DUELS)
     return Audit(
         tolerance=tolerance,
         run=run,
@@ -135,8 +135,9 @@ def _combined(
     return found
 
 
-def _in_turn(scenes: Sequence[Design], run: Run, rounds: int) -> list[float]:
+def _in_turn(outcomes: Sequence[Outcome], design: Design, run: Run, rounds: int) -> list[float]:
     """Return the median times of static path and motion of scenes, taken round by round [s]."""
+    scenes = [each.variant.of(design) for each in outcomes]
 
     def wall_s(scene: Design) -> float:
         motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
@@ -150,7 +151,7 @@ def _timed(outcomes: Sequence[Outcome], design: Design, run: Run) -> list[Outcom
     """Return the scenes with their median times, taken round by round in turn."""
     limit = SLOW * outcomes[0].wall_s
     again = [each for each in outcomes if each.wall_s <= limit]
-    walls = _in_turn([each.variant.of(design) for each in again], run, ROUNDS)
+    walls = _in_turn(again, design, run, ROUNDS)
     found = dict(zip(map(id, again), walls, strict=True))
     return [replace(each, wall_s=found[id(each)]) if id(each) in found else each for each in outcomes]
 
