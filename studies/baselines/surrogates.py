@@ -4,7 +4,6 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
-import math
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -27,9 +26,9 @@ from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
-from studies.model_form.account import CASE as GUIDE
-from studies.model_form.account import LOADS, guide_design, guide_shape
 from studies.paper import formulations
+from studies.published.account import CASE as GUIDE
+from studies.published.account import LOADS, guide_shape
 from studies.published.problems import moved
 from studies.record.marks import Level
 from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
@@ -154,9 +153,8 @@ def _swung(part: float) -> Answer:
 
 def _guided(load: float) -> Answer:
     """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
-    strip, shape = guide_design().strips[0], guide_shape()
-    length = math.dist(strip.start, strip.end)
-    limit = np.array(moved(GUIDE, "spline", "beam", load)) / (length, length, 1.0)
+    shape = guide_shape()
+    limit = np.array(moved(GUIDE, "spline", "beam", load)) / (shape["length"], shape["length"], 1.0)
     rows = []
     for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
         place = guide(shape["apart"], 1.0 / shape["thickness"], count).pushed(np.array([0.0, load]))

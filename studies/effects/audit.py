@@ -11,17 +11,7 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.beyond import prices
-from studies.effects.scenes import (
-    SIZES,
-    Answer,
-    Outcome,
-    Run,
-    Unanswered,
-    Variant,
-    answered,
-    beside,
-    outcome,
-)
+from studies.effects.scenes import SIZES, Answer, Outcome, Run, Unanswered, Variant
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -91,21 +81,21 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     """
     upset = _upsetting(design, settings)
     scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])
-    whole = replace(design, effects=scene.effects)
+    whole = scene.of(design)
     run = Run.of(whole, settings)
-    base = answered(whole, run)
-    full = outcome(scene, whole, run, base)
+    base = run.answer(whole)
+    full = run.outcome(scene, design, base)
     names = scene.effects.names
     rows = []
     for done, name in enumerate(names):
         progress(done, len(names) + 2)
-        rows.append(_outcome(scene.without([name]), design, run, base))
+        rows.append(run.outcome(scene.without([name]), design, base))
     tried = _combined(rows, scene, design, run, base, tolerance)
     progress(len(names), len(names) + 2)
     full, *others = _timed([full, *rows, *tried], design, run)
     progress(len(names) + 1, len(names) + 2)
     cheapest = _cheapest([full, *others], tolerance)
-    duel = _duel(design, run, full, cheapest)
+    one, other = _in_turn((full, cheapest), design, run, DUELS)
     return Audit(
         tolerance=tolerance,
         run=run,
@@ -113,28 +103,21 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
         beyond=prices(whole),
-        cheapest=replace(_outcome(cheapest.variant, design, run, base), wall_s=duel[1]),
-        seconds=duel,
+        cheapest=replace(run.outcome(cheapest.variant, design, base), wall_s=other),
+        seconds=(one, other),
     )
 
 
 def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
     """Return a row for each effect beside the design's own that makes a stable design unstable at rest."""
     rows: list[Outcome] = []
-    for name in beside(design.effects):
-        variant = Variant(
-            dropped=(), added=(name,), effects=design.effects.renamed([*design.effects.names, name])
-        )
+    for variant in Variant.beside(design.effects):
         try:
-            Run.of(replace(design, effects=variant.effects), settings)
+            Run.of(variant.of(design), settings)
         except Unanswered as error:
             Run.of(design, settings)  # refused for its own sake, if it is
             rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
     return rows
-
-
-def _outcome(variant: Variant, design: Design, run: Run, base: Answer) -> Outcome:
-    return outcome(variant, replace(design, effects=variant.effects), run, base)
 
 
 def _combined(
@@ -148,12 +131,13 @@ def _combined(
     for count in range(len(free) + 1):
         for chosen in combinations(free, count):
             if len(always) + count >= 2:
-                found.append(_outcome(scene.without([*always, *chosen]), design, run, base))
+                found.append(run.outcome(scene.without([*always, *chosen]), design, base))
     return found
 
 
-def _in_turn(scenes: Sequence[Design], run: Run, rounds: int) -> list[float]:
+def _in_turn(outcomes: Sequence[Outcome], design: Design, run: Run, rounds: int) -> list[float]:
     """Return the median times of static path and motion of scenes, taken round by round [s]."""
+    scenes = [each.variant.of(design) for each in outcomes]
 
     def wall_s(scene: Design) -> float:
         motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
@@ -167,7 +151,7 @@ def _timed(outcomes: Sequence[Outcome], design: Design, run: Run) -> list[Outcom
     """Return the scenes with their median times, taken round by round in turn."""
     limit = SLOW * outcomes[0].wall_s
     again = [each for each in outcomes if each.wall_s <= limit]
-    walls = _in_turn([replace(design, effects=each.variant.effects) for each in again], run, ROUNDS)
+    walls = _in_turn(again, design, run, ROUNDS)
     found = dict(zip(map(id, again), walls, strict=True))
     return [replace(each, wall_s=found[id(each)]) if id(each) in found else each for each in outcomes]
 
@@ -182,10 +166,3 @@ def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
 
 def _extent(each: Outcome) -> tuple[int, float, float]:
     return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
-
-
-def _duel(design: Design, run: Run, full: Outcome, cheapest: Outcome) -> tuple[float, float]:
-    """Return the median times of two scenes, run in turn [s]."""
-    scenes = [replace(design, effects=each.variant.effects) for each in (full, cheapest)]
-    one, other = _in_turn(scenes, run, DUELS)
-    return one, other

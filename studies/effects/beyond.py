@@ -1,12 +1,12 @@
 """What planar beams leave out, priced: how the answers of a design change with each such effect."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
-from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism
@@ -61,61 +61,59 @@ def prices(design: Design) -> list[dict[str, Any]]:
     own = _Answers.of(design, spline)
     missing = tuple(name for name in SECTIONS if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
-    found = [_price(name, with_sections(design, added), spline, own) for name, added in asked.items()]
-    if SHEAR in design.effects.names:
-        return found
-    try:
-        stiff = _Answers.of(design, FeSettings(elements=ELEMENTS))
-    except (BadInput, Unanswered) as error:
-        return [*found, _priced(SHEAR, {}, error)]
-    return [*found, _price(SHEAR, design, FeSettings(elements=ELEMENTS, element="reissner"), stiff)]
+    found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
+    if SHEAR not in design.effects.names:
+        stiff = FeSettings(elements=ELEMENTS)
+        sheared = replace(stiff, element="reissner")
+        found.append(_price(SHEAR, design, sheared, lambda: _Answers.of(design, stiff)))
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Answers:
-    """Static path as the body turns, and first mode at rest [Hz], NaN of a design that names shear."""
+    """What a price is of: centres of bodies as the body turns, stiffness at the begin of that, torque and
+    stress at its end, and first mode at rest [Hz], NaN of a design that names shear."""
 
-    path: Response
     centres: dict[str, Array]
-    mode: float
+    stiffness: float
+    torque: float
+    stress: float
+    first_mode: float
 
     @classmethod
     def of(cls, design: Design, settings: Settings) -> "_Answers":
-        path = reached(answer_static(design, settings))
-        turned = slice(-design.increments - 1, None)
+        path, begin = reached(answer_static(design, settings)), -design.increments - 1
         modes: Array = np.array([])
         if SHEAR not in design.effects.names:
             modes = reached(answer_modes(design, settings, count=1)).frequency
         return cls(
-            path=path,
-            centres={name: each[turned] for name, each in path.centres.items()},
-            mode=float(modes[0]) if len(modes) else np.nan,
+            centres={name: each[begin:] for name, each in path.centres.items()},
+            stiffness=path.stiffness[begin],
+            torque=path.torque[-1],
+            stress=path.max_stress[-1],
+            first_mode=float(modes[0]) if len(modes) else np.nan,
         )
 
+    def changes(self, own: "_Answers") -> dict[str, float]:
+        """Return how far these are from the own ones."""
+        begins = {name: path[:1] for name, path in own.centres.items()}
+        trajectory = _rounded(strayed(self.centres, own.centres, begins))
+        others = {name: relative_change(getattr(self, name), getattr(own, name)) for name in CHANGED[1:]}
+        return {CHANGED[0]: trajectory, **others}
 
-def _price(effect: str, design: Design, settings: Settings, own: _Answers) -> dict[str, Any]:
+
+def _price(effect: str, design: Design, settings: Settings, own: Callable[[], _Answers]) -> dict[str, Any]:
+    """Return a row of `prices`; without changes where there was no answer."""
+    changes, status, reason = dict.fromkeys(CHANGED, np.nan), "converged", ""
     try:
-        other = _Answers.of(design, settings)
-    except (BadInput, Unanswered) as error:
-        return _priced(effect, {}, error)
-    begins = {name: path[:1] for name, path in own.centres.items()}
-    begin = -design.increments - 1
-    changes = {
-        "trajectory": _rounded(strayed(other.centres, own.centres, begins)),
-        "stiffness": relative_change(other.path.stiffness[begin], own.path.stiffness[begin]),
-        "torque": relative_change(other.path.torque[-1], own.path.torque[-1]),
-        "stress": relative_change(other.path.max_stress[-1], own.path.max_stress[-1]),
-        "first_mode": relative_change(other.mode, own.mode),
-    }
-    return _priced(effect, changes)
-
-
-def _priced(effect: str, changes: dict[str, float], error: Exception | None = None) -> dict[str, Any]:
-    """Return a row of `prices`; without changes where there was an error."""
-    ended = "refused" if isinstance(error, BadInput) else "not_converged" if error else "converged"
-    known = changes or dict.fromkeys(CHANGED, np.nan)
-    largest = np.fmax.reduce(np.abs([*known.values()]))
-    return {"effect": effect, "status": ended, **known, "largest": largest, "reason": str(error or "")}
+        without = own()
+        changes = _Answers.of(design, settings).changes(without)
+    except BadInput as error:
+        status, reason = "refused", str(error)
+    except Unanswered as error:
+        status, reason = "not_converged", str(error)
+    largest = np.fmax.reduce(np.abs([*changes.values()]))
+    return {"effect": effect, "status": status, **changes, "largest": largest, "reason": reason}
 
 
 def relative_change(value: float, own: float) -> float:

@@ -1,7 +1,7 @@
 """The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self, TypeVar
 
@@ -55,11 +55,23 @@ class Variant:
         words += [CALLED.get(name, f"no {name.replace('_', ' ')}") for name in self.dropped]
         return ", ".join(words) or "full scene"
 
+    def of(self, design: Design) -> Design:
+        """Return the design with this scene."""
+        return replace(design, effects=self.effects)
+
     @classmethod
     def full(cls, effects: Effects, omitted: Iterable[str] = ()) -> Self:
         """Return the scene with what could matter beside its own effects, but for what is omitted."""
-        names = [*effects.names, *(name for name in beside(effects) if name not in omitted)]
+        added = [variant.added[0] for variant in cls.beside(effects)]
+        names = [*effects.names, *(name for name in added if name not in omitted)]
         return cls(dropped=(), effects=effects.renamed(names))
+
+    @classmethod
+    def beside(cls, effects: Effects) -> Iterator[Self]:
+        """Yield the scene with each effect that it does not have but that could matter."""
+        for name, base in BESIDE.items():
+            if name not in effects.names and base in effects.names:
+                yield cls(dropped=(), added=(name,), effects=effects.renamed([*effects.names, name]))
 
     def without(self, dropped: Iterable[str]) -> Self:
         """Return the scene without these effects, or with their simpler forms."""
@@ -67,11 +79,6 @@ class Variant:
         gone = {*chosen, *(other for name in chosen for other in TOGETHER.get(name, ()))}
         names = [SIMPLER.get(name, "") if name in gone else name for name in self.effects.names]
         return replace(self, dropped=chosen, effects=self.effects.renamed([name for name in names if name]))
-
-
-def beside(effects: Effects) -> list[str]:
-    """Return the effects that a scene does not have but that could matter."""
-    return [name for name, base in BESIDE.items() if name not in effects.names and base in effects.names]
 
 
 #: What says how large a scene is, and what its change against the full one is told by.
@@ -112,29 +119,6 @@ LOST = 1.0
 
 class Unanswered(RuntimeError):
     """A scene that has no answer; the text says why."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Run:
-    """What all scenes of an audit are asked: a static path, then a motion of `duration` in steps of `step`
-    [s]."""
-
-    settings: SplineSettings
-    duration: float
-    step: float
-
-    @classmethod
-    def of(cls, design: Design, settings: SplineSettings) -> Self:
-        """Return the motion to ask of a design's scenes: some swings of its first mode.
-
-        Raises:
-            BadInput: what the model refuses. Unanswered: the design is not stable at rest.
-        """
-        modes = answer_modes(design, settings, count=1)
-        first = float(modes.frequency[0]) if modes.converged and len(modes.frequency) else math.nan
-        if not first > 0.0:
-            raise Unanswered(modes.message or f"the first natural frequency at rest is {first:.4g} Hz")
-        return cls(settings=settings, duration=SWINGS / first, step=1.0 / (STEPS_A_SWING * first))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,66 +174,88 @@ class Outcome:
         return max(known, default=math.inf)
 
 
-def answered(design: Design, run: Run, full: Answer | None = None) -> Answer:
-    """Return what the design's scene says; without a motion where its first mode is far from the full one's,
-    or where the motion stops early or is not resolved, which only the full scene's must not.
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """What all scenes of an audit are asked: a static path, then a motion of `duration` in steps of `step`
+    [s]."""
 
-    Raises:
-        BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
-    """
-    static = reached(answer_static(design, run.settings))
-    mode = float(reached(answer_modes(design, run.settings, count=1)).frequency[0])
-    # as the body turns: a scene without loads has no states before
-    turned = slice(-design.increments - 1, None)
-    path = {name: each[turned] for name, each in static.centres.items()}
-    answer = Answer(path=path, torque=static.torque[turned], mode=mode)
-    if full is not None and abs(mode / full.mode - 1.0) > LOST:
-        return replace(answer, note="no motion: the first mode is another")
-    # massless strips may snap through between two states of a long step, unseen: then a companion stops
-    massless = "strip_inertia" not in design.effects.names
-    motion = answer_release(design, run.settings, duration=run.duration, step=run.step, check=massless)
-    alone = motion.converged and massless and math.isnan(motion.rotation_error)
-    if full is not None and (left := motion.resolution if alone else motion.message):
-        return replace(answer, stopped=True, note=f"motion: {left}")
-    reached(motion)
-    driven = bool(design.rotation)
-    return replace(
-        answer,
-        swing=motion.frequency if driven else math.nan,
-        loss=_loss(motion),
-        wall_s=static.wall_s + motion.wall_s,
-    )
+    settings: SplineSettings
+    duration: float
+    step: float
 
+    @classmethod
+    def of(cls, design: Design, settings: SplineSettings) -> Self:
+        """Return the motion to ask of a design's scenes: some swings of its first mode.
 
-def outcome(variant: Variant, design: Design, run: Run, full: Answer) -> Outcome:
-    """Return how far a scene is from the full one; a scene without an answer keeps its reason.
+        Raises:
+            BadInput: what the model refuses. Unanswered: the design is not stable at rest.
+        """
+        modes = answer_modes(design, settings, count=1)
+        first = float(modes.frequency[0]) if modes.converged and len(modes.frequency) else math.nan
+        if not first > 0.0:
+            raise Unanswered(modes.message or f"the first natural frequency at rest is {first:.4g} Hz")
+        return cls(settings=settings, duration=SWINGS / first, step=1.0 / (STEPS_A_SWING * first))
 
-    Args:
-        variant: the scene. design: with it. run: what is asked. full: answer of the full scene.
-    """
-    try:
-        answer = answered(design, run, full)
-        size = size_of(design, run.settings)
-    except BadInput as error:
-        return Outcome(variant=variant, status="refused", reason=str(error))
-    except Unanswered as error:
-        return Outcome(variant=variant, status="not_converged", reason=str(error))
-    torque = float(np.abs(full.torque).max())
-    change = float(np.abs(answer.torque - full.torque).max())
-    return Outcome(
-        variant=variant,
-        status="not_converged" if answer.stopped else "converged",
-        reason=answer.note,
-        changes={
-            "trajectory": strayed(answer.path, full.path, _rest(design, full)),
-            "torque": change / torque if torque > 0.0 else math.nan,
-            "swing_frequency": answer.swing / full.swing - 1.0,
-            "first_mode": answer.mode / full.mode - 1.0,
-            "loss": answer.loss - full.loss,
-        },
-        size=size,
-        wall_s=answer.wall_s,
-    )
+    def answer(self, design: Design, full: Answer | None = None) -> Answer:
+        """Return what the design's scene says; without a motion where its first mode is far from the full
+        one's, or where the motion stops early or is not resolved, which only the full scene's must not.
+
+        Raises:
+            BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
+        """
+        static = reached(answer_static(design, self.settings))
+        mode = float(reached(answer_modes(design, self.settings, count=1)).frequency[0])
+        # as the body turns: a scene without loads has no states before
+        turned = slice(-design.increments - 1, None)
+        path = {name: each[turned] for name, each in static.centres.items()}
+        answer = Answer(path=path, torque=static.torque[turned], mode=mode)
+        if full is not None and abs(mode / full.mode - 1.0) > LOST:
+            return replace(answer, note="no motion: the first mode is another")
+        # massless strips may snap through between two states of a long step, unseen: then a companion stops
+        massless = "strip_inertia" not in design.effects.names
+        motion = answer_release(design, self.settings, duration=self.duration, step=self.step, check=massless)
+        alone = motion.converged and massless and math.isnan(motion.rotation_error)
+        if full is not None and (left := motion.resolution if alone else motion.message):
+            return replace(answer, stopped=True, note=f"motion: {left}")
+        reached(motion)
+        driven = bool(design.rotation)
+        return replace(
+            answer,
+            swing=motion.frequency if driven else math.nan,
+            loss=_loss(motion),
+            wall_s=static.wall_s + motion.wall_s,
+        )
+
+    def outcome(self, variant: Variant, design: Design, full: Answer) -> Outcome:
+        """Return how far a scene is from the full one; a scene without an answer keeps its reason.
+
+        Args:
+            variant: the scene. design: whose it is. full: answer of the full scene.
+        """
+        scene = variant.of(design)
+        try:
+            answer = self.answer(scene, full)
+            size = size_of(scene, self.settings)
+        except BadInput as error:
+            return Outcome(variant=variant, status="refused", reason=str(error))
+        except Unanswered as error:
+            return Outcome(variant=variant, status="not_converged", reason=str(error))
+        torque = float(np.abs(full.torque).max())
+        change = float(np.abs(answer.torque - full.torque).max())
+        return Outcome(
+            variant=variant,
+            status="not_converged" if answer.stopped else "converged",
+            reason=answer.note,
+            changes={
+                "trajectory": strayed(answer.path, full.path, _rest(design, full)),
+                "torque": change / torque if torque > 0.0 else math.nan,
+                "swing_frequency": answer.swing / full.swing - 1.0,
+                "first_mode": answer.mode / full.mode - 1.0,
+                "loss": answer.loss - full.loss,
+            },
+            size=size,
+            wall_s=answer.wall_s,
+        )
 
 
 Reached = TypeVar("Reached", Response, Spectrum, Motion)

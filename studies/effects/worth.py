@@ -107,8 +107,7 @@ def _steps(control_points: int) -> list[dict[str, Any]]:
     full = Variant(dropped=(), effects=problem.effects)
     rows = []
     for variant in (full, full.without([STRETCHING])):
-        scene = replace(problem, effects=variant.effects)
-        size = size_of(scene, SplineSettings(control_points=control_points))
+        size = size_of(variant.of(problem), SplineSettings(control_points=control_points))
         rows.append(
             {
                 "control_points": control_points,
@@ -124,7 +123,7 @@ def _massless(factor: float) -> dict[str, Any]:
     problem = _with_body(named_case(), factor)
     full = Variant(dropped=(), effects=problem.effects)
     massive, massless = (
-        answer_modes(replace(problem, effects=variant.effects), SETTINGS, count=1).frequency[0]
+        answer_modes(variant.of(problem), SETTINGS, count=1).frequency[0]
         for variant in (full, full.without([INERTIA]))
     )
     strips = 2.0 * problem.density * problem.area * problem.length

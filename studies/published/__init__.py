@@ -1,1 +1,1 @@
-"""Problems that others published with their values: a case file each, and our answers beside them."""
+"""Problems that others published with values, our answers beside them, and what beams leave out of them."""

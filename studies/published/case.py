@@ -1,6 +1,7 @@
 """Read a published problem: its design, and the values that are in print, each with source and uncertainty.
 
-A case file has [problem], [[values]] and a design as any case file has one.
+A case file has [problem], [[values]] and a design as any case file has one. A table has rows of what is in
+print beside problems.
 """
 
 from collections.abc import Mapping
@@ -16,6 +17,7 @@ from studies.cases.mechanism import Mechanism
 from studies.cases.rules import Key, Rule, choice, finite, not_negative, positive, shown, text
 
 FOLDER = Path(__file__).parent / "cases"
+TABLES = Path(__file__).parent / "tables"
 
 DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
 LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
@@ -81,6 +83,9 @@ VALUE = (
 )
 #: Parameters of loads, which grow with the load.
 LOADS = ("force", "moment", "acceleration")
+#: Part of a force that acts across a frame to lead elements onto a branch: the angle of a column moves by
+#: less than 1 %, and with a tenth of it the steps of their path jump the bend.
+SIDE = 1e-4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,6 +111,46 @@ class Value:
     bound: str = EQUAL
     limits: Mapping[str, float]
 
+    def met(self, found: float, limit: float) -> bool:
+        """Return whether a number meets the value: within its uncertainty and the limit."""
+        slack = self.uncertainty + limit * abs(self.published)
+        over = {EQUAL: abs(found - self.published), AT_MOST: found - self.published}
+        over[AT_LEAST] = self.published - found
+        return bool(over[self.bound] <= slack * (1.0 + 1e-12))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """A design and how it is loaded.
+
+    Attributes:
+        load: force or displacement at load factor 1, in its units.
+        body: whose place is reported; pins: bodies that are held in their places and free to turn.
+        tilt: turn of that body from which elements, which have no way onto a branch, find it [rad]; without
+            one they are loaded aside.
+    """
+
+    design: Mechanism
+    load: float
+    body: str
+    pins: tuple[str, ...] = ()
+    tilt: float = 0.0
+
+    @property
+    def rest(self) -> tuple[float, float]:
+        """Place of the reported body at rest."""
+        return next(body.centre for body in self.design.bodies if body.name == self.body)
+
+    def aside(self) -> Mechanism:
+        """Return the design with a part of its force across it, to the right of it."""
+        effects = self.design.effects
+        force = effects.tables["applied_force"]
+        x, y = force["force"]
+        leant = {**force, "force": (x + SIDE * y, y - SIDE * x)}
+        return replace(
+            self.design, effects=replace(effects, tables={**effects.tables, "applied_force": leant})
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class _Published:
@@ -127,10 +172,26 @@ class _Published:
     body: str = ""
     pins: tuple[str, ...] = ()
 
+    def frame(self, load: float | None = None, answer: str = BEAM) -> Frame:
+        """Return the design under so many times its loads, of None those of its first value, as a beam or
+        with the effects that the answer names."""
+        load = self.values[0].load if load is None else load
+        assert isinstance(self.design, Mechanism)
+        effects = self.design.effects
+        tables = {
+            effect: {
+                name: _product(given, load) if name in LOADS else given for name, given in parameters.items()
+            }
+            for effect, parameters in effects.tables.items()
+        }
+        more = () if answer == BEAM else tuple(answer.split(", "))
+        acting = replace(effects, names=(*effects.names, *more), tables=tables)
+        return Frame(design=replace(self.design, effects=acting), load=load, body=self.body, pins=self.pins)
 
-def names() -> tuple[str, ...]:
-    """Return the names of all published problems."""
-    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+
+def printed(name: str) -> list[tuple[Any, ...]]:
+    """Return the rows of a table that is in print; its file says what they hold."""
+    return [tuple(row) for row in document.parsed(TABLES / f"{name}.toml")["rows"]]
 
 
 @cache
@@ -180,19 +241,6 @@ def _require_bodies(
     moved = [value.quantity for value in values if value.quantity in PLACES]
     if pins and moved:
         raise CaseError(f"{where}: problem.pins: got them beside {moved[0]}, expected limit loads alone")
-
-
-def loaded(design: Mechanism, answer: str, load: float) -> Mechanism:
-    """Return a design under so many times its loads, as a beam or with the effects that the answer names."""
-    effects = design.effects
-    tables = {
-        effect: {
-            name: _product(given, load) if name in LOADS else given for name, given in parameters.items()
-        }
-        for effect, parameters in effects.tables.items()
-    }
-    more = () if answer == BEAM else tuple(answer.split(", "))
-    return replace(design, effects=replace(effects, names=(*effects.names, *more), tables=tables))
 
 
 def _product(given: Any, load: float) -> Any:

@@ -23,32 +23,14 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
-from studies.published.case import (
-    AT_LEAST,
-    AT_MOST,
-    BEAM,
-    CLAMPED_WIDTH,
-    DISPLACEMENT_X,
-    DISPLACEMENT_Y,
-    EQUAL,
-    LIMIT_LOAD,
-    LIMIT_POINTS,
-    LOAD_AT_ROTATION,
-    ROTATION,
-    SHEAR,
-    SHEARED,
-    Value,
-    loaded,
-    published,
-)
+from studies.published import case
+from studies.published.arcs import LIMIT, Arc, arc_of
+from studies.published.case import Value, published
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
-from studies.stability.frames import SIDE, Arc, frame_of, spline_arc
-from studies.stability.questions import LIMIT, element_arc
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
@@ -74,7 +56,7 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     elif value.quantity in AXES:
         found = moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
-        arc = _arc(name, model, answer, value.load, value.quantity == LOAD_AT_ROTATION)
+        arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
     return found / value.scale
 
@@ -88,30 +70,16 @@ def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
 @cache
 def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
     """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
-    problem = published(name)
-    assert isinstance(problem.design, Mechanism)
-    response = answer_static(loaded(problem.design, answer, load), SETTINGS[model])
-    rest = next(body.centre for body in problem.design.bodies if body.name == problem.body)
-    way = response.bodies[problem.body][-1] - (*rest, 0.0) if response.converged else np.full(3, np.nan)
+    frame = published(name).frame(load, answer)
+    response = answer_static(frame.design, SETTINGS[model])
+    way = response.bodies[frame.body][-1] - (*frame.rest, 0.0) if response.converged else np.full(3, np.nan)
     return tuple(float(part) for part in way)
 
 
 @cache
 def _arc(name: str, model: str, answer: str, load: float, bends: bool) -> Arc:
     """Return the path of a problem to a load; one that `bends` leaves the straight branch."""
-    settings, bent = SETTINGS[model], {"side": SIDE} if bends else {}
-    if isinstance(settings, SplineSettings):
-        return spline_arc(frame_of(name, answer, load), settings, branch="follow" if bends else "primary")
-    return element_arc(frame_of(name, answer, load, **bent), settings)
-
-
-def _limit_load(arc: Arc, value: Value) -> float:
-    found = [point.load for point in arc.critical if point.kind == LIMIT]
-    return found[int(value.at) - 1] if value.at <= len(found) else math.nan
-
-
-def _limit_points(arc: Arc, value: Value) -> float:
-    return float(sum(point.kind == LIMIT for point in arc.critical))
+    return arc_of(published(name).frame(load, answer), SETTINGS[model], follow_branch=bends)
 
 
 def _load_at_rotation(arc: Arc, value: Value) -> float:
@@ -131,11 +99,11 @@ def _load_at_rotation(arc: Arc, value: Value) -> float:
 #: Turn from which a column counts as buckled [rad].
 TURNED = 0.05
 #: Quantity -> its place among those of a body.
-AXES = {DISPLACEMENT_X: 0, DISPLACEMENT_Y: 1, ROTATION: 2}
+AXES = {case.DISPLACEMENT_X: 0, case.DISPLACEMENT_Y: 1, case.ROTATION: 2}
 OF_ARCS: dict[str, Callable[[Arc, Value], float]] = {
-    LIMIT_LOAD: _limit_load,
-    LIMIT_POINTS: _limit_points,
-    LOAD_AT_ROTATION: _load_at_rotation,
+    case.LIMIT_LOAD: lambda arc, value: arc.critical_load(LIMIT, int(value.at) - 1),
+    case.LIMIT_POINTS: lambda arc, value: float(sum(point.kind == LIMIT for point in arc.critical)),
+    case.LOAD_AT_ROTATION: _load_at_rotation,
 }
 
 
@@ -157,7 +125,9 @@ PROBLEMS = (
 LABELS = {"spline": "spline", "fe": "elements", "fe-shear": "elements with shear"}
 COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
 BAR = Look(label="_", colour=GREY, line="", marker="|")
-MARKERS = {BEAM: "o", CLAMPED_WIDTH: "s", SHEAR: "^", SHEARED: "D"}
+MARKERS = {case.BEAM: "o", case.CLAMPED_WIDTH: "s", case.SHEAR: "^", case.SHEARED: "D"}
+#: What a value in print says of itself in the table.
+OF_VALUES = ("quantity", "at", "load", "unit", "bound", "published", "uncertainty")
 #: Differences below it are drawn at it [1].
 FLOOR = 1e-6
 
@@ -171,7 +141,7 @@ def _asked() -> Iterator[tuple[str, str, str]]:
         problem = published(name)
         for model in problem.models:
             for answer in problem.answers:
-                if model == "spline" or (model == "fe-shear") == (SHEAR in answer):
+                if model == "spline" or (model == "fe-shear") == (case.SHEAR in answer):
                     yield name, model, answer
 
 
@@ -194,34 +164,20 @@ def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
         "case": name,
         "model": model,
         "answer": answer,
-        "quantity": value.quantity,
-        "at": value.at,
-        "load": value.load,
-        "unit": value.unit,
-        "bound": value.bound,
-        "published": value.published,
-        "uncertainty": value.uncertainty,
+        **{column: getattr(value, column) for column in OF_VALUES},
         "found": found,
         "error": error,
         "limit": limit,
-        "within": "yes" if met(value, found, limit) else "no",
+        "within": "yes" if value.met(found, limit) else "no",
         "message": message,
         "source": problem.source,
     }
 
 
-def met(value: Value, found: float, limit: float) -> bool:
-    """Return whether a number meets a value in print: within its uncertainty and the limit."""
-    slack = value.uncertainty + limit * abs(value.published)
-    over = {EQUAL: abs(found - value.published), AT_MOST: found - value.published}
-    over[AT_LEAST] = value.published - found
-    return bool(over[value.bound] <= slack * (1.0 + 1e-12))
-
-
 def _figure(tables: Tables) -> Figure:
     """Draw the differences to the values in print, a line a problem, beside the limits."""
     rows = tables["values"]
-    rows = rows[rows["bound"] == EQUAL]
+    rows = rows[rows["bound"] == case.EQUAL]
     known = np.maximum(np.abs(rows["published"]), 1e-300)
     slack = (rows["limit"] + rows["uncertainty"] / known).groupby(rows["problem"]).max()
     bars = slack[(slack > 0.0) & (slack < 1.0)].rename("error").reset_index()

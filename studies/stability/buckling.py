@@ -1,14 +1,10 @@
 """Compression and buckling: the column and the elastica, frames that snap through, the pivot pushed down.
 
-The spline follows the branch that crosses at a bifurcation. The elements do not: they are led onto it by a
-small side load, or by a tilt of the body that is let go. The forces as printed have no potential, so there is
-no stability to be asked of them. Beside the outcomes: load against deflection, critical points, and the
-branches of the pushed pivot.
+Beside the outcomes: load against deflection, critical points, and the branches of the pushed pivot.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,11 +13,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.engine.study import Part
+from studies.engine.study import Answer, Part
 from studies.kinds import Array
+from studies.published.arcs import BIFURCATION, Arc, arc_of
+from studies.published.case import Frame, published
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
 from studies.stability import family, questions
-from studies.stability.frames import EULER, PUBLISHED, Arc, Frame, frame_of, load_ratio, tip
+from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
 
 ELASTICA, PRINT = "elastica", "published"
 DRAWN = (family.PAPER, family.DEFAULT, family.TWELVE, family.FE)
@@ -33,37 +31,28 @@ PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 
 
-def _tables() -> dict[str, pd.DataFrame]:
+def _tables() -> Answer:
     """Return curves and critical points (a row a state) and branches (a row a depth, model and branch)."""
-    column = questions.post_buckling(max(PUBLISHED))
     curves, critical = _elastica(), []
-    for part, case in {
-        questions.COLUMN: column,
-        questions.TOGGLE: _plain(column, frame_of("williams_toggle")),
-        questions.LEE: _plain(column, frame_of("lees_frame")),
+    for part, frame in {
+        questions.COLUMN: bent_column(max(PUBLISHED)),
+        questions.TOGGLE: published("williams_toggle").frame(),
+        questions.LEE: published("lees_frame").frame(),
     }.items():
         for model in DRAWN:
-            arc = questions.answer(case, (family.COLUMNS | family.FINER)[model])
-            curves += _states(part, model, case.frame, arc)
+            bends = part == questions.COLUMN
+            arc = arc_of(frame, family.ARCS[model], follow_branch=bends)
+            curves += _states(part, model, frame, arc)
             for point in arc.critical:
-                at = _at(part, case.frame, point.load, point.place)
+                at = _at(part, frame, point.load, point.place)
                 critical.append({"part": part, "model": model, "kind": point.kind, **at})
     branches = [
-        _branch(questions.pushed(depth), model, branch)
+        _branch(pushed_pivot(depth), model, branch)
         for depth in sorted({*questions.DEPTHS, *BETWEEN})
         for model in PUSHED
         for branch in (PRIMARY, OTHER)
     ]
-    return {
-        "curves": pd.DataFrame(curves),
-        "critical": pd.DataFrame(critical),
-        "branches": pd.DataFrame(branches),
-    }
-
-
-def _plain(case: questions.BucklingCase, frame: Frame) -> questions.BucklingCase:
-    """Return the case of another frame, on its primary branch."""
-    return replace(case, frame=frame, bent=None, branch="primary")
+    return {"curves": curves, "critical": critical, "branches": branches}
 
 
 def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any]]:
@@ -75,7 +64,7 @@ def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any
         for state, place in enumerate(arc.place)
     ]  # fmt: skip
     for point in arc.critical:
-        if part == questions.COLUMN and point.kind == questions.BIFURCATION:
+        if part == questions.COLUMN and point.kind == BIFURCATION:
             last = int(np.argmax(np.abs(arc.place[:, 2]) > STRAIGHT)) - 0.5
             corner = _at(part, frame, point.load, point.place)
             rows.append({**name, "state": last, **corner, "unstable_directions": 0})
@@ -86,8 +75,7 @@ def _at(part: str, frame: Frame, load: float, place: Array) -> dict[str, float]:
     """Return load and deflection as drawn: over Euler's and the length, or in the frame's units, down."""
     if part == questions.COLUMN:
         return {"load": load / EULER, "deflection": abs(float(place[1]))}
-    rest = next(body.centre for body in frame.design.bodies if body.name == frame.body)
-    return {"load": load, "deflection": rest[1] - float(place[1])}
+    return {"load": load, "deflection": frame.rest[1] - float(place[1])}
 
 
 def _elastica() -> list[dict[str, Any]]:
@@ -102,16 +90,15 @@ def _elastica() -> list[dict[str, Any]]:
     return rows
 
 
-def _branch(case: questions.BucklingCase, model: str, branch: str) -> dict[str, Any]:
+def _branch(frame: Frame, model: str, branch: str) -> dict[str, Any]:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
-    asked = replace(case, branch="primary", tilt=0.0) if branch == PRIMARY else case
-    arc: Arc = questions.answer(asked, (family.COLUMNS | family.FINER)[model])
+    arc = arc_of(frame, family.ARCS[model], follow_branch=branch == OTHER)
     return {
         "model": model,
         "branch": branch,
-        "asked_mm": 1e3 * case.frame.load,
+        "asked_mm": 1e3 * frame.load,
         "reached_mm": 1e3 * float(arc.load[-1]),
-        "turn_deg": questions.turned(arc),
+        "turn_deg": arc.turned,
         "energy_J": float(arc.energy[-1]),
         "unstable_directions": int(arc.inertia[-1]),
         "first_bifurcation_mm": min((1e3 * point.load for point in arc.critical), default=math.nan),
@@ -144,10 +131,8 @@ def _figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
         panel.set(title=part, xlabel=AXES[part][0], ylabel=AXES[part][1])
     for part in (questions.COLUMN, questions.TOGGLE, questions.LEE):
         _loads(panels[part], tables, part)
-    for published in _published(tables["outcomes"], questions.TOGGLE):
-        panels[questions.TOGGLE].axhline(published, color=BLACK, linewidth=0.6, linestyle=":")
-    for published in _published(tables["outcomes"], questions.LEE):
-        panels[questions.LEE].axhline(published, color=BLACK, linewidth=0.6, linestyle=":")
+        for limit in _limits(tables["outcomes"], part):
+            panels[part].axhline(limit, color=BLACK, linewidth=0.6, linestyle=":")
     panels[questions.COLUMN].set(ylim=(0.0, 10.0))
     _pivot(panels[questions.PIVOT], tables["branches"])
     handles = [Line2D([], [], label=model, **look) for model, look in LOOKS.items()]
@@ -175,7 +160,7 @@ def _loads(panel: Axes, tables: Mapping[str, pd.DataFrame], part: str) -> None:
             )  # fmt: skip
 
 
-def _published(outcomes: pd.DataFrame, part: str) -> list[float]:
+def _limits(outcomes: pd.DataFrame, part: str) -> list[float]:
     """Return the published limit loads of a part."""
     asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
     return sorted(set(outcomes[asked]["published"]))

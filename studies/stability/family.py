@@ -1,10 +1,10 @@
 """Families of hard cases: which models are asked, and how each ends: right, refused, wrong or bad input."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,9 @@ from studies.answers.adapters import answer_static
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.engine.study import Answer, Part, Study
+from studies.cases.mechanism import Mechanism
+from studies.cases.problem import Problem
+from studies.engine.study import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.record.store import Digits
 
@@ -40,9 +42,10 @@ COLUMNS: dict[str, Settings] = {
 #: Motions, arcs of frames and starts from guesses take six by default.
 PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
 
-#: Finer splines, for families in which the default reaches its end.
+#: Those of paths in arc length: finer splines, as the default reaches its end there.
 EIGHT, TWELVE = "spline n = 8", "spline n = 12"
-FINER: dict[str, Settings] = {
+ARCS: dict[str, Settings] = {
+    **COLUMNS,
     EIGHT: SplineSettings(control_points=8),
     TWELVE: SplineSettings(control_points=12),
 }
@@ -51,7 +54,7 @@ GENERALISED_ALPHA = "spline, generalised-alpha"
 EXPLICIT = "spline, explicit"
 
 #: All columns, in the order of tables and figures.
-ORDER = (*PATHS, VARIED, GENERALISED_ALPHA, EXPLICIT, *FINER)
+ORDER = (*PATHS, VARIED, GENERALISED_ALPHA, EXPLICIT, EIGHT, TWELVE)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.
@@ -80,78 +83,74 @@ class Found:
         reached: whether the model says that it got to the end; if not, `reason` says why not.
         reason: what the model itself says about its answer; a limitation that it states makes an answer that
             is off a refusal, provided `states_limit` is set.
-        states_limit: whether `reason` warns of what is off in an answer that reached its end.
-        warned: whether the model's own check finds its answer unresolved, be that counted here or not.
+        warning: what the model's own check of its resolution finds; it states a limit, where it counts.
         fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
-        counters: work done, by kind.
+        counters: work done, by kind. measured: what else the table has of the answer, by column.
     """
 
     error: float
     reached: bool = True
     reason: str = ""
     states_limit: bool = False
-    warned: bool = False
+    warning: str = ""
     fault: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
+    measured: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, answer: Any, error: float, *, fault: str = "", **measured: float) -> Self:
+        """Return what an answer, neutral or a model's, says of itself, with its error."""
+        return cls(
+            error=error,
+            reached=getattr(answer.status, "value", answer.status) == "converged",
+            reason=answer.message,
+            warning=answer.resolution,
+            fault=fault,
+            counters=answer.counters,
+            measured=measured,
+        )
 
 
-def said(answer: Any, error: float, *, checked: bool = True, fault: str = "") -> Found:
-    """Return an answer, neutral or a model's, with its error; without `checked` as if it was silent on its
-    resolution."""
-    resolution = answer.resolution if checked else ""
-    return Found(
-        error=error,
-        reached=getattr(answer.status, "value", answer.status) == "converged",
-        reason=answer.message or resolution,
-        states_limit=bool(resolution),
-        warned=bool(answer.resolution),
-        fault=fault,
-        counters=answer.counters,
-    )
-
-
-def judged(attempt: Callable[[], Found], tolerance: float) -> dict[str, Any]:
-    """Return how `attempt` ends, right within `tolerance` [1], as columns of a table.
+def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> Row:
+    """Return how `attempt` of a column ends, right within `tolerance` [1], as columns of a table.
 
     Columns: outcome, one of `OUTCOMES`; error [1]; reason in words; iterations and halvings; stopped, whether
-    it did not reach its end, and warned, that of `Found`: with both, every model can be judged with its own
-    warnings and without.
+    it did not reach its end, and warned, whether its own check finds it unresolved, be that counted for this
+    `model` or not: with both, every model can be judged with its own warnings and without; and what was
+    measured beside.
 
     An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
     refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
     """
+    outcome = ""
     try:
         found = attempt()
     except BadInput as refusal:
-        return _ended(BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split())))
-    except (
-        Exception
-    ) as fault:  # whatever escapes a model is a wrong outcome to be counted, not the study's end
+        outcome, found = BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split()))
+    except Exception as fault:  # whatever escapes a model is an outcome to be counted, not the study's end
         reason = " ".join(f"{type(fault).__name__}: {fault}".split())
-        return _ended(WRONG, Found(error=math.nan, reason=reason))
-    return _ended(_outcome(found, tolerance), found)
-
-
-def _ended(outcome: str, found: Found) -> dict[str, Any]:
+        outcome, found = WRONG, Found(error=math.nan, reason=reason)
+    warning = "" if model in UNCHECKED else found.warning
     work = found.counters
     return {
-        "outcome": outcome,
+        "outcome": outcome or _outcome(found, tolerance, limited=found.states_limit or bool(warning)),
         "error": found.error,
-        "reason": found.fault or found.reason,
+        "reason": found.fault or (warning if found.reached else "") or found.reason or warning,
         "iterations": work.get("newton_iterations", work.get("iterations", 0)),
         "halvings": work.get("halved_increments", 0) + work.get("halved_steps", 0),
         "stopped": not found.reached,
-        "warned": found.warned,
+        "warned": bool(found.warning),
+        **found.measured,
     }
 
 
-def _outcome(found: Found, tolerance: float) -> str:
+def _outcome(found: Found, tolerance: float, *, limited: bool) -> str:
     if found.fault:
         return WRONG
     # what a path or run holds up to where it stopped is judged as well: a refusal must leave a good state
     if math.isfinite(found.error) and found.error <= tolerance:
         return RIGHT if found.reached else REFUSED
-    return REFUSED if found.states_limit else WRONG
+    return REFUSED if limited else WRONG
 
 
 #: What comes out again of a column: balances to their floor, distances to six digits, work to a per cent.
@@ -174,12 +173,7 @@ def study(*parts: Part, **declared: Any) -> Study:
 
 def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
     """Return how one task ends."""
-    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance)}}
-
-
-def names(tasks: Iterable[Task]) -> list[str]:
-    """Return the names of the cases, each once, in their order."""
-    return list(dict.fromkeys(case for case, *_ in tasks))
+    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance, model)}}
 
 
 def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
@@ -222,7 +216,19 @@ class StaticCase:
     check: Settings = CHECK
 
 
-def distance(path: Response, reference: Response) -> float:
+def as_mechanism(given: Problem, degrees: float) -> Mechanism:
+    """Return the pivot as a mechanism of two strips and a body, driven to `degrees`."""
+    return Mechanism(
+        strips=given.strips,
+        bodies=given.bodies,
+        body=given.body,
+        rotation=math.radians(degrees),
+        increments=given.increments,
+        effects=given.effects,
+    )
+
+
+def _distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
     Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
@@ -245,24 +251,24 @@ def outcomes_of(case: StaticCase) -> Answer:
     with it within the tolerance.
     """
     reference = answer_static(case.design, case.refined)
-    spread = distance(answer_static(case.design, case.check), reference)
+    spread = attempted(case.design, case.check, reference).error
     place = {"case": case.name, "x": case.x, "y": case.y}
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     gap = float("inf")
     for model, settings in PATHS.items():
         chosen = case.settings.get(model, settings)
-        attempt = partial(attempted, case.design, chosen, reference, checked=model not in UNCHECKED)
-        rows.append({**place, "model": model, **judged(attempt, TOLERANCE)})
+        attempt = partial(attempted, case.design, chosen, reference)
+        rows.append({**place, "model": model, **judged(attempt, TOLERANCE, model)})
         if model == FE:
             gap = rows[-1]["error"]
     if not gap <= TOLERANCE:
-        gap = distance(answer_static(case.design, ARBITER), reference)
+        gap = attempted(case.design, ARBITER, reference).error
     settled = reference.converged and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
     known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
     return {"outcomes": rows, "references": known}
 
 
-def attempted(design: Design, settings: Settings, reference: Response, *, checked: bool) -> Found:
-    """Solve `design` and compare the path; without `checked`, as if it said nothing of its resolution."""
+def attempted(design: Design, settings: Settings, reference: Response) -> Found:
+    """Solve `design` and compare the path."""
     path = answer_static(design, settings)
-    return said(path, distance(path, reference), checked=checked)
+    return Found.of(path, _distance(path, reference))

@@ -141,7 +141,7 @@ def _path(example: _Example, settings: SplineSettings) -> family.Found:
     refined = replace(settings, control_points=FINEST if points is None else max(REFINED, points + 3))
     error, both = _apart(path, _legs(example, refined, _finer(example)), example)
     closed = books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
-    return family.said(path, error if both else 0.0, fault="" if closed else "work and energy differ")
+    return family.Found.of(path, error if both else 0.0, fault="" if closed else "work and energy differ")
 
 
 def _legs(example: _Example, settings: Settings, increments: int) -> Any:
@@ -219,7 +219,7 @@ def _motion(example: _Example, settings: SplineSettings) -> family.Found:
     step = period * float(example.step or 0.0)
     motion = answer_release(problem, settings, duration=STEPS * step, step=step)
     if not len(motion.time):
-        return family.Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
+        return family.Found.of(motion, 0.0)
     stored = motion.kinetic_energy + motion.strain_energy
     scale = max(float(stored[0]), UNLOADED * rigidity / problem.length)
     gain, lost = float((stored - stored[0]).max()) / scale, float(np.abs(stored - stored[0]).max()) / scale
@@ -231,7 +231,7 @@ def _motion(example: _Example, settings: SplineSettings) -> family.Found:
         "the motion is not of finite numbers": not finite,
     }
     fault = next((fault for fault, holds in faults.items() if holds), "")
-    return family.said(motion, max(lost, gap), fault=fault)
+    return family.Found.of(motion, max(lost, gap), fault=fault)
 
 
 STUDY = family.study(

@@ -19,7 +19,7 @@ from spline_model.batch import solve_many
 from spline_model.dynamics import solve_motion
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.models import put
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import TABLE_1, named_case
@@ -29,7 +29,6 @@ from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
 from studies.record.style import BLUE, ORANGE, RED, SKY, Look
 from studies.stability import family, maps
-from studies.stability.geometry import as_mechanism
 
 LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
@@ -51,10 +50,7 @@ def _pieces(model: str, count: int) -> Answer:
 
 def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     """Yield the rows of drift and of memory after each piece of so many steps, until one stops early."""
-    settings = family.COLUMNS[model]
-    if not isinstance(settings, SplineSettings):
-        raise TypeError(f"model: got {model}, expected a spline")
-    mechanism = put(named_case(), settings, moving=True).modelled
+    mechanism = put(named_case(), family.COLUMNS[model], moving=True).modelled
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
     first, change = 0.0, 0.0
     for number in range(1, count + 1):
@@ -112,9 +108,10 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
         reason=message,
         fault=f"the constraint residual grows {growth:.2g} times" if growth > GROWTH else "",
         counters={"newton_iterations": int(drift["newton_iterations"].sum())},
+        measured={"growth": growth},
     )
     name = f"{int(drift['steps'].max())} steps"
-    return {"case": name, "model": model, **family.judged(lambda: found, DRIFT), "growth": growth}
+    return {"case": name, "model": model, **family.judged(lambda: found, DRIFT, model)}
 
 
 LONG_RUN = family.study(
@@ -192,7 +189,7 @@ def _difference(one: Mapping[str, float], other: Mapping[str, float]) -> float:
 def _reordered(case: str, settings: Settings, modes: bool) -> family.Found:
     """Answer a mechanism with its strips and bodies in the opposite order: path and motion, or `modes`."""
     design = named_design(case)
-    given = design if isinstance(design, Mechanism) else as_mechanism(design, 90.0)
+    given = design if isinstance(design, Mechanism) else family.as_mechanism(design, 90.0)
     turned = replace(given, strips=given.strips[::-1], bodies=given.bodies[::-1])
     one, other = (_answers(each, settings) for each in (given, turned))
     asked = {name: value for name, value in one.items() if name.startswith(FREQUENCY) == modes}
@@ -241,7 +238,7 @@ def _elsewhere(model: str, *, threads: int, increments: int = 20, **variables: s
 
 def _main(model: str, increments: str) -> None:
     """Print the answers of Table 1 as JSON."""
-    given = as_mechanism(named_case(), 90.0)
+    given = family.as_mechanism(named_case(), 90.0)
     print(json.dumps(_answers(given, family.COLUMNS[model], increments=int(increments))))
 
 
@@ -251,7 +248,7 @@ ENVIRONMENT = family.study(
     figures={
         "stability_environment": lambda tables: maps.listed(
             tables["outcomes"],
-            family.names(_tasks()),
+            [case for case, *_ in _tasks()],
             title=f"The same torque, path and motion to {TOLERANCE:g}, "
             f"the same modes to {FREQUENCY_TOLERANCE:g}",
         )

@@ -1,7 +1,7 @@
 """What families show: maps of where each model is right, refuses, is wrong or cannot be asked, and counts."""
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pandas as pd
@@ -10,24 +10,18 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.record.store import Store
-from studies.record.style import GREEN, GREY, RED, YELLOW, page
+from studies.record.style import GREEN, GREY, RED, YELLOW, Look, page
 from studies.registry import STUDIES
 from studies.stability.family import BAD_INPUT, DEFAULT, ORDER, OUTCOMES, REFUSED, RIGHT, WRONG
 
 GROUP = "stability/"
 
-#: Outcome -> colour and marker, the same in every map.
-LOOKS: dict[str, tuple[str, str]] = {
-    RIGHT: (GREEN, "o"),
-    REFUSED: (YELLOW, "D"),
-    WRONG: (RED, "X"),
-    BAD_INPUT: (GREY, "s"),
-}
-LABELS = {
-    RIGHT: "right",
-    REFUSED: "refused, or said to be unresolved",
-    WRONG: "wrong",
-    BAD_INPUT: "cannot be asked",
+#: Looks of the outcomes, the same in every map.
+LOOKS = {
+    RIGHT: Look(label="right", colour=GREEN, line="", marker="o"),
+    REFUSED: Look(label="refused, or said to be unresolved", colour=YELLOW, line="", marker="D"),
+    WRONG: Look(label="wrong", colour=RED, line="", marker="X"),
+    BAD_INPUT: Look(label="cannot be asked", colour=GREY, line="", marker="s"),
 }
 #: Size of a panel of a map [inch].
 WIDTH, HEIGHT, NARROWEST = 2.3, 3.5, 8.0
@@ -67,8 +61,8 @@ def outcome_map(
         if place % across == 0:
             panel.set_ylabel(ylabel)
     handles = [
-        Line2D([], [], linestyle="", marker=marker, color=colour, label=LABELS[name])
-        for name, (colour, marker) in LOOKS.items()
+        Line2D([], [], **look.keywords())
+        for name, look in LOOKS.items()
         if (outcomes["outcome"] == name).any()
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=len(LOOKS))
@@ -76,12 +70,12 @@ def outcome_map(
     return figure
 
 
-def _marked(panel: Axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, **look: Any) -> None:
+def _marked(panel: Axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, **more: Any) -> None:
     """Draw a mark a row at (x, y), by its outcome."""
-    for outcome, (colour, marker) in LOOKS.items():
+    for outcome, look in LOOKS.items():
         some = rows["outcome"] == outcome
         if some.any():  # an empty line that is not clipped has no place for the layout
-            panel.plot(x[some], y[some], marker, color=colour, label=LABELS[outcome], **look)
+            panel.plot(x[some], y[some], **look.keywords(), **more)
 
 
 def _grid(count: int) -> tuple[Figure, list[Axes], int]:
@@ -96,17 +90,18 @@ def _grid(count: int) -> tuple[Figure, list[Axes], int]:
     return figure, panels[:count], across
 
 
-def listed(outcomes: pd.DataFrame, cases: Sequence[str], *, title: str) -> Figure:
+def listed(outcomes: pd.DataFrame, cases: Iterable[str], *, title: str) -> Figure:
     """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
-    place = {name: len(cases) - 1 - i for i, name in enumerate(cases)}
+    names = list(dict.fromkeys(cases))
+    place = {name: len(names) - 1 - i for i, name in enumerate(names)}
     models = [model for model in ORDER if (outcomes["model"] == model).any()]
     across = {model: i for i, model in enumerate(models)}
-    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(cases))
+    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(names))
     panel = figure.subplots()
     _marked(panel, outcomes, outcomes["model"].map(across), outcomes["case"].map(place), markersize=6.0)
     panel.set_xticks(range(len(models)), labels=[_broken(model) for model in models], fontsize=7.5)
     panel.set_yticks(list(place.values()), labels=list(place), fontsize=7.5)
-    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(cases) - 0.3))
+    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(names) - 0.3))
     figure.legend(loc="outside lower center", ncols=len(LOOKS))
     figure.suptitle(title)
     return figure

@@ -22,12 +22,11 @@ from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Part, Tables
+from studies.engine.study import Answer, Part, Row, Tables
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
 from studies.stability import family, maps
-from studies.stability.geometry import as_mechanism
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
@@ -69,33 +68,29 @@ def _rotation_error(motion: Motion, reference: Motion) -> float:
 
 
 def _energy_gain(motion: Motion) -> float:
-    """Return the largest gain of the balance of energies over the stored one at the start [1]; NaN without
-    a record."""
+    """Return the largest gain of the balance of energies over the stored one at the start [1]."""
     stored = motion.kinetic_energy + motion.strain_energy
     balance = stored + motion.gravity_energy - motion.work + motion.dissipated
-    return float((balance / balance[0] - 1.0).max()) if len(balance) else math.nan
+    return float((balance / balance[0] - 1.0).max())
 
 
-def _judged(
-    name: str, design: Design, reference: Motion, *, start: float, duration: float, step: float
-) -> dict[str, Any]:
-    """Return the verdict on the column `name` for one design and step, with its energy_gain [1]."""
+def _judged(name: str, design: Design, reference: Motion, **asked: Any) -> Row:
+    """Return the verdict on the column `name` for one design, with its energy_gain [1].
+
+    asked: start [rad], duration and step [s] of the motion.
+    """
     settings, integrator = SWINGING[name]
-    most, gains = MOST_GAIN_OF_OTHERS if integrator else MOST_GAIN, [math.nan]
 
     def attempt() -> family.Found:
-        motion = answer_release(
-            design, settings, start=start, duration=duration, step=step, records=RECORDS,
-            integrator=integrator,
-        )  # fmt: skip
-        gains.append(_energy_gain(motion))
+        motion = answer_release(design, settings, records=RECORDS, integrator=integrator, **asked)
         if not len(motion.time):  # statics does not reach the start
-            return family.Found(error=0.0, reached=False, reason=motion.message, counters=motion.counters)
-        fault = f"the energy grows by {gains[-1]:.2g} of itself" if gains[-1] > most else ""
-        error = _rotation_error(motion, reference)
-        return family.said(motion, error, checked=name not in family.UNCHECKED, fault=fault)
+            return family.Found.of(motion, 0.0)
+        gain = _energy_gain(motion)
+        much = gain > (MOST_GAIN_OF_OTHERS if integrator else MOST_GAIN)
+        fault = f"the energy grows by {gain:.2g} of itself" if much else ""
+        return family.Found.of(motion, _rotation_error(motion, reference), fault=fault, energy_gain=gain)
 
-    return {"model": name, **family.judged(attempt, TOLERANCE), "energy_gain": gains[-1]}
+    return {"model": name, **family.judged(attempt, TOLERANCE, name)}
 
 
 STEPS = (1e-7, 1e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)
@@ -238,7 +233,7 @@ def _ratios() -> Iterator[tuple[str, str, float, Design]]:
     yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
     without = [name for name in given.effects.names if name != STRIP_INERTIA]
     yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
-    cross = as_mechanism(given, START_DEG)
+    cross = family.as_mechanism(given, START_DEG)
     for factor in STIFFER:  # of another material
         second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
         stiffer = replace(cross, strips=(cross.strips[0], second))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from studies.stability.frames import EULER, PUBLISHED, load_ratio, tip
+from studies.stability.questions import EULER, PUBLISHED, load_ratio, tip
 from tests import gates
 
 

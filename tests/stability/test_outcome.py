@@ -82,7 +82,7 @@ def test_summary_reads_the_stored_counts(tmp_path):
     store.save_tables(
         "stability/geometry",
         {"counts": columns._counted(pd.DataFrame(rows))},
-        module="studies.stability.geometry",
+        module="studies.stability.choices:GEOMETRY",
         cases=("cross_axis_pivot",),
         command="test",
         elapsed=0.0,

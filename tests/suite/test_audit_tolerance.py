@@ -54,11 +54,11 @@ CHANGED = {
 def test_every_change_is_measured(change, monkeypatch):
     """Requirement: a scene whose answer differs in one thing by a tenth has that change and no other."""
     given = {each.name: getattr(ANSWER, each.name) for each in fields(Answer)}
-    monkeypatch.setattr(scenes, "answered", lambda *_: Answer(**(given | CHANGED[change])))
+    monkeypatch.setattr(Run, "answer", lambda *_: Answer(**(given | CHANGED[change])))
     monkeypatch.setattr(scenes, "size_of", lambda *_: SIZE)
     design, run = (
         named_case("cross_axis_pivot"),
         Run(settings=SplineSettings(control_points=6), duration=1.0, step=1.0),
     )
-    found = scenes.outcome(Variant(dropped=(), effects=design.effects), design, run, ANSWER)
+    found = run.outcome(Variant(dropped=(), effects=design.effects), design, ANSWER)
     assert found.changes == pytest.approx({name: 0.1 if name == change else 0.0 for name in CHANGED})

@@ -6,7 +6,6 @@ across at one load. What the theories leave
 out is accounted for in `model_form/account`, whose answer with all of it is drawn as `complete`.
 """
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -19,53 +18,29 @@ from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_model import guide
 from studies.engine.study import Answer, Claim, Part, Study, Tables, records
-from studies.model_form.account import (
-    BEAM,
-    BOTH,
-    CASE,
-    CLAMPED,
-    CLOSE,
-    COARSE,
-    LOAD,
-    SHEARED,
-    SHELL,
-    accounted,
-    guide_design,
-    guide_shape,
-)  # fmt: skip
-from studies.model_form.account import LOOKS as WORDS
-from studies.published.case import loaded
+from studies.published.account import BOTH, CASE, CLOSE, LOAD, SHELL, accounted, guide_shape
+from studies.published.account import LOOKS as WORDS
+from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.progress import measure
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
 
-#: Displacement of the stage [m] by solids of 3 mm, the finest in print, and the strips' length [m].
-TRUTH, LENGTH = 48.6102e-3, 0.25
-#: Theory, displacement [m] at that load, time a state [s], as printed in `comparison` of their repository
-#: (single_case_report.md; of closed forms preset_data/comparison_runtime_all.md) and, solids, in
-#: fea_models/3d/temp/MESH_REFINEMENT_COMPARISON.md.
-THEIRS = (
-    ("linear beam", 0.208333 * LENGTH, 3.73e-7),
-    ("constraint model", 0.208333 * LENGTH, 3.45e-6),
-    ("pseudo-rigid body", 0.165142 * LENGTH, 8.4e-5),
-    ("same, optimised", 0.196052 * LENGTH, 9.6e-5),
-    ("guided beam", 0.199738 * LENGTH, 3.167e-3),
-    ("boundary values", 0.200513 * LENGTH, 1.537),
-    ("beam elements", 0.191514 * LENGTH, 0.573),
-    ("solids, 10 mm", COARSE, 40.8),
-    ("7.5 mm", 48.4389e-3, 85.9),
-    ("5 mm", 48.5085e-3, 229.6),
-    ("4 mm", 48.5761e-3, 523.5),
-    ("3 mm", TRUTH, 1762.7),
-)
+#: Theory or size of solids, displacement [m] at that load, and time a state [s].
+THEIRS = printed(CASE)
+#: Displacement by solids of 3 mm, the finest in print [m].
+TRUTH = float(THEIRS[-1][1])
 SETTINGS: dict[str, tuple[Settings, ...]] = {
     "spline": tuple(SplineSettings(control_points=n) for n in (4, 5, 6, 8, 12)),
     "fe": tuple(FeSettings(elements=n) for n in (2, 4, 8, 20, 40)),
     "fe-shear": tuple(FeSettings(elements=n, element="reissner") for n in (4, 8, 20, 40)),
 }
 #: Kinds of answer that each is asked for.
-KINDS = {"spline": (BEAM, CLAMPED, BOTH, SHEARED), "fe": (BEAM, CLAMPED, BOTH), "fe-shear": (SHEARED,)}
+KINDS = {
+    "spline": (BEAM, CLAMPED_WIDTH, BOTH, SHEARED),
+    "fe": (BEAM, CLAMPED_WIDTH, BOTH),
+    "fe-shear": (SHEARED,),
+}
 FINEST = {("spline", 12), ("fe", 40), ("fe-shear", 40)}
 #: Beams a strip of the constraint model, and steps to the load.
 BEAMS, STEPS = (1, 4, 8), 10
@@ -82,7 +57,7 @@ def _asked() -> Iterable[tuple[str, Settings, str]]:
 
 def _solved(model: str, settings: Settings, answer: str) -> Answer:
     """Return error and whole time of a state: the design built in the model, and solved up to the load."""
-    design = loaded(guide_design(), answer, LOAD)
+    design = published(CASE).frame(LOAD, answer).design
     timing = measure(lambda: put(design, settings).static_path(), repeat=REPEATS)
     found = float(answer_static(design, settings).bodies["stage"][-1][1])
     count = settings.points if isinstance(settings, SplineSettings) else settings.elements
@@ -95,7 +70,7 @@ def _constrained(count: int) -> Answer:
     shape = guide_shape()
     strips = guide(shape["apart"], 1.0 / shape["thickness"], count)
     timing = measure(lambda: strips.pushed(np.array([0.0, LOAD]), steps=STEPS), repeat=REPEATS)
-    found = float(timing.result[1]) * math.dist(guide_design().strips[0].start, guide_design().strips[0].end)
+    found = float(timing.result[1]) * shape["length"]
     return _rows("constraint model", BEAM, f"{count} beams", count, found, timing.median)
 
 
@@ -117,9 +92,9 @@ def _theirs() -> Answer:
 #: Model and kind of answer -> label, which of its points it stands beside, how far [pt], and on which side.
 LINES = {
     ("spline", BEAM): ("splines,\nbeam", 0, (-8, -36), "right"),
-    ("spline", CLAMPED): ("splines,\nclamped width", 2, (-5, -21), "right"),
+    ("spline", CLAMPED_WIDTH): ("splines,\nclamped width", 2, (-5, -21), "right"),
     ("fe", BEAM): ("elements, beam", 0, (4, 8), "right"),
-    ("fe", CLAMPED): ("elements,\nclamped width", 1, (8, -2), "left"),
+    ("fe", CLAMPED_WIDTH): ("elements,\nclamped width", 1, (8, -2), "left"),
     ("spline", SHEARED): ("splines,\nclamped width\nand shear", 2, (-5, -28), "right"),
     ("fe-shear", SHEARED): ("elements, clamped\nwidth and shear", 3, (8, -9), "left"),
     ("constraint model", BEAM): ("constraint model,\n1, 4, 8 beams", 0, (5, 3), "left"),
@@ -202,7 +177,7 @@ def _floors() -> Answer:
 
 
 STUDY = Study(
-    cases=(f"published/cases/{CASE}",),
+    cases=(f"published/cases/{CASE}", f"published/tables/{CASE}"),
     parts=(
         Part(at=_asked, ask=_solved, alone=True),
         Part(at=lambda: BEAMS, ask=_constrained, alone=True),

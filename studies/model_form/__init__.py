@@ -1,1 +1,0 @@
-"""What both models leave out of a real strip."""
