@@ -42,8 +42,7 @@ from studies.commands.sized import as_document, question, readable
 from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search, starts
-from studies.design.programme import Sizing
-from studies.design.task import OBJECTIVES, Task, usual_task
+from studies.design.task import OBJECTIVES, Sizing, Task, usual_task
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar

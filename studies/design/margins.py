@@ -9,6 +9,7 @@ is of second order.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -53,7 +54,7 @@ def resized(name: str, task: Task, former: Outcome) -> dict[str, Any]:
     one, and its objective with the effects; `error` the largest difference of the new one to the elements.
     """
     there = _with(former.problem, SECTIONS).quantities()
-    new = task.begun_at(with_sections(task.start))
+    new = replace(task, start=with_sections(task.start))
     found = best(search(new, np.vstack((former.at[:-1], starts(new, MORE))), silent))
     row = {
         "question": name,

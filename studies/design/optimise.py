@@ -13,7 +13,8 @@ from scipy.stats import qmc
 
 from studies.cases.problem import Problem
 from studies.design.evaluate import CENTRE_SHIFT, Answers
-from studies.design.programme import Active, Programme, Sizing, conditions
+from studies.design.programme import Active, Programme, conditions
+from studies.design.task import Sizing
 from studies.kinds import Array, Progress
 from studies.record.progress import watched
 

@@ -15,11 +15,8 @@ import numpy as np
 from scipy.optimize import nnls
 
 from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers, PathEnds
-from studies.design.numbers import NumbersTask
-from studies.design.task import Task
+from studies.design.task import Sizing
 from studies.kinds import Array
-
-Sizing = Task | NumbersTask
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3

@@ -1,16 +1,24 @@
 """A sizing question: what is to be least, what must hold, between which bounds; and those of the study."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
 from studies.design import evaluate
-from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIABLES, VARIATION, Answers, sides_of
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    STATIONS,
+    VARIABLES,
+    VARIATION,
+    Answers,
+    held_states,
+    sides_of,
+)
 from studies.kinds import Array
 
 #: What tables call them.
@@ -21,17 +29,39 @@ OBJECTIVES: Mapping[str, str] = {
     CENTRE_SHIFT: "largest displacement of the body's point in the strips' crossing at rest [m]",
     VARIATION: "largest change of the rotational stiffness, relative to that at rest [1]",
 }
-#: Fibre stresses of a pivot's state: two strips, both fibres.
-FIBRES = 4 * len(STATIONS)
 
 
-class Bounded:
-    """A question whose N variables have `bounds`: lowest and highest value of each by its name.
+class Sizing:
+    """A question about a design: which of N variables make an objective least.
 
-    columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
+    Attributes:
+        start: the design to compare with. bounds: lowest and highest value of each variable by its name.
+        objective: what is to be least, one of `objectives`.
+        stiffness: wanted: of the body as it begins to turn, under the loads [N m / rad], or its travel [m].
+        allowable_stress: of the extreme fibres, at the states of `held_states` [Pa].
+        limits: largest value of an objective that is not the one to be least, by its name.
+        own: variables of the start (N,).
+        columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
     """
 
+    start: Any
     bounds: Mapping[str, tuple[float, float]]
+    objective: str
+    stiffness: float
+    allowable_stress: float
+    limits: Mapping[str, float]
+    #: Properties of one kind, fields of the other.
+    own: Any
+    objectives: Any
+    columns: Any
+    problem: Callable[[Array], Any]
+    quantities: Callable[[Answers], dict[str, float]]
+    by_elements: Callable[[Any], dict[str, float]]
+
+    @property
+    def held(self) -> str:
+        """What the wanted stiffness is called: where the bodies follow the loads, how far the body goes."""
+        return "travel" if self.start.rotation is None else "stiffness"
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -48,24 +78,43 @@ class Bounded:
         """Widths of the bounds (N,), 0 of a variable that is held."""
         return np.array([high - low for low, high in self.bounds.values()])
 
+    @property
+    def fibres(self) -> int:
+        """Fibre stresses that are held: both fibres of the strips, at `STATIONS` of the held states."""
+        return 2 * len(self.start.strips) * len(STATIONS) * len(held_states(self.start))
+
+    @property
+    def states(self) -> int:
+        """States behind the first, of all sides."""
+        return int(self.start.increments * len(sides_of(self.start)))
+
     def values(self, y: Array) -> Array:
         """Return the variables (N,) in their units, of y in [0, 1]^N, or (N + 1,)."""
         return self.low + self.span * y[: len(self.span)]
 
+    def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
+        """Return rows of the form alone, their Jacobian by the scaled variables, and their changes over
+        relative ones of their limits by name: none unless a kind of design has some."""
+        return np.zeros(0), np.zeros((0, len(values))), {}
+
+    def answers(self, values: Array) -> Answers:
+        """Return what the design with these variables (N,) answers; errors as of `evaluate.answers`."""
+        return evaluate.answers(self.problem(values))
+
+    def case(self) -> Answers:
+        """Return what the start answers."""
+        return self.answers(self.own)
+
 
 @dataclass(frozen=True, kw_only=True)
-class Task(Bounded):
-    """One question about one pivot.
+class Task(Sizing):
+    """A question about a pivot: designs have the material, range (`rotation`), increments and loads of the
+    start.
 
     Args:
-        start: the design to compare with; all have its material, range (`rotation`), increments and loads.
-        objective: a key of `OBJECTIVES`.
-        stiffness: wanted rotational stiffness at rotation 0, under the loads [N m / rad].
-        allowable_stress: of the extreme fibres at the ends of the range, and before it under loads [Pa].
-        bounds: lowest and highest value of every variable in the order of `VARIABLES`, SI and radians.
+        bounds: in the order of `VARIABLES`, SI and radians.
         least_slenderness: of the strips, L / t [1]: below, shear counts, which the strips do not have.
         largest_aspect: of the strips, b / L [1]: above, a strip is a plate.
-        limits: largest value of an objective that is not the one to be least, by its name.
     """
 
     start: Problem
@@ -77,10 +126,8 @@ class Task(Bounded):
     largest_aspect: float
     limits: Mapping[str, float] = field(default_factory=dict)
 
-    #: What may be made least of a pivot, what the wanted stiffness is called, and what tables show.
-    objectives: ClassVar = tuple(OBJECTIVES)
-    held: ClassVar = "stiffness"
-    columns: ClassVar = (
+    objectives = tuple(OBJECTIVES)
+    columns = (
         ("L mm", 1e3, "9.3f"),
         ("incl. deg", math.degrees(1.0), "11.3f"),
         ("crossing", 1.0, "10.4f"),
@@ -89,24 +136,9 @@ class Task(Bounded):
     )
 
     @property
-    def sides(self) -> tuple[float, ...]:
-        """Signs of the rotations that are solved, as of `sides_of`."""
-        return sides_of(self.start)
-
-    @property
     def own(self) -> Array:
         """Variables of the start (5,)."""
         return variables_of(self.start)
-
-    @property
-    def fibres(self) -> int:
-        """Fibre stresses that are held: at the end of each side, under loads before the body turns too."""
-        return FIBRES * (1 if len(self.sides) == 1 else len(self.sides) + 1)
-
-    @property
-    def states(self) -> int:
-        """States behind the first, of all sides."""
-        return self.start.increments * len(self.sides)
 
     def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
         """Return the rows of slenderness, L / t, and of aspect, b / L, linear in the variables (5,), over the
@@ -124,10 +156,6 @@ class Task(Bounded):
         slender = length - self.least_slenderness * thickness
         return np.array([slender, self.largest_aspect * length - width]) / whole, rows, changes
 
-    def begun_at(self, start: Problem) -> "Task":
-        """Return the same question about another design."""
-        return replace(self, start=start)
-
     def problem(self, variables: Array) -> Problem:
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""
         return varied(self.start, variables)
@@ -135,10 +163,6 @@ class Task(Bounded):
     def case(self) -> Answers:
         """Return what the start answers."""
         return evaluate.answers(self.start)
-
-    def answers(self, values: Array) -> Answers:
-        """Return what the design with these variables (5,) answers; errors as of `answers`."""
-        return evaluate.answers(self.problem(values))
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name."""

@@ -8,11 +8,19 @@ import pytest
 from studies.cases.effects import Effects
 from studies.design import margins
 from studies.design import task as questions
-from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds, answers, by_elements, of_spline
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    STATIONS,
+    VARIATION,
+    PathEnds,
+    answers,
+    by_elements,
+    of_spline,
+)
 from studies.design.margins import off, resized
 from studies.design.optimise import NEARLY, best, feasible, numbered, optimise, search, starts
 from studies.design.programme import OUTSIDE, Programme, gradient_error
-from studies.design.task import FIBRES, OBJECTIVES, variables_of
+from studies.design.task import OBJECTIVES, variables_of
 from studies.effects.beyond import with_sections
 from studies.record.progress import silent
 from tests import gates
@@ -229,7 +237,7 @@ def test_gradients_under_a_sideways_load(own):
     )
     start = replace(table_one, effects=force, increments=4, rotation=0.3)
     found = answers(start)
-    assert found.stress.shape == (3 * FIBRES,)
+    assert found.stress.shape == (3 * 4 * len(STATIONS),)
     assert found.rotation.tolist() == pytest.approx(
         [0.0, *(side * k / 4 for side in (0.3, -0.3) for k in range(1, 5))]
     )
