@@ -11,7 +11,7 @@ import numpy as np
 
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
 from studies.answers.reference import reference
-from studies.cases.keys import MOMENTS, SIDES
+from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.design.evaluate import STRESS, VARIATION, Answers, answers
 from studies.design.task import Sizing
@@ -69,11 +69,8 @@ def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any
     found = copy.deepcopy(dict(document))
     if not any(side.name in text for text in texts for side in SIDES):
         return found
-    area, second = (key.name for key in MOMENTS)
     for table in (found.get("section", {}), *found["strips"]):
-        if area in table and second in table:
-            thickness = math.sqrt(12.0 * table.pop(second) / table[area])
-            table |= {"width_m": table.pop(area) / thickness, "thickness_m": thickness}
+        plan.to_sides(table)
     return found
 
 

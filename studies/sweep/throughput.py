@@ -108,7 +108,7 @@ def chunk_cost(cuts: pd.DataFrame, kind: str) -> float:
 def _pool_of(kind: str, count: int) -> Iterator[Pool]:
     """Yield workers of a kind, those of Dask with a cluster of their own."""
     if kind == "dask":
-        with loopback(count) as own, cluster(own.address, workers=count) as pool:
+        with loopback(count) as own, cluster(own.scheduler_address, workers=count) as pool:
             yield pool
     else:
         with (threads if kind == "threads" else processes)(count) as pool:

@@ -4,24 +4,18 @@ Threads are for the compiled batch, which needs no lock, processes for the rest.
 """
 
 import asyncio
-import json
 import logging
 import multiprocessing
 import os
 import signal
-import subprocess
-import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from studies.errors import BadInput
-from studies.record.source import ROOT
 from studies.sweep.parts import suite
 
 
@@ -143,60 +137,21 @@ def _require_scheduler(address: str, timeout: float) -> None:
         )
 
 
-#: Longest wait for the scheduler to say where it listens [s].
-START = 30.0
-_QUIET = ("--no-dashboard", "--protocol", "tcp", "--host", "127.0.0.1")
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Loopback:
-    """Address of the scheduler, tcp://127.0.0.1:PORT, its process and those of the workers."""
-
-    address: str
-    scheduler: "subprocess.Popen[bytes]"
-    workers: tuple["subprocess.Popen[bytes]", ...]
-
-
 @contextmanager
-def loopback(workers: int) -> Iterator[_Loopback]:
-    """Yield a cluster of that many workers with one thread each; all processes end with the context.
+def loopback(workers: int) -> Iterator[Any]:
+    """Yield a cluster on this machine, Dask's own, of that many workers with one thread each, which has a
+    `scheduler_address`; all processes end with the context."""
+    from distributed.deploy.subprocess import SubprocessCluster
 
-    Raises:
-        BadInput: the scheduler does not come up.
-    """
-    running: list[subprocess.Popen[bytes]] = []
-    with tempfile.TemporaryDirectory() as folder:
-        found = Path(folder) / "scheduler.json"
-        try:
-            running.append(_started("scheduler", "--port", "0", "--scheduler-file", str(found)))
-            address = _address(found, running[0])
-            for number in range(workers):
-                options = ("--nthreads", "1", "--no-nanny", "--local-directory", f"{folder}/{number}")
-                running.append(_started("worker", address, *options))
-            yield _Loopback(address=address, scheduler=running[0], workers=tuple(running[1:]))
-        finally:
-            for process in running:  # they keep nothing, and take seconds to end when asked to
-                process.kill()
-            for process in running:
-                process.wait()
-
-
-def _started(*words: str) -> "subprocess.Popen[bytes]":
-    return subprocess.Popen(
-        [sys.executable, "-m", "dask", *words, *_QUIET],
-        cwd=ROOT,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-
-
-def _address(found: Path, scheduler: "subprocess.Popen[bytes]") -> str:
-    """Return where the scheduler listens, once it has written it."""
-    end = time.monotonic() + START
-    while time.monotonic() < end and scheduler.poll() is None:
-        try:
-            return str(json.loads(found.read_text(encoding="utf-8"))["address"])
-        except (OSError, ValueError):
-            time.sleep(0.05)
-    raise BadInput(f"scheduler: got no address within {START:g} s, expected one on 127.0.0.1")
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        SubprocessCluster(
+            scheduler_kwargs={"dashboard": False, "scheduler_file": f"{folder}/scheduler.json"},
+            worker_class="distributed.Worker",
+            n_workers=workers,
+            threads_per_worker=1,
+            worker_kwargs={"dashboard": False, "local_directory": folder},
+            silence_logs=logging.CRITICAL,
+        ) as own,
+    ):
+        yield own
