@@ -42,7 +42,7 @@ from studies.commands.sized import as_document, question, readable
 from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search, starts
-from studies.design.task import OBJECTIVES, Sizing, Task, usual_task
+from studies.design.task import OBJECTIVES, Sizing, Task
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
@@ -228,7 +228,7 @@ def _task(start: Problem, arguments: argparse.Namespace) -> Task:
         given = getattr(arguments, attribute)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
-    return usual_task(
+    return Task.usual(
         start,
         bounds,
         objective=arguments.objective,

@@ -28,7 +28,7 @@ from studies.answers.validity import Strip, anticlastic_factor, strips_of
 from studies.cases.effects import Effects
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
-from studies.design import chart_figures
+from studies.design.figures import CHARTS
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 
@@ -292,5 +292,5 @@ STUDY = Study(
             most=0.01,
         ),
     ),
-    figures=chart_figures.DRAWN,
+    figures=CHARTS,
 )

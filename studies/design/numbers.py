@@ -76,20 +76,11 @@ def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any
 
 def _value(document: Mapping[str, Any], key: str) -> float | None:
     """Return the number at a key, of a strip the one of all where it has none; None where there is none."""
-    section, *way = key.split(".")
-    place: Any = document.get(section, {})
-    for name in way:
-        if isinstance(place, list) and name not in plan.PARTS:
-            place = next((part for part in place if part.get("name") == name), {})
-        elif isinstance(place, list):
-            place = place[plan.PARTS[name]]
-        else:
-            place = place.get(name)
-        if place is None:
-            shared = [document.get(each, {}).get(way[-1]) for each in ("section", "material")]
-            place = next((each for each in shared if each is not None), None)
-            break
-    return float(place) if isinstance(place, int | float) else None
+    found, name = plan.value_at(document, key), key.rpartition(".")[2]
+    for shared in ("section", "material"):
+        if found is None:
+            found = document.get(shared, {}).get(name)
+    return float(found) if isinstance(found, int | float) else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,8 +128,7 @@ class NumbersTask(Sizing):
         """Return the case with these values (N,)."""
         document = copy.deepcopy(dict(self.document))
         for number, value in zip(self.numbers, values, strict=True):
-            for key in number.keys:
-                plan.put(document, key, float(value))
+            plan.put(document, dict.fromkeys(number.keys, float(value)))
         return document
 
     def problem(self, values: Array) -> Mechanism:

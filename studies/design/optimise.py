@@ -13,7 +13,7 @@ from scipy.stats import qmc
 
 from studies.cases.problem import Problem
 from studies.design.evaluate import CENTRE_SHIFT, Answers
-from studies.design.programme import Active, Programme, conditions
+from studies.design.programme import Active, Programme
 from studies.design.task import Sizing
 from studies.kinds import Array, Progress
 from studies.record.progress import watched
@@ -249,7 +249,7 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
         return None
     at = np.append(at[: len(task.span)], _t(programme, found))
     violation = _violation(programme, at)
-    active, residual = conditions(programme, at)
+    active, residual = programme.conditions(at)
     converged = violation <= FEASIBLE and residual <= STATIONARY
     return Outcome(
         start=start,

@@ -31,18 +31,11 @@ def _baseline(name: str) -> tuple[Problem, Answers]:
     return problem, answers(problem)
 
 
-def _task(question: questions.Question, **limits: float) -> questions.Task:
-    """Return the task of a question at its baseline's own stiffness, and largest stress."""
-    start, own = _baseline(question.baseline)
-    largest = float(np.abs(own.stress).max())
-    return questions.task_of(start, question, stiffness=own.stiffness, stress=largest, **limits)
-
-
 @cache
 def _found(name: str) -> tuple[questions.Task, list[Outcome]]:
     """Return what a question asks and where its starts have led."""
     question = questions.QUESTIONS[name]
-    task = _task(question)
+    task = question.task(*_baseline(question.baseline))
     return task, search(task, starts(task, questions.STARTS), silent)
 
 
@@ -99,10 +92,10 @@ def _trade() -> list[dict[str, Any]]:
 
     It lies between the optima of both objectives, and begins at the last one too.
     """
-    rows: list[dict[str, Any]] = []
+    question, rows = questions.QUESTIONS[questions.WIDE[0]], []
     begin = [_optimum(name).at[:-1] for name in questions.WIDE]
     for limit in questions.TRADE:
-        task = _task(questions.QUESTIONS[questions.WIDE[0]], variation=limit)
+        task = question.task(*_baseline(question.baseline), variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:-1]]

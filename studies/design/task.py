@@ -13,6 +13,7 @@ from studies.design import evaluate
 from studies.design.evaluate import (
     CENTRE_SHIFT,
     STATIONS,
+    STRESS,
     VARIABLES,
     VARIATION,
     Answers,
@@ -135,6 +136,24 @@ class Task(Sizing):
         ("b mm", 1e3, "9.3f"),
     )
 
+    @classmethod
+    def usual(
+        cls, start: Problem, bounds: Mapping[str, tuple[float, float]] | None = None, **asked: Any
+    ) -> "Task":
+        """Return the question about a design within bounds as far as a designer may leave it, or those that
+        are given, with strips no stubbier than its own, and no wider than it is long; `asked` are the other
+        arguments."""
+        length, _, _, thickness, width = map(float, variables_of(start))
+        usual = {
+            "length": (0.5 * length, length),
+            "inclination": (math.radians(20.0), math.radians(70.0)),
+            "crossing_ratio": (0.1, 0.9),
+            "thickness": (0.1 * thickness, 1.6 * thickness),
+            "width": (0.2 * width, length),
+        }
+        within = usual | dict(bounds or {})
+        return cls(start=start, bounds=within, least_slenderness=length / thickness, **asked)
+
     @property
     def own(self) -> Array:
         """Variables of the start (5,)."""
@@ -171,29 +190,6 @@ class Task(Sizing):
     def by_elements(self, design: Problem) -> dict[str, float]:
         """Return what the finite elements say of it; NoReference where they do not reach its range's end."""
         return evaluate.by_elements(design)[0].quantities()
-
-
-def _usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
-    """Return how far a designer may leave a design where no bounds are given [m, rad, 1, m, m].
-
-    The slenderness may not fall below the start's own, nor the width exceed the start's length.
-    """
-    length, _, _, thickness, width = map(float, variables_of(start))
-    return {
-        "length": (0.5 * length, length),
-        "inclination": (math.radians(20.0), math.radians(70.0)),
-        "crossing_ratio": (0.1, 0.9),
-        "thickness": (0.1 * thickness, 1.6 * thickness),
-        "width": (0.2 * width, length),
-    }
-
-
-def usual_task(start: Problem, bounds: Mapping[str, tuple[float, float]] | None = None, **asked: Any) -> Task:
-    """Return the question about a design within the usual bounds, or those that are given, with strips that
-    are no stubbier than its own; `asked` are the other arguments of `Task`."""
-    length, _, _, thickness, _ = map(float, variables_of(start))
-    within = _usual_bounds(start) | dict(bounds or {})
-    return Task(start=start, bounds=within, least_slenderness=length / thickness, **asked)
 
 
 def variables_of(problem: Problem) -> Array:
@@ -241,6 +237,18 @@ class Question:
     aspect: float = 1.0
     stress: float | None = None
 
+    def task(self, start: Problem, own: Answers, *, variation: float | None = None) -> Task:
+        """Return what is asked beside that design at the stiffness of its own answers, with `variation` as
+        the largest one of the stiffness [1] where it is given."""
+        return Task.usual(
+            start,
+            objective=self.objective,
+            stiffness=own.stiffness,
+            allowable_stress=own.largest(STRESS) if self.stress is None else self.stress,
+            largest_aspect=self.aspect,
+            limits={} if variation is None else {VARIATION: variation},
+        )
+
 
 QUESTIONS: Mapping[str, Question] = {
     "least centre shift": Question(baseline=TABLE_ONE, objective=CENTRE_SHIFT),
@@ -265,21 +273,3 @@ def baseline(name: str = TABLE_ONE) -> Problem:
     given = named_case(BASELINES[name])
     rotation = math.radians(RANGE_DEG) if name == TABLE_ONE else given.rotation
     return replace(given, rotation=rotation, increments=INCREMENTS)
-
-
-def task_of(start: Problem, question: Question, *, stiffness: float, stress: float, **limits: float) -> Task:
-    """Return the task of a question, at the stiffness of the design to compare with.
-
-    Args:
-        start: that design, with its own stiffness at rest [N m / rad] and largest stress [Pa].
-        question: of what is to be least.
-        limits: largest variation of stiffness, as `variation` [1].
-    """
-    return usual_task(
-        start,
-        objective=question.objective,
-        stiffness=stiffness,
-        allowable_stress=stress if question.stress is None else question.stress,
-        largest_aspect=question.aspect,
-        limits={VARIATION: limits["variation"]} if limits else {},
-    )

@@ -54,10 +54,9 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     table = {points.POINT: np.arange(start, start + count), **columns}
     table |= {points.STATUS: status, points.REASON: reason}
     arrays = [pa.array(values) for values in table.values()]
-    lost = np.array([each != CONVERGED for each in status])
     for name, quantity in points.stored(task).items():
         kind = pa.int64() if quantity.whole else pa.float64()
-        arrays.append(pa.array(found[name], type=kind, mask=lost, from_pandas=True))
+        arrays.append(pa.array(found[name], type=kind, mask=np.isnan(found[name])))
     return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
@@ -154,7 +153,7 @@ def _paths(
         stress=batch.strain * given["youngs_modulus"][:, None],
         defect=batch.moment_defect,
         unstable=unstable,
-        iterations=(1 + task.both_sides) * batch.iterations,
+        iterations=(1 + task.options["both_sides"]) * batch.iterations,
         shift=centre_shift(_crossing(given), batch.rotation, batch.centre),
         places={},
         strips=(_strip(given).bent(batch.strain.max(axis=1)),),

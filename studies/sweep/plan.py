@@ -22,13 +22,12 @@ class Axis:
     """One key that is varied: over listed values, or from `low` to `high` in the file's unit.
 
     Attributes:
-        key: as in DESIGNS.toml. rule: for its values.
+        key: as in DESIGNS.toml.
         values: listed; None for a range.
         points: of a range in a grid [1]. log: even steps of the logarithm.
     """
 
     key: str
-    rule: Rule
     values: tuple[Any, ...] | None = None
     low: float = 0.0
     high: float = 0.0
@@ -59,8 +58,8 @@ class Task:
         where: file that refusals name. case: document of the case with what is fixed by the sweep.
         model: as on the command line. settings: keywords of its settings.
         kind: of the analysis, one of `KINDS`.
-        both_sides: a static path to the rotation and one to its opposite.
-        options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
+        options: of a static path (`both_sides`: also to the opposite rotation), of modes (`rotation` [rad],
+            `held`, `count`) or of a release (`duration` [s], ...).
         keys: that are varied. quantities: names of what is stored.
         batch: whether the compiled paths of many pivots at once take the designs.
     """
@@ -70,7 +69,6 @@ class Task:
     model: str
     settings: dict[str, Any]
     kind: str
-    both_sides: bool
     options: dict[str, Any]
     keys: tuple[str, ...]
     quantities: tuple[str, ...]
@@ -79,7 +77,7 @@ class Task:
     def design(self, values: Mapping[str, Any]) -> Design:
         """Return one design of the sweep; CaseError where a value is out of its range."""
         document = copy.deepcopy(self.case)
-        put_all(document, values)
+        put(document, values)
         return design_of(self.where, document)
 
     def settings_of(self, values: Mapping[str, Any]) -> Settings:
@@ -178,7 +176,7 @@ def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     return {key: rule for key, rule in found.items() if rule.kind != "text"}
 
 
-def put(document: dict[str, Any], key: str, value: Any) -> None:
+def _put(document: dict[str, Any], key: str, value: Any) -> None:
     """Set one key of a case's document in place; `value` in the file's unit.
 
     Of effects that a list of effects leaves out the parameters go with them.
@@ -198,6 +196,15 @@ def put(document: dict[str, Any], key: str, value: Any) -> None:
     _at(document, way)[last] = value
 
 
+def value_at(document: Mapping[str, Any], key: str) -> Any:
+    """Return what stands at a key of a case's document, None where there is nothing."""
+    *way, last = key.split(".")
+    if last in PARTS and len(way) > 1:
+        pair = value_at(document, ".".join(way))
+        return None if pair is None else pair[PARTS[last]]
+    return _at(copy.deepcopy(dict(document)), way).get(last)
+
+
 def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
     """Return the table that the names lead to; of an array the one of that name."""
     place: Any = document
@@ -210,12 +217,12 @@ def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
     return found
 
 
-def put_all(document: dict[str, Any], values: Mapping[str, Any]) -> None:
+def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
     """Set the keys of one design in place, its list of effects first, a slenderness last; settings are not of
     the document."""
     for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
         if key != SLENDERNESS and not is_setting(key):
-            put(document, key, value)
+            _put(document, key, value)
     if SLENDERNESS in values:
         strip = document["strip"]
         to_sides(strip)

@@ -271,7 +271,7 @@ def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, flo
 
 def _answered(task: Task, design: Design, settings: Settings) -> tuple[str, str, Answer | None]:
     if task.kind == "static":
-        return static_answer(design, settings, both_sides=task.both_sides)
+        return static_answer(design, settings, **task.options)
     ask = answer_modes if task.kind == "modes" else answer_release
     answer: Spectrum | Motion = ask(design, settings, **task.options)
     return (CONVERGED if answer.converged else NOT_CONVERGED), answer.message, answer

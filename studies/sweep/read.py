@@ -39,7 +39,11 @@ OPTIONS: dict[str, dict[str, tuple[str, Rule]]] = {
         "integrator": ("integrator", text("the name of an integrator")),
     },
 }
-STANDARD: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
+STANDARD: dict[str, dict[str, Any]] = {
+    "static": {"both_sides": False},
+    "modes": {"count": 3},
+    "release": {"duration": 0.05},
+}
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -65,20 +69,22 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
             raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
         require_known(where, "set", key, known)
         document.admitted(where, f"set.{key}", known[key], value)
-    plan.put_all(case, dict(leaves(tables["set"])))
+    plan.put(case, dict(leaves(tables["set"])))
     settings = _settings(where, tables["settings"], known)
     sample = sample_of(where, tables["sample"], tables["vary"], known, folder)
     _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
-    analysis = _analysis(where, tables["analysis"])
+    kind, options = _analysis(where, tables["analysis"])
+    found = points.known(case, kind, options.get("count", 0))
     task = Task(
         where=where,
         case=case,
         model=model,
         settings=settings,
         keys=tuple(axis.key for axis in sample.axes),
-        quantities=_quantities(where, tables["store"], case, analysis),
+        kind=kind,
+        options=options,
+        quantities=_quantities(where, tables["store"], found),
         batch=False,
-        **analysis,
     )
     task = _checked(task, sample)
     least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
@@ -136,23 +142,20 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
             raise CaseError(f"{where}: vary.{plan.SLENDERNESS}: got it beside {other}, which it sets itself")
 
 
-def _analysis(where: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return kind, both_sides and options of a task."""
+def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return kind and options of a task."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
     document.refuse_unknown(where, "analysis", given, ["kind", *OPTIONS[kind]])
     found = dict(STANDARD[kind])
     for name, (keyword, rule) in OPTIONS[kind].items():
         if name in given:
             found[keyword] = document.admitted(where, f"analysis.{name}", rule, given[name])
-    return {"kind": kind, "both_sides": found.pop("both_sides", False), "options": found}
+    return kind, found
 
 
-def _quantities(
-    where: str, given: Mapping[str, Any], case: Mapping[str, Any], analysis: Mapping[str, Any]
-) -> tuple[str, ...]:
-    """Return the names of what is stored: as the file says, or what is usual."""
+def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of what is stored, of those that are found: as the file says, or what is usual."""
     document.refuse_unknown(where, "store", given, ["quantities"])
-    found = points.known(case, analysis["kind"], analysis["options"].get("count", 0))
     names = given.get("quantities", [name for name, quantity in found.items() if quantity.usual])
     if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
         raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
@@ -168,7 +171,7 @@ def _checked(task: Task, sample: Sample) -> Task:
     """
     first = {axis.key: axis.low if axis.values is None else axis.values[0] for axis in sample.axes}
     design = task.design(first)
-    if task.both_sides and design.rotation is None:
+    if task.options.get("both_sides") and design.rotation is None:
         raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
     axes = [axis for axis in sample.axes if plan.is_setting(axis.key)]
     for values in ({}, *({axis.key: value} for axis in axes for value in axis.values or ())):
@@ -184,7 +187,7 @@ def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int)
         "case": task.case,
         "model": task.model,
         "settings": task.settings,
-        "analysis": {"kind": task.kind, "both_sides": task.both_sides, **task.options},
+        "analysis": {"kind": task.kind, "both_sides": False, **task.options},
         "sample": {name: getattr(sample, name) for name in ("method", "points", "seed")} | {"chunk": chunk},
         "vary": content.get("vary", {}),
         "file_sha256": hashlib.sha256(listed.encode()).hexdigest() if listed else "",

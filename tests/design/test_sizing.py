@@ -44,11 +44,9 @@ def narrow(own):
 
 
 def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
-    limits = {"variation": changes.pop("variation")} if "variation" in changes else {}
+    variation = changes.pop("variation", None)
     question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
-    start, found = own
-    stress = float(np.abs(found.stress).max())
-    task = questions.task_of(start, question, stiffness=found.stiffness, stress=stress, **limits)
+    task = question.task(*own, variation=variation)
     return replace(task, **changes)
 
 

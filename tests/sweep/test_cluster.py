@@ -4,7 +4,6 @@ import importlib.util
 import socket
 import subprocess
 import sys
-from contextlib import suppress
 
 import pandas as pd
 import pytest
@@ -13,8 +12,8 @@ from studies.__main__ import main
 from studies.errors import BadInput
 from studies.record.source import ROOT
 from studies.sweep.read import read_plan
-from studies.sweep.run import sweep
-from studies.sweep.workers import cluster, loopback
+from studies.sweep.run import cluster, sweep
+from studies.sweep.throughput import loopback
 from tests.sweep.sweeps import RANDOM, plan
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
@@ -132,12 +131,12 @@ def soon_given_up():
 def test_cluster_that_is_lost_is_gone_on_without(tmp_path):
     """Requirement: when the scheduler dies the command ends with one line, and goes on elsewhere."""
     out, state = tmp_path / "out", {}
-    with soon_given_up(), suppress(OSError), loopback(1) as lost:  # which cannot be told to end any more
+    with soon_given_up(), loopback(1) as lost:
 
         def kill_all(done, total):
             if done >= 500 and not state:
                 state["done"] = True
-                lost.scheduler.process.kill()
+                lost.sync(lost.scheduler.close)  # kills its process
 
         with pytest.raises(BadInput, match="no worker could solve them"):
             sweep(plan(MANY), out, pool=cluster(lost.scheduler_address), progress=kill_all)
