@@ -48,6 +48,30 @@ class PathEnds(RuntimeError):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Measured:
+    """What an answer of either model says of a design; each over the range, both sides.
+
+    Attributes:
+        rotation: (S,) [rad]; shift: (S,) magnitude of the centre shift [m]; stiffness: (S,) [N m / rad];
+            stress: (S,) largest [Pa].
+    """
+
+    rotation: np.ndarray
+    shift: np.ndarray
+    stiffness: np.ndarray
+    stress: np.ndarray
+
+    def quantities(self) -> dict[str, float]:
+        """Return objectives and constraints by name: [m, 1, N m / rad, Pa]."""
+        return {
+            CENTRE_SHIFT: float(self.shift.max()),
+            VARIATION: float(np.abs(self.stiffness / self.stiffness[0] - 1.0).max()),
+            "stiffness": float(self.stiffness[0]),
+            "stress": float(self.stress.max()),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
 class Answers:
     """What a design answers over S states of its range behind the first, with gradients by variables (N,).
 
@@ -79,6 +103,15 @@ class Answers:
         if objective == CENTRE_SHIFT:
             return float(np.sqrt(self.square_shift.max()))
         return float(np.abs(self.stress if objective == STRESS else self.variation).max())
+
+    def measured(self) -> Measured:
+        """Return what they say of the design over its range."""
+        return Measured(
+            rotation=self.rotation,
+            shift=np.sqrt(np.concatenate(([0.0], self.square_shift))),
+            stiffness=self.stiffness * np.concatenate(([1.0], 1.0 + self.variation)),
+            stress=self.largest_stress,
+        )
 
 
 def answers(
@@ -164,40 +197,6 @@ def _to_one_side(
 def _joined(sides: Sequence[Array]) -> Array:
     """Return the values of a path to one side and, behind its first state, of that to the other."""
     return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
-
-
-@dataclass(frozen=True, kw_only=True)
-class Measured:
-    """What an answer of either model says of a design; each over the range, both sides.
-
-    Attributes:
-        rotation: (S,) [rad]; shift: (S,) magnitude of the centre shift [m]; stiffness: (S,) [N m / rad];
-            stress: (S,) largest [Pa].
-    """
-
-    rotation: np.ndarray
-    shift: np.ndarray
-    stiffness: np.ndarray
-    stress: np.ndarray
-
-    def quantities(self) -> dict[str, float]:
-        """Return objectives and constraints by name: [m, 1, N m / rad, Pa]."""
-        return {
-            CENTRE_SHIFT: float(self.shift.max()),
-            VARIATION: float(np.abs(self.stiffness / self.stiffness[0] - 1.0).max()),
-            "stiffness": float(self.stiffness[0]),
-            "stress": float(self.stress.max()),
-        }
-
-
-def of_spline(found: Answers) -> Measured:
-    """Return what the splines say of a design."""
-    return Measured(
-        rotation=found.rotation,
-        shift=np.sqrt(np.concatenate(([0.0], found.square_shift))),
-        stiffness=found.stiffness * np.concatenate(([1.0], 1.0 + found.variation)),
-        stress=found.largest_stress,
-    )
 
 
 def by_elements(problem: Problem) -> tuple[Measured, Response]:

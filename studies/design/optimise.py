@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
-from scipy.stats import qmc
 
 from studies.cases.problem import Problem
 from studies.design.evaluate import CENTRE_SHIFT, Answers
@@ -68,14 +67,6 @@ class Outcome:
     history: Array
     solved: int
     failed: int
-
-
-def starts(task: Sizing, count: int, seed: int = 8) -> Array:
-    """Return scaled starts (count, N): the task's own design, clipped to the bounds, and Sobol's points."""
-    held = task.span == 0.0
-    own = np.clip((task.own - task.low) / np.where(held, 1.0, task.span), 0.0, 1.0)
-    spread = qmc.Sobol(len(own), seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
-    return np.vstack((own, spread[: count - 1]))
 
 
 def optimise(task: Sizing, start: Array) -> Outcome | None:

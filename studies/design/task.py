@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from scipy.stats import qmc
 
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
@@ -92,6 +93,14 @@ class Sizing:
     def values(self, y: Array) -> Array:
         """Return the variables (N,) in their units, of y in [0, 1]^N, or (N + 1,)."""
         return self.low + self.span * y[: len(self.span)]
+
+    def starts(self, count: int, seed: int = 8) -> Array:
+        """Return starts (count, N) in [0, 1]^N: the design to compare with, clipped to the bounds, and
+        Sobol's points."""
+        span = np.where(self.span == 0.0, 1.0, self.span)
+        own = np.clip((self.own - self.low) / span, 0.0, 1.0)
+        spread = qmc.Sobol(len(own), seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
+        return np.vstack((own, spread[: count - 1]))
 
     def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
         """Return rows of the form alone, their Jacobian by the scaled variables, and their changes over
@@ -185,7 +194,7 @@ class Task(Sizing):
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name."""
-        return evaluate.of_spline(found).quantities()
+        return found.measured().quantities()
 
     def by_elements(self, design: Problem) -> dict[str, float]:
         """Return what the finite elements say of it; NoReference where they do not reach its range's end."""
