@@ -82,7 +82,7 @@ STUDIES: dict[str, str] = {
     "stability/environment": "studies.stability.machine:ENVIRONMENT",
     "effects/worth": "studies.effects.worth",
     "design/sizing": "studies.design.sizing",
-    "charts/pivot": "studies.charts.pivot",
+    "charts/pivot": "studies.design.charts",
     "impulses/step_size": "studies.convergence.impulse_steps",
     "baselines/surrogates": "studies.baselines.surrogates",
     "baselines/peers": "studies.baselines.peers",

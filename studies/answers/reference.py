@@ -12,6 +12,7 @@ from studies.answers.metrics import extrapolate, relative_error, swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
@@ -58,13 +59,13 @@ class Reference:
     uncertainty: Mapping[str, float]
 
 
-def reference(problem: Problem) -> Reference:
-    """Solve `problem` on the meshes and return their limit.
+def reference(design: Design) -> Reference:
+    """Solve `design` on the meshes and return their limit.
 
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    return limit_of([answer_static(problem, FeSettings(elements=count)) for count in MESHES])
+    return limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
 
 
 def limit_of(answers: Sequence[Response]) -> Reference:

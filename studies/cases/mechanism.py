@@ -32,9 +32,8 @@ class Sectioned:
         return depth
 
     def rectangle(self) -> dict[str, Any]:
-        """Return width and thickness [m] of the rectangle with its A and I: sqrt(12 I / A) thick."""
-        thickness = math.sqrt(12.0 * self.second_moment_of_area / self.area)
-        return {"width": self.area / thickness, "thickness": thickness}
+        """Return width and thickness [m] of the rectangle with its A and I."""
+        return rectangle_of(self.area, self.second_moment_of_area)
 
     def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
         """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: the depth).
@@ -248,6 +247,12 @@ def completed(
 def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
     """Return area b h [m^2] and second moment b h^3 / 12 [m^4] of a rectangle; sides may be arrays."""
     return {"area": width * thickness, "second_moment_of_area": width * thickness**3 / 12.0}
+
+
+def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
+    """Return width and thickness [m] of the rectangle with that A and I: sqrt(12 I / A) thick."""
+    thickness = math.sqrt(12.0 * second_moment_of_area / area)
+    return {"width": area / thickness, "thickness": thickness}
 
 
 def _refuse_both(where: str, found: Values, label: str) -> None:

@@ -41,9 +41,8 @@ from studies.commands.parser import Argument, command, positive, reads, whole_nu
 from studies.commands.sized import as_document, question, readable
 from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
-from studies.design.optimise import Outcome, best, search, starts
-from studies.design.programme import Sizing
-from studies.design.task import OBJECTIVES, Task, usual_task
+from studies.design.optimise import Outcome, best, search
+from studies.design.task import OBJECTIVES, Sizing, Task
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
@@ -118,7 +117,7 @@ def main(arguments: argparse.Namespace) -> int:
     try:
         task: Sizing = _task(given, arguments) if isinstance(given, Problem) else _asked(given, arguments)
         with Bar("size") as bar:
-            outcomes = search(task, starts(task, arguments.starts), bar)
+            outcomes = search(task, task.starts(arguments.starts), bar)
         found = best(outcomes)
         checked = None if found is None else task.by_elements(found.problem)
     except (PathEnds, NoReference) as error:
@@ -229,7 +228,7 @@ def _task(start: Problem, arguments: argparse.Namespace) -> Task:
         given = getattr(arguments, attribute)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
-    return usual_task(
+    return Task.usual(
         start,
         bounds,
         objective=arguments.objective,

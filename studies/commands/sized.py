@@ -8,8 +8,7 @@ from studies.cases.problem import Problem
 from studies.design.evaluate import PLAIN
 from studies.design.numbers import NumbersTask
 from studies.design.optimise import Outcome, numbered
-from studies.design.programme import Sizing
-from studies.design.task import Task, variables_of
+from studies.design.task import Sizing, Task, variables_of
 from studies.effects.beyond import SECTIONS
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.

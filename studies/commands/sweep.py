@@ -73,8 +73,7 @@ def main(arguments: argparse.Namespace) -> int:
         raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
     from studies.record.progress import Bar
     from studies.sweep.read import read_plan
-    from studies.sweep.run import local_pool, sweep
-    from studies.sweep.workers import cluster
+    from studies.sweep.run import cluster, local_pool, sweep
 
     plan = read_plan(arguments.designs)
     pool = cluster(arguments.scheduler) if arguments.scheduler else local_pool(plan, arguments.workers)

@@ -1,1 +1,1 @@
-"""Design questions answered: sizing by exact gradients, checked by the finite elements."""
+"""Design questions answered: sizing by exact gradients, checked by the finite elements; design charts."""

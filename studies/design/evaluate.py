@@ -1,19 +1,22 @@
 """A design's answers with exact gradients, and what checks them: differences, and the finite elements."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from spline_model.sensitivity.solve import Quantity, Sensitivities, sensitivities
+from spline_model.sensitivity.solve import sensitivities
 from studies.answers.models import put
 from studies.answers.reference import reference
 from studies.answers.response import Response, centre_shift
 from studies.answers.settings import SplineSettings
+from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
-#: Variables of a sizing, as keywords of the sensitivities; both strips are alike.
+#: Variables of a pivot's sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
 CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
 #: Where fibre stresses are constrained, reference arc length over L.
@@ -26,119 +29,22 @@ CONTROL_POINTS = 10
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
 
 
-def sides_of(problem: Problem) -> tuple[float, ...]:
-    """Return the signs of the rotations that a range needs solved: both under loads, one without."""
-    return (1.0,) if set(problem.effects.names) <= PLAIN else (1.0, -1.0)
+def sides_of(design: Design) -> tuple[float, ...]:
+    """Return the signs of the rotations that a range needs solved: both of a pivot under loads, else one."""
+    mirrored = not isinstance(design, Problem) or set(design.effects.names) <= PLAIN
+    return (1.0,) if mirrored else (1.0, -1.0)
+
+
+def held_states(design: Design) -> list[int]:
+    """Return the states of a range where stress is held: at the end of each side, and, but for a pivot
+    without loads, before the body turns."""
+    if not isinstance(design, Problem):
+        return [0, -1]
+    return [-1] if len(sides_of(design)) == 1 else [design.increments, -1, 0]
 
 
 class PathEnds(RuntimeError):
     """A design whose static path does not reach the end of the range."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Answers:
-    """What a design answers over S states of its range behind the first, with gradients by variables (N,).
-
-    The first state has rotation 0, and all loads; under loads the states of the other side follow.
-
-    Attributes:
-        stiffness: at the first state [N m / rad]; by_stiffness (N,).
-        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, N).
-        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, N).
-        stress: (F,) signed fibre stresses at the end of each side, of the first state too under loads [Pa];
-            by_stress (F, N).
-        rotation: (S + 1,) from the first state [rad]; largest_stress (S + 1,) [Pa].
-        evaluations: factorisations and back-substitutions of the gradients.
-    """
-
-    stiffness: float
-    by_stiffness: Array
-    square_shift: Array
-    by_square_shift: Array
-    variation: Array
-    by_variation: Array
-    stress: Array
-    by_stress: Array
-    rotation: Array
-    largest_stress: Array
-    counters: dict[str, int]
-
-    def largest(self, objective: str) -> float:
-        """Return the largest value of an objective over the range [m or 1]."""
-        if objective == CENTRE_SHIFT:
-            return float(np.sqrt(self.square_shift.max()))
-        if objective == STRESS:
-            return float(np.abs(self.stress).max())
-        return float(np.abs(self.variation).max())
-
-
-def answers(problem: Problem, control_points: int = CONTROL_POINTS) -> Answers:
-    """Solve a design to the end of its range, with exact gradients.
-
-    Raises:
-        PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
-        BadInput: an effect or value that the model, or its sensitivities, refuse; one line.
-    """
-    sides = sides_of(problem)
-    solved = [_to_one_side(problem, sign * problem.rotation, control_points) for sign in sides]
-    found = [each for _, each in solved]
-    begin = _first_state(problem, len(solved[0][0]))
-    at_rest, by_rest = _at(begin, found[0].stiffness)
-    shift, by_shift = _behind(begin, [each.centre_shift for each in found])
-    shift_0, by_shift_0 = _at(begin, found[0].centre_shift)
-    shift, by_shift = shift - shift_0, by_shift - by_shift_0
-    stiffness, by_stiffness = _behind(begin, [each.stiffness for each in found])
-    ratio = stiffness / at_rest
-    stress = [_at(-1, each.fibre_stress) for each in found]
-    stress += [_at(begin, found[0].fibre_stress)] if len(sides) > 1 else []
-    return Answers(
-        stiffness=float(at_rest),
-        by_stiffness=by_rest,
-        square_shift=np.sum(shift**2, axis=1),
-        by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift),
-        variation=ratio - 1.0,
-        by_variation=(by_stiffness - ratio[:, None] * by_rest) / at_rest,
-        stress=np.concatenate([value.ravel() for value, _ in stress]),
-        by_stress=np.concatenate([by.reshape(-1, len(VARIABLES)) for _, by in stress]),
-        rotation=_behind_first(begin, [rotation for rotation, _ in solved]),
-        largest_stress=_behind_first(begin, [each.largest_stress().value for each in found]),
-        counters=found[0].counters,
-    )
-
-
-def _at(state: int, quantity: Quantity) -> tuple[Array, Array]:
-    """Return value and derivative of a quantity at one state."""
-    return quantity.value[state], quantity.derivative[state]
-
-
-def _behind(begin: int, sides: list[Quantity]) -> tuple[Array, Array]:
-    """Return values and derivatives behind the first state, those of each side."""
-    values = np.concatenate([side.value[begin + 1 :] for side in sides])
-    return values, np.concatenate([side.derivative[begin + 1 :] for side in sides])
-
-
-def _first_state(problem: Problem, states: int) -> int:
-    """Return the state of a path at which the body begins to turn: loads have come on before."""
-    return states - 1 - problem.increments
-
-
-def _behind_first(begin: int, sides: list[Array]) -> Array:
-    """Return the values of a path from the state at which the body begins to turn, those of each side."""
-    return np.concatenate([sides[0][begin : begin + 1], *(side[begin + 1 :] for side in sides)])
-
-
-def _to_one_side(problem: Problem, rotation: float, control_points: int) -> tuple[Array, Sensitivities]:
-    """Return the rotations of the path to one side, and its derivatives; errors as of `answers`."""
-    settings = SplineSettings(control_points=control_points)
-    asked = put(problem, settings)
-    with asked.refusals():
-        try:
-            path = asked.static_path(rotation=rotation)
-        except asked.model.errors.ConvergenceError as error:
-            raise PathEnds(str(error)) from None
-        if path.critical_points and len(sides_of(problem)) > 1:
-            raise PathEnds(path.message)
-        return path.rotation, sensitivities(asked.modelled, path, parameters=VARIABLES, stations=STATIONS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,14 +71,132 @@ class Measured:
         }
 
 
-def of_spline(found: Answers) -> Measured:
-    """Return what the splines say of a design."""
-    return Measured(
+@dataclass(frozen=True, kw_only=True)
+class Answers:
+    """What a design answers over S states of its range behind the first, with gradients by variables (N,).
+
+    The first state has all loads, and the body has not turned; under loads the states of the other side
+    follow.
+
+    Attributes:
+        stiffness: at the first state [N m / rad], or, where the bodies follow the loads, how far the body
+            goes [m]; by_stiffness (N,).
+        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, N).
+        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, N).
+        stress: (F,) signed fibre stresses at the states of `held_states` [Pa]; by_stress (F, N).
+        rotation: (S + 1,) from the first state [rad]; largest_stress (S + 1,) [Pa].
+    """
+
+    stiffness: float
+    by_stiffness: Array
+    square_shift: Array
+    by_square_shift: Array
+    variation: Array
+    by_variation: Array
+    stress: Array
+    by_stress: Array
+    rotation: Array
+    largest_stress: Array
+
+    def largest(self, objective: str) -> float:
+        """Return the largest value of an objective over the range [m, 1 or Pa]."""
+        if objective == CENTRE_SHIFT:
+            return float(np.sqrt(self.square_shift.max()))
+        return float(np.abs(self.stress if objective == STRESS else self.variation).max())
+
+    def measured(self) -> Measured:
+        """Return what they say of the design over its range."""
+        return Measured(
+            rotation=self.rotation,
+            shift=np.sqrt(np.concatenate(([0.0], self.square_shift))),
+            stiffness=self.stiffness * np.concatenate(([1.0], 1.0 + self.variation)),
+            stress=self.largest_stress,
+        )
+
+
+def answers(
+    design: Design,
+    control_points: int = CONTROL_POINTS,
+    *,
+    parameters: Sequence[str] = VARIABLES,
+    chain: Array | None = None,
+) -> Answers:
+    """Solve a design to the end of its range, with exact gradients.
+
+    Args:
+        parameters: R names of the sensitivities.
+        chain: derivatives (R, N) of these by the variables; None where they are the variables.
+
+    Raises:
+        PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
+        BadInput: an effect or value that the model, or its sensitivities, refuse; one line.
+    """
+    chain = np.eye(len(parameters)) if chain is None else chain
+    sides = [_to_one_side(design, side, control_points, parameters, chain) for side in sides_of(design)]
+    found = _Side(*map(_joined, zip(*sides, strict=True)))
+    shift, by_shift = found.shift[1:] - found.shift[0], found.by_shift[1:] - found.by_shift[0]
+    at_rest, by_rest = held, by_held = found.stiffness[0], found.by_stiffness[0]
+    if design.rotation is None:
+        held = np.linalg.norm(found.shift[-1])
+        by_held = found.shift[-1] @ found.by_shift[-1] / held
+    ratio, states = found.stiffness[1:] / at_rest, held_states(design)
+    return Answers(
+        stiffness=float(held),
+        by_stiffness=by_held,
+        square_shift=np.sum(shift**2, axis=1),
+        by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift),
+        variation=ratio - 1.0,
+        by_variation=(found.by_stiffness[1:] - ratio[:, None] * by_rest) / at_rest,
+        stress=found.stress[states].ravel(),
+        by_stress=found.by_stress[states].reshape(-1, chain.shape[1]),
         rotation=found.rotation,
-        shift=np.sqrt(np.concatenate(([0.0], found.square_shift))),
-        stiffness=found.stiffness * np.concatenate(([1.0], 1.0 + found.variation)),
-        stress=found.largest_stress,
+        largest_stress=np.abs(found.stress).max(axis=(1, 2, 3)),
     )
+
+
+class _Side(NamedTuple):
+    """A path from the state on at which the body begins to turn, loads having come on before: what sizing
+    asks for, (S, ...), and its derivatives by the variables (S, ..., N).
+
+    rotation: [rad], load factor where nothing is driven; stiffness: [N m / rad]; shift: (S, 2) of the pivot's
+    crossing, or of the mechanism's body, from rest [m]; stress: of fibres [Pa].
+    """
+
+    rotation: Array
+    stiffness: Array
+    by_stiffness: Array
+    shift: Array
+    by_shift: Array
+    stress: Array
+    by_stress: Array
+
+
+def _to_one_side(
+    design: Design, side: float, control_points: int, parameters: Sequence[str], chain: Array
+) -> _Side:
+    """Return the path to one side; arguments and errors as of `answers`."""
+    asked = put(design, SplineSettings(control_points=control_points))
+    end = None if design.rotation is None else side * design.rotation
+    with asked.refusals():
+        try:
+            path = asked.static_path(rotation=end)
+        except asked.model.errors.ConvergenceError as error:
+            raise PathEnds(str(error)) from None
+        if path.critical_points and held_states(design) != [-1]:
+            raise PathEnds(path.message)
+        found = sensitivities(
+            asked.modelled, path, parameters=parameters, stations=STATIONS, body=design.body
+        )
+    turned = slice(-design.increments - 1, None)
+    arrays = [path.load_factor[turned] if end is None else path.rotation[turned]]
+    for quantity in (found.stiffness, found.centre_shift, found.fibre_stress):
+        arrays += [quantity.value[turned], quantity.derivative[turned] @ chain]
+    return _Side(*arrays)
+
+
+def _joined(sides: Sequence[Array]) -> Array:
+    """Return the values of a path to one side and, behind its first state, of that to the other."""
+    return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
 
 
 def by_elements(problem: Problem) -> tuple[Measured, Response]:
@@ -183,12 +207,12 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
         NoReference: they do not reach the end of the range.
     """
     limits = [reference(replace(problem, rotation=sign * problem.rotation)) for sign in sides_of(problem)]
-    begin = _first_state(problem, len(limits[0].rotation))
-    shifts = [centre_shift(problem.crossing_point, limit.rotation, limit.centre) for limit in limits]
+    turned = slice(-problem.increments - 1, None)
+    shifts = [centre_shift(problem.crossing_point, limit.rotation, limit.centre)[turned] for limit in limits]
     measured = Measured(
-        rotation=_behind_first(begin, [limit.rotation for limit in limits]),
-        shift=_behind_first(begin, [np.hypot(*(shift - shift[begin]).T) for shift in shifts]),
-        stiffness=_behind_first(begin, [limit.stiffness for limit in limits]),
-        stress=_behind_first(begin, [limit.finest.max_stress for limit in limits]),
+        rotation=_joined([limit.rotation[turned] for limit in limits]),
+        shift=_joined([np.hypot(*(shift - shift[0]).T) for shift in shifts]),
+        stiffness=_joined([limit.stiffness[turned] for limit in limits]),
+        stress=_joined([limit.finest.max_stress[turned] for limit in limits]),
     )
     return measured, limits[0].finest

@@ -9,6 +9,7 @@ is of second order.
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import pandas as pd
 from studies.cases.problem import Problem
 from studies.design import evaluate
 from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIABLES, VARIATION, Answers, Measured
-from studies.design.optimise import Outcome, best, search, starts
+from studies.design.optimise import Outcome, best, search
 from studies.design.task import OBJECTIVES, UNITS, Task, variables_of, varied
 from studies.effects.beyond import ALL, SECTIONS, relative_change, with_sections
 from studies.engine.study import Claim, Tables
@@ -30,7 +31,7 @@ MORE = 2
 
 def off(name: str, problem: Problem, found: Answers) -> list[dict[str, Any]]:
     """Return what a design answers with each effect and with all; of stiffness and stress the change."""
-    own, rows = evaluate.of_spline(found).quantities(), []
+    own, rows = found.measured().quantities(), []
     for effect, names in {**{each: (each,) for each in SECTIONS}, ALL: SECTIONS}.items():
         measured = _with(problem, names).quantities()
         rows.append(
@@ -53,8 +54,8 @@ def resized(name: str, task: Task, former: Outcome) -> dict[str, Any]:
     one, and its objective with the effects; `error` the largest difference of the new one to the elements.
     """
     there = _with(former.problem, SECTIONS).quantities()
-    new = task.begun_at(with_sections(task.start))
-    found = best(search(new, np.vstack((former.at[:-1], starts(new, MORE))), silent))
+    new = replace(task, start=with_sections(task.start))
+    found = best(search(new, np.vstack((former.at[:-1], new.starts(MORE))), silent))
     row = {
         "question": name,
         "former_stiffness": relative_change(there["stiffness"], task.stiffness),
@@ -74,7 +75,7 @@ def resized(name: str, task: Task, former: Outcome) -> dict[str, Any]:
 
 
 def _with(problem: Problem, names: tuple[str, ...]) -> Measured:
-    return evaluate.of_spline(evaluate.answers(with_sections(problem, names)))
+    return evaluate.answers(with_sections(problem, names)).measured()
 
 
 def _judged(tables: Tables) -> pd.DataFrame:

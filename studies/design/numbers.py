@@ -3,22 +3,18 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
-from spline_model.sensitivity.solve import sensitivities
-from studies.answers.adapters import answer_static
-from studies.answers.models import put
-from studies.answers.reference import MESHES, limit_of
-from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.keys import MOMENTS, SIDES
+from studies.answers.reference import reference
+from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
-from studies.design.evaluate import CONTROL_POINTS, STATIONS, STRESS, VARIATION, Answers, PathEnds
-from studies.design.task import Bounded
+from studies.design.evaluate import STRESS, VARIATION, Answers, answers
+from studies.design.task import Sizing
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep import plan
@@ -73,42 +69,26 @@ def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any
     found = copy.deepcopy(dict(document))
     if not any(side.name in text for text in texts for side in SIDES):
         return found
-    area, second = (key.name for key in MOMENTS)
     for table in (found.get("section", {}), *found["strips"]):
-        if area in table and second in table:
-            thickness = math.sqrt(12.0 * table.pop(second) / table[area])
-            table |= {"width_m": table.pop(area) / thickness, "thickness_m": thickness}
+        plan.to_sides(table)
     return found
 
 
 def _value(document: Mapping[str, Any], key: str) -> float | None:
     """Return the number at a key, of a strip the one of all where it has none; None where there is none."""
-    section, *way = key.split(".")
-    place: Any = document.get(section, {})
-    for name in way:
-        if isinstance(place, list) and name not in plan.PARTS:
-            place = next((part for part in place if part.get("name") == name), {})
-        elif isinstance(place, list):
-            place = place[plan.PARTS[name]]
-        else:
-            place = place.get(name)
-        if place is None:
-            shared = [document.get(each, {}).get(way[-1]) for each in ("section", "material")]
-            place = next((each for each in shared if each is not None), None)
-            break
-    return float(place) if isinstance(place, int | float) else None
+    found, name = plan.value_at(document, key), key.rpartition(".")[2]
+    for shared in ("section", "material"):
+        if found is None:
+            found = document.get(shared, {}).get(name)
+    return float(found) if isinstance(found, int | float) else None
 
 
 @dataclass(frozen=True, kw_only=True)
-class NumbersTask(Bounded):
-    """One question about one mechanism: what is to be least over its numbers, what is held, what is allowed.
+class NumbersTask(Sizing):
+    """A question about a mechanism, over numbers of its case.
 
     Attributes:
         where, document: the case file and what stands in it. numbers: to be found.
-        objective: STRESS or VARIATION, of the path to the end of its drive or loads.
-        stiffness: wanted: of the driven body as it begins to turn [N m / rad], or, where the bodies follow
-            the loads, how far it goes [m].
-        allowable_stress: of the extreme fibres, before the body turns and at the end [Pa].
     """
 
     where: str
@@ -117,9 +97,7 @@ class NumbersTask(Bounded):
     objective: str = STRESS
     stiffness: float = math.nan
     allowable_stress: float = math.inf
-
-    #: Of objectives that are not the one to be least: none.
-    limits: ClassVar[Mapping[str, float]] = {}
+    limits: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def start(self) -> Mechanism:
@@ -131,18 +109,13 @@ class NumbersTask(Bounded):
         """What may be made least of this mechanism."""
         return (STRESS,) if self.start.rotation is None else (STRESS, VARIATION)
 
-    @property
-    def held(self) -> str:
-        """What the wanted stiffness is called."""
-        return "travel" if self.start.rotation is None else "stiffness"
-
     @cached_property
-    def bounds(self) -> dict[str, tuple[float, float]]:  # type: ignore[override]
+    def bounds(self) -> Mapping[str, tuple[float, float]]:  # type: ignore[override]
         """Lowest and highest value of every number, in the file's unit."""
         return {number.name: (number.low, number.high) for number in self.numbers}
 
     @property
-    def columns(self) -> list[tuple[str, float, str]]:
+    def columns(self) -> Sequence[tuple[str, float, str]]:
         """The numbers in a table, by their places."""
         return [(str(place), 1.0, "12.6g") for place in range(1, len(self.numbers) + 1)]
 
@@ -151,76 +124,22 @@ class NumbersTask(Bounded):
         """Values of the case (N,)."""
         return np.array([number.own for number in self.numbers])
 
-    @property
-    def fibres(self) -> int:
-        """Fibre stresses that are held."""
-        return 2 * 2 * len(self.start.strips) * len(STATIONS)
-
-    @property
-    def states(self) -> int:
-        """States behind the first."""
-        return self.start.increments
-
     def content(self, values: Array) -> dict[str, Any]:
         """Return the case with these values (N,)."""
         document = copy.deepcopy(dict(self.document))
         for number, value in zip(self.numbers, values, strict=True):
-            for key in number.keys:
-                plan.put(document, key, float(value))
+            plan.put(document, dict.fromkeys(number.keys, float(value)))
         return document
 
     def problem(self, values: Array) -> Mechanism:
         """Return the mechanism with these values (N,)."""
         return read_mechanism(self.where, self.content(values))
 
-    def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
-        """Return rows of the form alone, their Jacobian, and their changes by name: there are none."""
-        del values
-        return np.zeros(0), np.zeros((0, len(self.numbers))), {}
-
     def answers(self, values: Array) -> Answers:
-        """Solve the mechanism with these values, with exact gradients by its numbers.
-
-        Raises:
-            PathEnds: its path ends early or buckles. BadInput: what the model refuses; one line.
-        """
-        design = self.problem(values)
-        names, by = self._chain(values)
-        settings = SplineSettings(control_points=CONTROL_POINTS)
-        asked = put(design, settings)
-        with asked.refusals():
-            try:
-                path = asked.static_path()
-            except asked.model.errors.ConvergenceError as error:
-                raise PathEnds(str(error)) from None
-            if path.critical_points:
-                raise PathEnds(path.message)
-            found = sensitivities(asked.modelled, path, parameters=names, stations=STATIONS, body=design.body)
-        begin = len(path.torque) - 1 - design.increments
-        shift, by_shift = found.body_shift.value, found.body_shift.derivative @ by
-        stiffness, by_stiffness = found.stiffness.value[begin:], found.stiffness.derivative[begin:] @ by
-        held, by_held = stiffness[0], by_stiffness[0]
-        if design.rotation is None:
-            held = np.linalg.norm(shift[-1])
-            by_held = shift[-1] @ by_shift[-1] / held
-        ratio, ends, stress = stiffness[1:] / stiffness[0], [begin, -1], found.fibre_stress
-        return Answers(
-            stiffness=float(held),
-            by_stiffness=by_held,
-            square_shift=np.sum(shift[begin + 1 :] ** 2, axis=1),
-            by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift)[begin + 1 :],
-            variation=ratio - 1.0,
-            by_variation=(by_stiffness[1:] - ratio[:, None] * by_stiffness[0]) / stiffness[0],
-            stress=stress.value[ends].ravel(),
-            by_stress=(stress.derivative[ends] @ by).reshape(-1, len(self.numbers)),
-            rotation=path.load_factor[begin:],
-            largest_stress=found.largest_stress().value[begin:],
-            counters=found.counters,
-        )
-
-    def case(self) -> Answers:
-        """Return what the case answers."""
-        return self.answers(self.own)
+        """Solve the mechanism with these values, with exact gradients by its numbers; errors as of
+        `evaluate.answers`."""
+        names, chain = self._chain(values)
+        return answers(self.problem(values), parameters=names, chain=chain)
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name: what is held, and the objectives."""
@@ -232,7 +151,7 @@ class NumbersTask(Bounded):
         Raises:
             NoReference: they do not reach the end of the path.
         """
-        limit = limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
+        limit = reference(design)
         begin = len(limit.rotation) - 1 - design.increments
         stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
         if design.rotation is None:

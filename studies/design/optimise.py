@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
-from scipy.stats import qmc
 
 from studies.cases.problem import Problem
 from studies.design.evaluate import CENTRE_SHIFT, Answers
-from studies.design.programme import Active, Programme, Sizing, conditions
+from studies.design.programme import Active, Programme
+from studies.design.task import Sizing
 from studies.kinds import Array, Progress
 from studies.record.progress import watched
 
@@ -67,14 +67,6 @@ class Outcome:
     history: Array
     solved: int
     failed: int
-
-
-def starts(task: Sizing, count: int, seed: int = 8) -> Array:
-    """Return scaled starts (count, N): the task's own design, clipped to the bounds, and Sobol's points."""
-    held = task.span == 0.0
-    own = np.clip((task.own - task.low) / np.where(held, 1.0, task.span), 0.0, 1.0)
-    spread = qmc.Sobol(len(own), seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
-    return np.vstack((own, spread[: count - 1]))
 
 
 def optimise(task: Sizing, start: Array) -> Outcome | None:
@@ -248,7 +240,7 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
         return None
     at = np.append(at[: len(task.span)], _t(programme, found))
     violation = _violation(programme, at)
-    active, residual = conditions(programme, at)
+    active, residual = programme.conditions(at)
     converged = violation <= FEASIBLE and residual <= STATIONARY
     return Outcome(
         start=start,

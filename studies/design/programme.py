@@ -15,14 +15,30 @@ import numpy as np
 from scipy.optimize import nnls
 
 from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers, PathEnds
-from studies.design.numbers import NumbersTask
-from studies.design.task import Task
+from studies.design.task import Sizing
 from studies.kinds import Array
-
-Sizing = Task | NumbersTask
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3
+
+
+#: Margin below which a row is active [1].
+ACTIVE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Active:
+    """A constraint that holds an optimum back.
+
+    Args:
+        name: of the quantity, or of the variable at its bound.
+        multiplier: of its row in the programme [1].
+        price: relative change of the objective over a relative change of the limit, to first order [1].
+    """
+
+    name: str
+    multiplier: float
+    price: float
 
 
 @dataclass(kw_only=True)
@@ -138,6 +154,55 @@ class Programme:
         rows = np.concatenate((bound - value, bound + value))
         return rows, np.concatenate((_widened(-by, slope), _widened(by, slope)))
 
+    def conditions(self, y: Array) -> tuple[tuple[Active, ...], float]:
+        """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
+
+        The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
+        least zero, but for the equality's: the residual is the length of what is left over.
+        """
+        names, jacobian = self._active(y)
+        equal = self.equality_jacobian(y)[0]
+        found, residual = nnls(np.column_stack([*jacobian, equal, -equal]), np.eye(len(y))[-1])
+        multipliers = [*found[:-2], found[-2] - found[-1]]
+        summed: dict[str, float] = {}
+        for name, multiplier in zip([*names, "stiffness"], multipliers, strict=True):
+            summed[name] = summed.get(name, 0.0) + float(multiplier)
+        squared = 2.0 if self.task.objective == CENTRE_SHIFT else 1.0
+        active = tuple(
+            Active(name=name, multiplier=m, price=m * self._per_limit(y, name) / (squared * y[-1]))
+            for name, m in summed.items()
+            if name != self.task.objective and m != 0.0
+        )
+        return active, float(residual)
+
+    def _active(self, y: Array) -> tuple[list[str], list[Array]]:
+        """Return names and gradients of the rows without margin, and of the bounds that are reached."""
+        rows, jacobian = self.inequalities(y), self.inequality_jacobian(y)
+        labels = self.row_names()
+        reached = np.flatnonzero(rows < ACTIVE)
+        names, gradients = [labels[i] for i in reached], list(jacobian[reached])
+        for i, name in enumerate(self.task.variables):
+            if self.task.span[i] == 0.0:
+                continue
+            for end, where in ((0.0, "at its least"), (1.0, "at its most")):
+                if abs(y[i] - end) < ACTIVE:
+                    names.append(f"{name} {where}")
+                    gradients.append((1.0 - 2.0 * end) * np.eye(len(y))[i])
+        return names, gradients
+
+    def _per_limit(self, y: Array, name: str) -> float:
+        """Return d(t) over a relative change of a limit by a multiplier of one: minus its row's change."""
+        task = self.task
+        variable, _, end = name.partition(" at its ")
+        if variable in task.variables:
+            low, high = task.bounds[variable]
+            return float((low if end == "least" else -high) / (high - low))
+        if name in task.limits:
+            bound = task.limits[name] / self.scale[name]
+            return -2.0 * bound**2 if name == CENTRE_SHIFT else -bound
+        fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
+        return (fixed | task.shape(self.task.values(y))[2])[name]
+
 
 def _widened(rows: Array, last: float = 0.0) -> Array:
     """Return Jacobian rows (R, N) with the column of t."""
@@ -179,74 +244,3 @@ def _limit(row: list[Array]) -> Array:
     for order in range(1, len(row)):
         row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
     return row[0]
-
-
-#: Margin below which a row is active [1].
-ACTIVE = 1e-6
-
-
-@dataclass(frozen=True, kw_only=True)
-class Active:
-    """A constraint that holds an optimum back.
-
-    Args:
-        name: of the quantity, or of the variable at its bound.
-        multiplier: of its row in the programme [1].
-        price: relative change of the objective over a relative change of the limit, to first order [1].
-    """
-
-    name: str
-    multiplier: float
-    price: float
-
-
-def conditions(programme: Programme, y: Array) -> tuple[tuple[Active, ...], float]:
-    """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
-
-    The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
-    least zero, but for the equality's: the residual is the length of what is left over.
-    """
-    names, jacobian = _active(programme, y)
-    equal = programme.equality_jacobian(y)[0]
-    found, residual = nnls(np.column_stack([*jacobian, equal, -equal]), np.eye(len(y))[-1])
-    multipliers = [*found[:-2], found[-2] - found[-1]]
-    summed: dict[str, float] = {}
-    for name, multiplier in zip([*names, "stiffness"], multipliers, strict=True):
-        summed[name] = summed.get(name, 0.0) + float(multiplier)
-    squared = 2.0 if programme.task.objective == CENTRE_SHIFT else 1.0
-    active = tuple(
-        Active(name=name, multiplier=m, price=m * _per_limit(programme, y, name) / (squared * y[-1]))
-        for name, m in summed.items()
-        if name != programme.task.objective and m != 0.0
-    )
-    return active, float(residual)
-
-
-def _active(programme: Programme, y: Array) -> tuple[list[str], list[Array]]:
-    """Return names and gradients of the rows without margin, and of the bounds that are reached."""
-    rows, jacobian = programme.inequalities(y), programme.inequality_jacobian(y)
-    labels = programme.row_names()
-    reached = np.flatnonzero(rows < ACTIVE)
-    names, gradients = [labels[i] for i in reached], list(jacobian[reached])
-    for i, name in enumerate(programme.task.variables):
-        if programme.task.span[i] == 0.0:
-            continue
-        for end, where in ((0.0, "at its least"), (1.0, "at its most")):
-            if abs(y[i] - end) < ACTIVE:
-                names.append(f"{name} {where}")
-                gradients.append((1.0 - 2.0 * end) * np.eye(len(y))[i])
-    return names, gradients
-
-
-def _per_limit(programme: Programme, y: Array, name: str) -> float:
-    """Return d(t) over a relative change of a limit for a multiplier of one: minus the change of its row."""
-    task = programme.task
-    variable, _, end = name.partition(" at its ")
-    if variable in task.variables:
-        low, high = task.bounds[variable]
-        return float((low if end == "least" else -high) / (high - low))
-    if name in task.limits:
-        bound = task.limits[name] / programme.scale[name]
-        return -2.0 * bound**2 if name == CENTRE_SHIFT else -bound
-    fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
-    return (fixed | task.shape(programme.task.values(y))[2])[name]

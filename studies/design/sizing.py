@@ -13,10 +13,10 @@ from spline_model.sensitivity.solve import sensitivities
 from spline_model.statics import solve_statics
 from studies.answers.response import Response
 from studies.cases.problem import Problem, named_case
-from studies.design import evaluate, figures, margins
+from studies.design import figures, margins
 from studies.design import task as questions
 from studies.design.evaluate import CENTRE_SHIFT, VARIATION, Answers, Measured, answers, by_elements
-from studies.design.optimise import Outcome, best, numbered, search, starts
+from studies.design.optimise import Outcome, best, numbered, search
 from studies.design.programme import gradient_error
 from studies.engine.study import Answer, Part, Study
 from studies.record.progress import measure, silent
@@ -31,19 +31,12 @@ def _baseline(name: str) -> tuple[Problem, Answers]:
     return problem, answers(problem)
 
 
-def _task(question: questions.Question, **limits: float) -> questions.Task:
-    """Return the task of a question at its baseline's own stiffness, and largest stress."""
-    start, own = _baseline(question.baseline)
-    largest = float(np.abs(own.stress).max())
-    return questions.task_of(start, question, stiffness=own.stiffness, stress=largest, **limits)
-
-
 @cache
 def _found(name: str) -> tuple[questions.Task, list[Outcome]]:
     """Return what a question asks and where its starts have led."""
     question = questions.QUESTIONS[name]
-    task = _task(question)
-    return task, search(task, starts(task, questions.STARTS), silent)
+    task = question.task(*_baseline(question.baseline))
+    return task, search(task, task.starts(questions.STARTS), silent)
 
 
 def _optimum(name: str) -> Outcome:
@@ -83,7 +76,7 @@ def _described(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     manufacture does).
     """
     measured, response = by_elements(problem)
-    curves = [_curve(name, "spline", evaluate.of_spline(found)), _curve(name, "FE", measured)]
+    curves = [_curve(name, "spline", found.measured()), _curve(name, "FE", measured)]
     return {
         "designs": _design(name, problem, found),
         "curves": pd.concat(curves),
@@ -99,10 +92,10 @@ def _trade() -> list[dict[str, Any]]:
 
     It lies between the optima of both objectives, and begins at the last one too.
     """
-    rows: list[dict[str, Any]] = []
+    question, rows = questions.QUESTIONS[questions.WIDE[0]], []
     begin = [_optimum(name).at[:-1] for name in questions.WIDE]
     for limit in questions.TRADE:
-        task = _task(questions.QUESTIONS[questions.WIDE[0]], variation=limit)
+        task = question.task(*_baseline(question.baseline), variation=limit)
         found = best(search(task, np.array(begin), silent))
         rows.append(_trade_row(limit, found))
         begin = begin[:2] if found is None else [*begin[:2], found.at[:-1]]
@@ -124,7 +117,7 @@ def _trade_row(limit: float, found: Outcome | None) -> dict[str, Any]:
 def _design(name: str, problem: Problem, found: Answers) -> dict[str, Any]:
     """Return a design's variables and objectives; factors are the baseline's objective over the design's."""
     other = name if name in questions.BASELINES else questions.QUESTIONS[name].baseline
-    own, measured = _baseline(other)[1], evaluate.of_spline(found)
+    own, measured = _baseline(other)[1], found.measured()
     reach = float(np.interp(questions.ALLOWABLE, measured.stress, measured.rotation))
     return {
         "design": name,
@@ -222,7 +215,7 @@ def _active(name: str, outcome: Outcome) -> list[dict[str, Any]]:
 
 def _checks(name: str, found: Answers, elements: Measured) -> list[dict[str, Any]]:
     """Return a row a quantity: splines, finite elements, and their difference over the latter."""
-    spline, fe = evaluate.of_spline(found).quantities(), elements.quantities()
+    spline, fe = found.measured().quantities(), elements.quantities()
     rows = {key: (spline[key], fe[key], abs(spline[key] / fe[key] - 1.0)) for key in spline}
     return [_check(name, key, "finite elements", *row) for key, row in rows.items()]
 

@@ -1,16 +1,26 @@
 """A sizing question: what is to be least, what must hold, between which bounds; and those of the study."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
+from scipy.stats import qmc
 
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
 from studies.design import evaluate
-from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIABLES, VARIATION, Answers, sides_of
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    STATIONS,
+    STRESS,
+    VARIABLES,
+    VARIATION,
+    Answers,
+    held_states,
+    sides_of,
+)
 from studies.kinds import Array
 
 #: What tables call them.
@@ -21,17 +31,39 @@ OBJECTIVES: Mapping[str, str] = {
     CENTRE_SHIFT: "largest displacement of the body's point in the strips' crossing at rest [m]",
     VARIATION: "largest change of the rotational stiffness, relative to that at rest [1]",
 }
-#: Fibre stresses of a pivot's state: two strips, both fibres.
-FIBRES = 4 * len(STATIONS)
 
 
-class Bounded:
-    """A question whose N variables have `bounds`: lowest and highest value of each by its name.
+class Sizing:
+    """A question about a design: which of N variables make an objective least.
 
-    columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
+    Attributes:
+        start: the design to compare with. bounds: lowest and highest value of each variable by its name.
+        objective: what is to be least, one of `objectives`.
+        stiffness: wanted: of the body as it begins to turn, under the loads [N m / rad], or its travel [m].
+        allowable_stress: of the extreme fibres, at the states of `held_states` [Pa].
+        limits: largest value of an objective that is not the one to be least, by its name.
+        own: variables of the start (N,).
+        columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
     """
 
+    start: Any
     bounds: Mapping[str, tuple[float, float]]
+    objective: str
+    stiffness: float
+    allowable_stress: float
+    limits: Mapping[str, float]
+    #: Properties of one kind, fields of the other.
+    own: Any
+    objectives: Any
+    columns: Any
+    problem: Callable[[Array], Any]
+    quantities: Callable[[Answers], dict[str, float]]
+    by_elements: Callable[[Any], dict[str, float]]
+
+    @property
+    def held(self) -> str:
+        """What the wanted stiffness is called: where the bodies follow the loads, how far the body goes."""
+        return "travel" if self.start.rotation is None else "stiffness"
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -48,24 +80,51 @@ class Bounded:
         """Widths of the bounds (N,), 0 of a variable that is held."""
         return np.array([high - low for low, high in self.bounds.values()])
 
+    @property
+    def fibres(self) -> int:
+        """Fibre stresses that are held: both fibres of the strips, at `STATIONS` of the held states."""
+        return 2 * len(self.start.strips) * len(STATIONS) * len(held_states(self.start))
+
+    @property
+    def states(self) -> int:
+        """States behind the first, of all sides."""
+        return int(self.start.increments * len(sides_of(self.start)))
+
     def values(self, y: Array) -> Array:
         """Return the variables (N,) in their units, of y in [0, 1]^N, or (N + 1,)."""
         return self.low + self.span * y[: len(self.span)]
 
+    def starts(self, count: int, seed: int = 8) -> Array:
+        """Return starts (count, N) in [0, 1]^N: the design to compare with, clipped to the bounds, and
+        Sobol's points."""
+        span = np.where(self.span == 0.0, 1.0, self.span)
+        own = np.clip((self.own - self.low) / span, 0.0, 1.0)
+        spread = qmc.Sobol(len(own), seed=seed).random_base2(int(np.ceil(np.log2(max(count - 1, 1)))))
+        return np.vstack((own, spread[: count - 1]))
+
+    def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
+        """Return rows of the form alone, their Jacobian by the scaled variables, and their changes over
+        relative ones of their limits by name: none unless a kind of design has some."""
+        return np.zeros(0), np.zeros((0, len(values))), {}
+
+    def answers(self, values: Array) -> Answers:
+        """Return what the design with these variables (N,) answers; errors as of `evaluate.answers`."""
+        return evaluate.answers(self.problem(values))
+
+    def case(self) -> Answers:
+        """Return what the start answers."""
+        return self.answers(self.own)
+
 
 @dataclass(frozen=True, kw_only=True)
-class Task(Bounded):
-    """One question about one pivot.
+class Task(Sizing):
+    """A question about a pivot: designs have the material, range (`rotation`), increments and loads of the
+    start.
 
     Args:
-        start: the design to compare with; all have its material, range (`rotation`), increments and loads.
-        objective: a key of `OBJECTIVES`.
-        stiffness: wanted rotational stiffness at rotation 0, under the loads [N m / rad].
-        allowable_stress: of the extreme fibres at the ends of the range, and before it under loads [Pa].
-        bounds: lowest and highest value of every variable in the order of `VARIABLES`, SI and radians.
+        bounds: in the order of `VARIABLES`, SI and radians.
         least_slenderness: of the strips, L / t [1]: below, shear counts, which the strips do not have.
         largest_aspect: of the strips, b / L [1]: above, a strip is a plate.
-        limits: largest value of an objective that is not the one to be least, by its name.
     """
 
     start: Problem
@@ -77,10 +136,8 @@ class Task(Bounded):
     largest_aspect: float
     limits: Mapping[str, float] = field(default_factory=dict)
 
-    #: What may be made least of a pivot, what the wanted stiffness is called, and what tables show.
-    objectives: ClassVar = tuple(OBJECTIVES)
-    held: ClassVar = "stiffness"
-    columns: ClassVar = (
+    objectives = tuple(OBJECTIVES)
+    columns = (
         ("L mm", 1e3, "9.3f"),
         ("incl. deg", math.degrees(1.0), "11.3f"),
         ("crossing", 1.0, "10.4f"),
@@ -88,25 +145,28 @@ class Task(Bounded):
         ("b mm", 1e3, "9.3f"),
     )
 
-    @property
-    def sides(self) -> tuple[float, ...]:
-        """Signs of the rotations that are solved, as of `sides_of`."""
-        return sides_of(self.start)
+    @classmethod
+    def usual(
+        cls, start: Problem, bounds: Mapping[str, tuple[float, float]] | None = None, **asked: Any
+    ) -> "Task":
+        """Return the question about a design within bounds as far as a designer may leave it, or those that
+        are given, with strips no stubbier than its own, and no wider than it is long; `asked` are the other
+        arguments."""
+        length, _, _, thickness, width = map(float, variables_of(start))
+        usual = {
+            "length": (0.5 * length, length),
+            "inclination": (math.radians(20.0), math.radians(70.0)),
+            "crossing_ratio": (0.1, 0.9),
+            "thickness": (0.1 * thickness, 1.6 * thickness),
+            "width": (0.2 * width, length),
+        }
+        within = usual | dict(bounds or {})
+        return cls(start=start, bounds=within, least_slenderness=length / thickness, **asked)
 
     @property
     def own(self) -> Array:
         """Variables of the start (5,)."""
         return variables_of(self.start)
-
-    @property
-    def fibres(self) -> int:
-        """Fibre stresses that are held: at the end of each side, under loads before the body turns too."""
-        return FIBRES * (1 if len(self.sides) == 1 else len(self.sides) + 1)
-
-    @property
-    def states(self) -> int:
-        """States behind the first, of all sides."""
-        return self.start.increments * len(self.sides)
 
     def shape(self, values: Array) -> tuple[Array, Array, dict[str, float]]:
         """Return the rows of slenderness, L / t, and of aspect, b / L, linear in the variables (5,), over the
@@ -124,10 +184,6 @@ class Task(Bounded):
         slender = length - self.least_slenderness * thickness
         return np.array([slender, self.largest_aspect * length - width]) / whole, rows, changes
 
-    def begun_at(self, start: Problem) -> "Task":
-        """Return the same question about another design."""
-        return replace(self, start=start)
-
     def problem(self, variables: Array) -> Problem:
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""
         return varied(self.start, variables)
@@ -136,40 +192,13 @@ class Task(Bounded):
         """Return what the start answers."""
         return evaluate.answers(self.start)
 
-    def answers(self, values: Array) -> Answers:
-        """Return what the design with these variables (5,) answers; errors as of `answers`."""
-        return evaluate.answers(self.problem(values))
-
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name."""
-        return evaluate.of_spline(found).quantities()
+        return found.measured().quantities()
 
     def by_elements(self, design: Problem) -> dict[str, float]:
         """Return what the finite elements say of it; NoReference where they do not reach its range's end."""
         return evaluate.by_elements(design)[0].quantities()
-
-
-def _usual_bounds(start: Problem) -> dict[str, tuple[float, float]]:
-    """Return how far a designer may leave a design where no bounds are given [m, rad, 1, m, m].
-
-    The slenderness may not fall below the start's own, nor the width exceed the start's length.
-    """
-    length, _, _, thickness, width = map(float, variables_of(start))
-    return {
-        "length": (0.5 * length, length),
-        "inclination": (math.radians(20.0), math.radians(70.0)),
-        "crossing_ratio": (0.1, 0.9),
-        "thickness": (0.1 * thickness, 1.6 * thickness),
-        "width": (0.2 * width, length),
-    }
-
-
-def usual_task(start: Problem, bounds: Mapping[str, tuple[float, float]] | None = None, **asked: Any) -> Task:
-    """Return the question about a design within the usual bounds, or those that are given, with strips that
-    are no stubbier than its own; `asked` are the other arguments of `Task`."""
-    length, _, _, thickness, _ = map(float, variables_of(start))
-    within = _usual_bounds(start) | dict(bounds or {})
-    return Task(start=start, bounds=within, least_slenderness=length / thickness, **asked)
 
 
 def variables_of(problem: Problem) -> Array:
@@ -217,6 +246,18 @@ class Question:
     aspect: float = 1.0
     stress: float | None = None
 
+    def task(self, start: Problem, own: Answers, *, variation: float | None = None) -> Task:
+        """Return what is asked beside that design at the stiffness of its own answers, with `variation` as
+        the largest one of the stiffness [1] where it is given."""
+        return Task.usual(
+            start,
+            objective=self.objective,
+            stiffness=own.stiffness,
+            allowable_stress=own.largest(STRESS) if self.stress is None else self.stress,
+            largest_aspect=self.aspect,
+            limits={} if variation is None else {VARIATION: variation},
+        )
+
 
 QUESTIONS: Mapping[str, Question] = {
     "least centre shift": Question(baseline=TABLE_ONE, objective=CENTRE_SHIFT),
@@ -241,21 +282,3 @@ def baseline(name: str = TABLE_ONE) -> Problem:
     given = named_case(BASELINES[name])
     rotation = math.radians(RANGE_DEG) if name == TABLE_ONE else given.rotation
     return replace(given, rotation=rotation, increments=INCREMENTS)
-
-
-def task_of(start: Problem, question: Question, *, stiffness: float, stress: float, **limits: float) -> Task:
-    """Return the task of a question, at the stiffness of the design to compare with.
-
-    Args:
-        start: that design, with its own stiffness at rest [N m / rad] and largest stress [Pa].
-        question: of what is to be least.
-        limits: largest variation of stiffness, as `variation` [1].
-    """
-    return usual_task(
-        start,
-        objective=question.objective,
-        stiffness=stiffness,
-        allowable_stress=stress if question.stress is None else question.stress,
-        largest_aspect=question.aspect,
-        limits={VARIATION: limits["variation"]} if limits else {},
-    )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from studies.answers.models import model_of
 from studies.answers.response import centre_shift
-from studies.answers.settings import SplineSettings
+from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
 from studies.cases.document import is_mechanism
@@ -24,6 +24,7 @@ from studies.sweep.points import CONVERGED, Paths
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
 LEAST_COMPLIANCE = 1.01e-9
 PLAIN = {"bending", "stretching"}
+INCREMENTS = "drive.increments"
 
 Columns = dict[str, Array]
 _KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
@@ -33,34 +34,30 @@ _PARTS = {f"{name}.{part}" for name, key in _KEYS.items() if key.rule.kind == "p
 def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.Table:
     """Return the rows of the designs in `columns`, the first of which is point `start` of the sweep.
 
-    A row has the status "converged"; "not_converged": the model stopped, with why and where as the reason;
-    "refused": the model does not take the design; "failed": anything else went wrong. All but the first
-    have no quantities.
+    Designs of which the compiled paths are not sure are solved by themselves, as those that these do not
+    take: that says why a path stopped, and which branch is right. A row of any status but "converged", as of
+    `points.solve`, has no quantities.
     """
     count = len(next(iter(columns.values())))
-    designs = [{key: column[i] for key, column in columns.items()} for i in range(count)]
-    found: Mapping[str, Any]
-    if task.batch:
-        status, reason, found = _solve_batch(task, columns)
-    else:
-        status, reason, found = points.solve_each(task, designs)
-    names = {name: found[name] for name in task.quantities}
-    table = {
-        points.POINT: np.arange(start, start + count),
-        **columns,
-        points.STATUS: status,
-        points.REASON: reason,
-        **names,
-    }
-    whole = points.stored(task)
-    done = np.array([each == CONVERGED for each in status])
-    arrays = [
-        pa.array(values, type=pa.int64() if whole[name].whole else pa.float64(), mask=~done, from_pandas=True)
-        if name in whole
-        else pa.array(values)
-        for name, values in table.items()
-    ]
-    return pa.Table.from_arrays(arrays, names=list(table))
+    found: dict[str, Any] = {name: np.full(count, np.nan) for name in task.quantities}
+    status, reason = [CONVERGED] * count, [""] * count
+    alone = np.ones(count, dtype=bool)
+    for rows, quantities in _together(task, columns, count) if task.batch else ():
+        alone[rows] = False
+        for name, values in quantities.items():
+            found[name][rows] = values
+    for row in np.flatnonzero(alone).tolist():
+        design = {key: column[row] for key, column in columns.items()}
+        status[row], reason[row], answer = points.solve(task, design)
+        for name, value in answer.items():
+            found[name][row] = value
+    table = {points.POINT: np.arange(start, start + count), **columns}
+    table |= {points.STATUS: status, points.REASON: reason}
+    arrays = [pa.array(values) for values in table.values()]
+    for name, quantity in points.stored(task).items():
+        kind = pa.int64() if quantity.whole else pa.float64()
+        arrays.append(pa.array(found[name], type=kind, mask=np.isnan(found[name])))
+    return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
 def takes(task: Task) -> bool:
@@ -69,103 +66,74 @@ def takes(task: Task) -> bool:
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
-    if task.model != "spline" or task.analysis.kind != "static" or is_mechanism(task.case):
+    if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
     effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
     return PLAIN <= effects <= PLAIN | set(MOTION_ONLY) and all(
-        key in own or key.startswith(f"{plan.SETTINGS}.") for key in task.keys
+        key in own or plan.is_setting(key) for key in task.keys
     )
 
 
-def _solve_batch(
-    task: Task, columns: Mapping[str, list[Any]]
-) -> tuple[list[str], list[str], dict[str, Array]]:
-    """Return status, reason and quantities of the designs, as `points.solve_each` does.
+def _together(
+    task: Task, columns: Mapping[str, list[Any]], count: int
+) -> Iterator[tuple[NDArray[np.int64], Columns]]:
+    """Yield rows of designs whose compiled paths are sure, and their quantities.
 
-    A design whose compiled path stops, or passes a critical point, is solved by itself: that says why, and
-    which branch is right. Both sides of a plain pivot are mirror images (its strips are alike and only the
-    couple acts, wherever the body's centre lies), so that one is enough.
+    Both sides of a plain pivot are mirror images (its strips are alike and only the couple acts, wherever the
+    body's centre lies), so that one is enough.
     """
-    design = plan.design_of(task, {})
-    assert isinstance(design, Problem)
-    count = len(next(iter(columns.values())))
-    given = _attributes(task, design, columns, count)
-    slender = given["second_moment_of_area"] < LEAST_COMPLIANCE * given["area"] * given["length"] ** 2
-    found = {name: np.full(count, np.nan) for name in task.quantities}
-    single = np.ones(count, dtype=bool)
-    for settings, increments, rows in _groups(task, design, columns, np.flatnonzero(~slender)):
-        sure, values = _paths(task, settings, increments, {name: v[rows] for name, v in given.items()})
-        single[rows[sure]] = False
-        for name, column in values.items():
-            found[name][rows] = column
-    status, reason = np.full(count, CONVERGED, dtype=object), np.full(count, "", dtype=object)
-    alone = np.flatnonzero(single)
-    if len(alone):
-        designs = [{key: column[i] for key, column in columns.items()} for i in alone]
-        status[alone], reason[alone], each = points.solve_each(task, designs)
-        for name, numbers in each.items():
-            found[name][alone] = numbers
-    return list(status), list(reason), found
+    given = _attributes(task, columns, count)
+    stout = given["second_moment_of_area"] >= LEAST_COMPLIANCE * given["area"] * given["length"] ** 2
+    keys = [key for key in columns if key == INCREMENTS or plan.is_setting(key)]
+    alike: dict[tuple[Any, ...], list[int]] = {}
+    for row in np.flatnonzero(stout).tolist():
+        alike.setdefault(tuple(columns[key][row] for key in keys), []).append(row)
+    for shared, members in alike.items():
+        values, rows = dict(zip(keys, shared, strict=True)), np.array(members)
+        increments = values.get(INCREMENTS, task.case["drive"]["increments"])
+        settings = task.settings_of(values)
+        sure, found = _paths(task, settings, increments, {name: each[rows] for name, each in given.items()})
+        yield rows[sure], {name: column[sure] for name, column in found.items()}
 
 
-def _attributes(task: Task, design: Problem, columns: Mapping[str, list[Any]], count: int) -> Columns:
+def _attributes(task: Task, columns: Mapping[str, list[Any]], count: int) -> Columns:
     """Return what the kernel and the ratios ask for as columns in SI, (count,) or (count, 2)."""
+    slenderness = columns.get(plan.SLENDERNESS)
+    design = task.design({} if slenderness is None else {plan.SLENDERNESS: slenderness[0]})
+    assert isinstance(design, Problem)
     sides = () if design.width is None else SIDES
-    names = (*PIVOT_PARAMETERS, *sides, "rotation", "depth")
-    given = {name: np.array([getattr(design, name)] * count, dtype=float) for name in names}
-    given["yield_strength"] = np.full(count, design.yield_strength or np.inf)
-    depth = np.full(count, np.nan if design.section_depth is None else design.section_depth)
+    names = (*PIVOT_PARAMETERS, *sides, "rotation", "section_depth", "yield_strength")
+    given = {name: np.array([getattr(design, name)] * count, dtype=float) for name in names}  # None: nan
     for name, column in columns.items():
-        if name in _KEYS:
-            key = _KEYS[name]
-            values = np.array([key.rule.parse(value) for value in column], dtype=float)
-            if key.attribute == "section_depth":
-                depth = values
-            elif key.attribute in given:
-                given[key.attribute] = values
-        elif name in _PARTS:
-            pair, _, part = name.rpartition(".")
+        pair, _, part = name.rpartition(".")
+        if name in _PARTS:
             given[_KEYS[pair].attribute][:, plan.PARTS[part]] = column
+        elif name in _KEYS and _KEYS[name].attribute in given:
+            key = _KEYS[name]
+            given[key.attribute] = np.array([key.rule.parse(value) for value in column], dtype=float)
+    if slenderness is not None:
+        given["thickness"] = given["length"] / np.array(slenderness, dtype=float)
     if sides:
-        width, thickness = (given.pop(name) for name in sides)
-        if plan.SLENDERNESS in columns:
-            thickness = given["length"] / np.array(columns[plan.SLENDERNESS], dtype=float)
-        given |= of_sides(width, thickness)
-    elif plan.SLENDERNESS in columns:
-        section = design.area, design.second_moment_of_area
-        slenderness = np.array(columns[plan.SLENDERNESS], dtype=float)
-        given["area"], given["second_moment_of_area"] = plan.of_slenderness(
-            slenderness, given["length"], *section
-        )
+        given |= of_sides(given.pop("width"), given.pop("thickness"))
     rectangle = np.sqrt(12.0 * given["second_moment_of_area"] / given["area"])
+    depth, strength = given.pop("section_depth"), given["yield_strength"]
     given["depth"] = np.where(np.isnan(depth), rectangle, depth)
+    given["yield_strength"] = np.where(np.isnan(strength), np.inf, strength)
     return given
 
 
-def _groups(
-    task: Task, design: Problem, columns: Mapping[str, list[Any]], rows: NDArray[np.int64]
-) -> Iterator[tuple[dict[str, Any], int, NDArray[np.int64]]]:
-    """Yield the rows that share settings and increments, with these."""
-    increments = columns.get("drive.increments", [design.increments] * (rows.max(initial=0) + 1))
-    varied = [key for key in task.keys if key.startswith(f"{plan.SETTINGS}.")]
-    alike: dict[tuple[Any, ...], list[int]] = {}
-    for row in rows:
-        alike.setdefault((increments[row], *(columns[key][row] for key in varied)), []).append(row)
-    for (count, *settings), members in alike.items():
-        own = plan.varied_settings(task, dict(zip(varied, settings, strict=True)))
-        yield own, count, np.array(members)
-
-
 def _paths(
-    task: Task, settings: dict[str, Any], increments: int, given: Columns
+    task: Task, settings: Settings, increments: int, given: Columns
 ) -> tuple[NDArray[np.bool_], Columns]:
-    """Return which designs are sure, and the quantities of all; none where the kernel does not take them."""
+    """Return which designs are sure, and the quantities of all; none where the kernel does not take them.
+
+    A path that stops, or passes a critical point, is not sure.
+    """
     from spline_model.batch import solve_many
 
     turns, depth = given["rotation"], given["depth"]
     designs = {name: given[name] for name in PIVOT_PARAMETERS}
-    chosen = SplineSettings(**settings)
-    model = model_of(chosen)
+    model = model_of(settings)
     try:
         batch = solve_many(
             designs,
@@ -173,7 +141,7 @@ def _paths(
             increments=increments,
             section_depth=depth,
             threads=1,
-            **chosen.keywords(),
+            **settings.keywords(),
         )
     except model.errors.InvalidParameter:
         return np.zeros(len(turns), dtype=bool), {}
@@ -185,7 +153,7 @@ def _paths(
         stress=batch.strain * given["youngs_modulus"][:, None],
         defect=batch.moment_defect,
         unstable=unstable,
-        iterations=(1 + task.analysis.both_sides) * batch.iterations,
+        iterations=(1 + task.options["both_sides"]) * batch.iterations,
         shift=centre_shift(_crossing(given), batch.rotation, batch.centre),
         places={},
         strips=(_strip(given).bent(batch.strain.max(axis=1)),),

@@ -45,7 +45,7 @@ SPACE: dict[str, Any] = {
 MAP_SLENDERNESS, MAP_RATIOS, MAP_INCLINATIONS = 50.0, 41, 17
 #: Crossing ratios around Wittrick's at three inclinations [deg].
 RATIOS, INCLINATIONS = np.linspace(0.1, 0.2, 101), (30.0, 45.0, 60.0)
-WITTRICK = 0.5 - math.sqrt(5.0) / 6.0
+WITTRICK = space_figure.WITTRICK["0.1273"]
 #: Stress and stiffness of that pivot over those at one half, for small rotations.
 LINEAR_STRESS = 1.0 + math.sqrt(5.0)
 LINEAR_STIFFNESS = 4.0 * (1.0 - 3.0 * WITTRICK * (1.0 - WITTRICK))

@@ -2,15 +2,15 @@
 may vary: the keys of a case, the settings of a model, and the slenderness of a pivot."""
 
 import copy
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
-from studies.answers.settings import settings_of_model
-from studies.cases import design, effects, keys
-from studies.cases.design import Design
+from studies.answers.settings import Settings, settings_of_model
+from studies.cases import effects, keys
+from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
+from studies.cases.mechanism import rectangle_of
 from studies.cases.rules import Rule, not_negative, number, positive, text, whole
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
@@ -22,13 +22,12 @@ class Axis:
     """One key that is varied: over listed values, or from `low` to `high` in the file's unit.
 
     Attributes:
-        key: as in DESIGNS.toml. rule: for its values.
+        key: as in DESIGNS.toml.
         values: listed; None for a range.
         points: of a range in a grid [1]. log: even steps of the logarithm.
     """
 
     key: str
-    rule: Rule
     values: tuple[Any, ...] | None = None
     low: float = 0.0
     high: float = 0.0
@@ -52,27 +51,15 @@ class Sample:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Analysis:
-    """What is asked of each design.
-
-    Attributes:
-        kind: "static", "modes" or "release".
-        both_sides: a static path to the rotation and one to its opposite.
-        options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
-    """
-
-    kind: str
-    both_sides: bool = False
-    options: dict[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Task:
     """What every chunk of a sweep needs to know.
 
     Attributes:
         where: file that refusals name. case: document of the case with what is fixed by the sweep.
         model: as on the command line. settings: keywords of its settings.
+        kind: of the analysis, one of `KINDS`.
+        options: of a static path (`both_sides`: also to the opposite rotation), of modes (`rotation` [rad],
+            `held`, `count`) or of a release (`duration` [s], ...).
         keys: that are varied. quantities: names of what is stored.
         batch: whether the compiled paths of many pivots at once take the designs.
     """
@@ -81,10 +68,23 @@ class Task:
     case: dict[str, Any]
     model: str
     settings: dict[str, Any]
-    analysis: Analysis
+    kind: str
+    options: dict[str, Any]
     keys: tuple[str, ...]
     quantities: tuple[str, ...]
     batch: bool
+
+    def design(self, values: Mapping[str, Any]) -> Design:
+        """Return one design of the sweep; CaseError where a value is out of its range."""
+        document = copy.deepcopy(self.case)
+        put(document, values)
+        return design_of(self.where, document)
+
+    def settings_of(self, values: Mapping[str, Any]) -> Settings:
+        """Return the settings of one design: those of the sweep, and those that it varies."""
+        own = {key.partition(".")[2]: value for key, value in values.items() if is_setting(key)}
+        usual = {"control_points": CONTROL_POINTS} if self.model == "spline" else {}
+        return settings_of_model(self.model, **(usual | self.settings | own))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,9 +106,10 @@ class Plan:
         return number * self.chunk, min((number + 1) * self.chunk, self.sample.points)
 
 
+#: Control points of a spline unless said otherwise.
+CONTROL_POINTS = 6
 SETTINGS = "settings"
-#: L over the thickness of a rectangular section of the case's width: sets the thickness, or area and second
-#: moment where the case gives these.
+#: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
 #: What it takes the place of.
 SECTION = ("strip.area_m2", "strip.second_moment_m4", "strip.thickness_m", "strip.section_depth_m")
@@ -116,6 +117,12 @@ SECTION = ("strip.area_m2", "strip.second_moment_m4", "strip.thickness_m", "stri
 PARTS = {"x": 0, "y": 1}
 #: The list of a scene's effects, as names with commas.
 EFFECTS = "scene.effects"
+
+
+def is_setting(key: str) -> bool:
+    """Return whether a key of [vary] is of the settings, not of the case."""
+    return key.startswith(f"{SETTINGS}.")
+
 
 _SETTING_RULES: dict[str, Rule] = {
     "control_points": whole(4, 100),
@@ -169,7 +176,7 @@ def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     return {key: rule for key, rule in found.items() if rule.kind != "text"}
 
 
-def put(document: dict[str, Any], key: str, value: Any) -> None:
+def _put(document: dict[str, Any], key: str, value: Any) -> None:
     """Set one key of a case's document in place; `value` in the file's unit.
 
     Of effects that a list of effects leaves out the parameters go with them.
@@ -189,6 +196,15 @@ def put(document: dict[str, Any], key: str, value: Any) -> None:
     _at(document, way)[last] = value
 
 
+def value_at(document: Mapping[str, Any], key: str) -> Any:
+    """Return what stands at a key of a case's document, None where there is nothing."""
+    *way, last = key.split(".")
+    if last in PARTS and len(way) > 1:
+        pair = value_at(document, ".".join(way))
+        return None if pair is None else pair[PARTS[last]]
+    return _at(copy.deepcopy(dict(document)), way).get(last)
+
+
 def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
     """Return the table that the names lead to; of an array the one of that name."""
     place: Any = document
@@ -201,46 +217,21 @@ def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
     return found
 
 
-def put_all(document: dict[str, Any], values: Mapping[str, Any]) -> None:
+def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
     """Set the keys of one design in place, its list of effects first, a slenderness last; settings are not of
     the document."""
     for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
-        if key != SLENDERNESS and not key.startswith(f"{SETTINGS}."):
-            put(document, key, value)
+        if key != SLENDERNESS and not is_setting(key):
+            _put(document, key, value)
     if SLENDERNESS in values:
         strip = document["strip"]
-        if "width_m" in strip:
-            strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
-            return
-        area, second = of_slenderness(
-            values[SLENDERNESS], strip["length_m"], strip["area_m2"], strip["second_moment_m4"]
-        )
-        strip.update(area_m2=area, second_moment_m4=second)
+        to_sides(strip)
+        strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
 
 
-def of_slenderness(slenderness: Any, length: Any, area: float, second: float) -> tuple[Any, Any]:
-    """Return area [m^2] and second moment [m^4] of a rectangle of depth L / slenderness.
-
-    Its width is that of the rectangle with the case's area and second moment; arguments may be arrays.
-    """
-    width = area / math.sqrt(12.0 * second / area)
-    depth = length / slenderness
-    return width * depth, width * depth**3 / 12.0
-
-
-#: Control points of a spline unless said otherwise.
-CONTROL_POINTS = 6
-
-
-def design_of(task: Task, values: Mapping[str, Any]) -> Design:
-    """Return one design of the sweep; CaseError where a value is out of its range."""
-    document = copy.deepcopy(task.case)
-    put_all(document, values)
-    return design.design_of(task.where, document)
-
-
-def varied_settings(task: Task, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keywords of the settings of one design: those of the sweep, and those that it varies."""
-    own = {key.partition(".")[2]: value for key, value in values.items() if key.startswith(f"{SETTINGS}.")}
-    usual = {"control_points": CONTROL_POINTS} if task.model == "spline" else {}
-    return usual | task.settings | own
+def to_sides(section: dict[str, Any]) -> None:
+    """Give a table of the document its section by width and thickness, in place of area and second moment."""
+    area, second = (key.name for key in keys.MOMENTS)
+    if area in section and second in section:
+        made = rectangle_of(section.pop(area), section.pop(second))
+        section |= {key.name: made[key.attribute] for key in keys.SIDES}

@@ -16,13 +16,13 @@ from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import Asked, put
 from studies.answers.motion import Motion, Spectrum
 from studies.answers.response import Response
-from studies.answers.settings import Settings, settings_of_model
+from studies.answers.settings import Settings
 from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design
 from studies.cases.document import is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep.plan import Task, design_of, varied_settings
+from studies.sweep.plan import Task
 
 #: How a design ended.
 CONVERGED, NOT_CONVERGED = "converged", "not_converged"
@@ -183,7 +183,7 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity
 
 def stored(task: Task) -> dict[str, _Quantity]:
     """Return the quantities that the task stores, by name, in their order."""
-    found = known(task.case, task.analysis.kind, task.analysis.options.get("count", 0))
+    found = known(task.case, task.kind, task.options.get("count", 0))
     return {name: found[name] for name in task.quantities}
 
 
@@ -253,40 +253,25 @@ def _joined(one: Paths, other: Paths) -> Paths:
     )
 
 
-def solve_each(
-    task: Task, designs: list[dict[str, Any]]
-) -> tuple[list[str], list[str], dict[str, list[float]]]:
-    """Solve designs one by one; returns status, reason and quantities as columns."""
-    ended, table = [], stored(task)
-    found: dict[str, list[float]] = {name: [] for name in task.quantities}
-    for design in designs:
-        *how, answer = _answered(task, design)
-        ended.append(how)
-        row = {} if answer is None else values(table, answer)
-        for name, column in found.items():
-            column.append(float(row[name][0]) if row else np.nan)
-    return [status for status, _ in ended], [reason for _, reason in ended], found
+def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, float]]:
+    """Return status, reason and quantities of one design, without these where it has no answer.
 
-
-def _answered(task: Task, given: Mapping[str, Any]) -> tuple[str, str, Answer | None]:
-    """Return status, reason and answer of one design."""
+    The status is "converged"; "not_converged": the model stopped, with why and where as the reason;
+    "refused": the model does not take the design; "failed": anything else went wrong.
+    """
     try:
-        design = design_of(task, given)
-        settings = settings_of_model(task.model, **varied_settings(task, given))
-        return _solved(task, design, settings)
+        status, reason, answer = _answered(task, task.design(given), task.settings_of(given))
+        found = {} if answer is None else values(stored(task), answer)
+        return status, reason, {name: float(value[0]) for name, value in found.items()}
     except BadInput as error:
-        return REFUSED, str(error), None
+        return REFUSED, str(error), {}
     except Exception as error:  # a fault at one design must not cost the others: it is told in its row
-        return FAILED, f"{type(error).__name__}: {error}".splitlines()[0], None
+        return FAILED, f"{type(error).__name__}: {error}".splitlines()[0], {}
 
 
-def _solved(task: Task, design: Design, settings: Settings) -> tuple[str, str, Answer | None]:
-    options = task.analysis.options
-    answer: Answer
-    if task.analysis.kind == "static":
-        return static_answer(design, settings, both_sides=task.analysis.both_sides)
-    if task.analysis.kind == "modes":
-        answer = answer_modes(design, settings, **options)
-    else:
-        answer = answer_release(design, settings, **options)
+def _answered(task: Task, design: Design, settings: Settings) -> tuple[str, str, Answer | None]:
+    if task.kind == "static":
+        return static_answer(design, settings, **task.options)
+    ask = answer_modes if task.kind == "modes" else answer_release
+    answer: Spectrum | Motion = ask(design, settings, **task.options)
     return (CONVERGED if answer.converged else NOT_CONVERGED), answer.message, answer

@@ -3,20 +3,20 @@
 import copy
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from studies.answers.models import put
-from studies.answers.settings import MODELS, settings_of_model
+from studies.answers.settings import MODELS
 from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Rule, positive, shown, text, whole
 from studies.sweep import batch, plan, points
-from studies.sweep.plan import KINDS, Analysis, Plan, Sample, Task
+from studies.sweep.plan import KINDS, Plan, Sample, Task
 from studies.sweep.sample import POINTS, leaves, require_known, sample_of
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
@@ -39,7 +39,11 @@ OPTIONS: dict[str, dict[str, tuple[str, Rule]]] = {
         "integrator": ("integrator", text("the name of an integrator")),
     },
 }
-STANDARD: dict[str, dict[str, Any]] = {"static": {}, "modes": {"count": 3}, "release": {"duration": 0.05}}
+STANDARD: dict[str, dict[str, Any]] = {
+    "static": {"both_sides": False},
+    "modes": {"count": 3},
+    "release": {"duration": 0.05},
+}
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -61,23 +65,25 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
     known = plan.known(case, model)
     for key, value in leaves(tables["set"]):
-        if key.startswith(f"{plan.SETTINGS}."):
+        if plan.is_setting(key):
             raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
         require_known(where, "set", key, known)
         document.admitted(where, f"set.{key}", known[key], value)
-    plan.put_all(case, dict(leaves(tables["set"])))
+    plan.put(case, dict(leaves(tables["set"])))
     settings = _settings(where, tables["settings"], known)
     sample = sample_of(where, tables["sample"], tables["vary"], known, folder)
     _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
-    analysis = _analysis(where, tables["analysis"])
+    kind, options = _analysis(where, tables["analysis"])
+    found = points.known(case, kind, options.get("count", 0))
     task = Task(
         where=where,
         case=case,
         model=model,
         settings=settings,
-        analysis=analysis,
         keys=tuple(axis.key for axis in sample.axes),
-        quantities=_quantities(where, tables["store"], case, analysis),
+        kind=kind,
+        options=options,
+        quantities=_quantities(where, tables["store"], found),
         batch=False,
     )
     task = _checked(task, sample)
@@ -114,7 +120,7 @@ def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
 
 def _settings(where: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keywords of the model's settings."""
-    own = [key.partition(".")[2] for key in known if key.startswith(f"{plan.SETTINGS}.")]
+    own = [key.partition(".")[2] for key in known if plan.is_setting(key)]
     document.refuse_unknown(where, plan.SETTINGS, given, own)
     return {
         name: document.admitted(where, f"settings.{name}", known[f"{plan.SETTINGS}.{name}"], value)
@@ -136,22 +142,20 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
             raise CaseError(f"{where}: vary.{plan.SLENDERNESS}: got it beside {other}, which it sets itself")
 
 
-def _analysis(where: str, given: Mapping[str, Any]) -> Analysis:
+def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return kind and options of a task."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
     document.refuse_unknown(where, "analysis", given, ["kind", *OPTIONS[kind]])
     found = dict(STANDARD[kind])
     for name, (keyword, rule) in OPTIONS[kind].items():
         if name in given:
             found[keyword] = document.admitted(where, f"analysis.{name}", rule, given[name])
-    return Analysis(kind=kind, both_sides=found.pop("both_sides", False), options=found)
+    return kind, found
 
 
-def _quantities(
-    where: str, given: Mapping[str, Any], case: Mapping[str, Any], analysis: Analysis
-) -> tuple[str, ...]:
-    """Return the names of what is stored: as the file says, or what is usual."""
+def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of what is stored, of those that are found: as the file says, or what is usual."""
     document.refuse_unknown(where, "store", given, ["quantities"])
-    found = points.known(case, analysis.kind, analysis.options.get("count", 0))
     names = given.get("quantities", [name for name, quantity in found.items() if quantity.usual])
     if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
         raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
@@ -166,22 +170,13 @@ def _checked(task: Task, sample: Sample) -> Task:
     Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
     """
     first = {axis.key: axis.low if axis.values is None else axis.values[0] for axis in sample.axes}
-    design = plan.design_of(task, first)
-    if task.analysis.both_sides and design.rotation is None:
+    design = task.design(first)
+    if task.options.get("both_sides") and design.rotation is None:
         raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
-    for chosen in _settings_of(task, sample):
-        settings = settings_of_model(task.model, **chosen)
-        put(design, settings, moving=task.analysis.kind != "static")
+    axes = [axis for axis in sample.axes if plan.is_setting(axis.key)]
+    for values in ({}, *({axis.key: value} for axis in axes for value in axis.values or ())):
+        put(design, task.settings_of(values), moving=task.kind != "static")
     return replace(task, batch=batch.takes(task))
-
-
-def _settings_of(task: Task, sample: Sample) -> Iterator[dict[str, Any]]:
-    """Yield the settings of the sweep with each value of each setting that it varies."""
-    yield plan.varied_settings(task, {})
-    for axis in sample.axes:
-        if axis.key.startswith(f"{plan.SETTINGS}."):
-            for value in axis.values or ():
-                yield plan.varied_settings(task, {axis.key: value})
 
 
 def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int) -> dict[str, Any]:
@@ -192,11 +187,7 @@ def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int)
         "case": task.case,
         "model": task.model,
         "settings": task.settings,
-        "analysis": {
-            "kind": task.analysis.kind,
-            "both_sides": task.analysis.both_sides,
-            **task.analysis.options,
-        },
+        "analysis": {"kind": task.kind, "both_sides": False, **task.options},
         "sample": {name: getattr(sample, name) for name in ("method", "points", "seed")} | {"chunk": chunk},
         "vary": content.get("vary", {}),
         "file_sha256": hashlib.sha256(listed.encode()).hexdigest() if listed else "",

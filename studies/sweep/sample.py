@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from studies.cases import document
@@ -84,7 +83,7 @@ def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: st
         if len(given) > 1:
             others = ", ".join(name for name in given if name != "values")
             raise CaseError(f"{where}: {label}: got values beside {others}, expected one of the two")
-        return Axis(key=key, rule=known[key], values=_listed(where, label, known[key], given["values"]))
+        return Axis(key=key, values=_listed(where, label, known[key], given["values"]))
     if method == "list":
         raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
     return _range(where, key, given, known[key], grid=method == "grid")
@@ -121,7 +120,7 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
     if scale == "log" and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
     points = document.admitted(where, f"{label}.points", POINTS, given.get("points", 1))
-    return Axis(key=key, rule=rule, low=float(low), high=float(high), points=points, log=scale == "log")
+    return Axis(key=key, low=float(low), high=float(high), points=points, log=scale == "log")
 
 
 def _length(where: str, axes: tuple[Axis, ...]) -> int:
@@ -153,7 +152,7 @@ def _from_file(
     for key in map(str, table.columns):
         require_known(where, f"sample.file: {path}", key, known)
         values = _listed(where, f"sample.file: {path}: {key}", known[key], table[key].tolist())
-        axes.append(Axis(key=key, rule=known[key], values=values))
+        axes.append(Axis(key=key, values=values))
     return tuple(axes)
 
 
@@ -177,13 +176,14 @@ class Drawer:
 
     def rows(self, start: int, stop: int) -> Columns:
         """Return the points from `start` to before `stop` as columns by key, in the file's units."""
-        axes = self._sample.axes
-        if self._sample.method in ("grid", "list"):
-            number = np.arange(start, stop)
-            places = list(_places(self._sample, number))
-            return {axis.key: _values_at(axis, place) for axis, place in zip(axes, places, strict=True)}
+        axes, number = self._sample.axes, np.arange(start, stop)
+        if self._sample.method == "list":
+            return {axis.key: _column(axis, place=number) for axis in axes}
+        if self._sample.method == "grid":  # the last axis runs fastest
+            places = np.unravel_index(number, tuple(axis.count for axis in axes))
+            return {axis.key: _column(axis, place=place) for axis, place in zip(axes, places, strict=True)}
         unit = self._unit(start, stop)
-        return {axis.key: _spread(axis, unit[:, i]) for i, axis in enumerate(axes)}
+        return {axis.key: _column(axis, share=unit[:, i]) for i, axis in enumerate(axes)}
 
     def _unit(self, start: int, stop: int) -> Array:
         """Return the points within the unit cube, (stop - start, axes)."""
@@ -198,30 +198,12 @@ class Drawer:
         return np.concatenate([self._sobol.random(count) for count in (1, stop - 1) if count])
 
 
-def _places(sample: Sample, number: NDArray[np.int64]) -> Iterator[NDArray[np.int64]]:
-    """Yield the place on each axis: the last axis of a grid runs fastest, a list runs along all at once."""
-    if sample.method == "list":
-        yield from (number for _ in sample.axes)
-        return
-    shape = tuple(axis.count for axis in sample.axes)
-    yield from np.unravel_index(number, shape)
-
-
-def _values_at(axis: Axis, place: NDArray[np.int64]) -> list[Any]:
+def _column(axis: Axis, *, place: Any = None, share: Any = None) -> list[Any]:
+    """Return the values of an axis at places (D,), or at shares (D,) of [0, 1)."""
     if axis.values is not None:
+        place = (share * len(axis.values)).astype(int) if place is None else place
         return [axis.values[i] for i in place]
-    share = place / max(axis.points - 1, 1)
-    return _between(axis, share)
-
-
-def _spread(axis: Axis, share: Array) -> list[Any]:
-    """Return the values at shares of [0, 1): of a range, or one of those listed."""
-    if axis.values is not None:
-        return [axis.values[int(part * len(axis.values))] for part in share]
-    return _between(axis, share)
-
-
-def _between(axis: Axis, share: Array) -> list[Any]:
+    share = place / max(axis.points - 1, 1) if share is None else share
     if axis.log:
         low, high = math.log(axis.low), math.log(axis.high)
         values = np.exp(low + (high - low) * share)

@@ -4,6 +4,7 @@ Measured on the machine of the provenance; beyond its cores more workers cannot 
 larger machines.
 """
 
+import logging
 import os
 import tempfile
 import time
@@ -23,8 +24,7 @@ from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, Look
 from studies.sweep.design_space import SPACE
 from studies.sweep.read import plan_of
-from studies.sweep.run import sweep
-from studies.sweep.workers import Pool, cluster, loopback, processes, threads
+from studies.sweep.run import Pool, cluster, processes, sweep, threads
 
 KINDS = {"threads": "threads", "processes": "processes", "dask": "Dask workers on loopback"}
 ONE_WORKER = "Dask worker on loopback"
@@ -108,11 +108,31 @@ def chunk_cost(cuts: pd.DataFrame, kind: str) -> float:
 def _pool_of(kind: str, count: int) -> Iterator[Pool]:
     """Yield workers of a kind, those of Dask with a cluster of their own."""
     if kind == "dask":
-        with loopback(count) as own, cluster(own.address, workers=count) as pool:
+        with loopback(count) as own, cluster(own.scheduler_address, workers=count) as pool:
             yield pool
     else:
         with (threads if kind == "threads" else processes)(count) as pool:
             yield pool
+
+
+@contextmanager
+def loopback(workers: int) -> Iterator[Any]:
+    """Yield a cluster on this machine, Dask's own, of that many workers with one thread each, which has a
+    `scheduler_address`; all processes end with the context."""
+    from distributed.deploy.subprocess import SubprocessCluster
+
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        SubprocessCluster(
+            scheduler_kwargs={"dashboard": False, "scheduler_file": f"{folder}/scheduler.json"},
+            worker_class="distributed.Worker",
+            n_workers=workers,
+            threads_per_worker=1,
+            worker_kwargs={"dashboard": False, "local_directory": folder},
+            silence_logs=logging.CRITICAL,
+        ) as own,
+    ):
+        yield own
 
 
 def _content(designs: int, chunk: int | None = None) -> dict[str, Any]:

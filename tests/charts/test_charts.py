@@ -8,7 +8,7 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings
 from studies.cases.problem import named_case
-from studies.charts import pivot, theory
+from studies.design import charts as pivot
 from tests import gates
 
 RATIOS, ANGLES = np.array([0.2, 0.5, 0.8]), np.array([45.0, 45.0, 45.0])
@@ -83,12 +83,12 @@ def test_load_at_the_crossing_leaves_the_shiftless_pivot_as_it_is():
 @pytest.mark.slow
 def test_reference_pivot_lies_where_the_suite_says():
     """Requirement: the pivot of Table 1 is as thick and wide as its case, and shear makes it softer."""
-    row, case = theory.judged("cross_axis_pivot")["validity"], named_case("cross_axis_pivot")
+    row, case = pivot.judged("cross_axis_pivot")["validity"], named_case("cross_axis_pivot")
     assert row["thickness_ratio"] == pytest.approx(case.depth / case.length)
     assert row["shear"] < 0.0 < row["clamped_least"] < row["clamped_most"]
 
 
 def test_theory_ends_where_the_remarks_say():
     """Requirement: at a ratio of the table what a beam leaves out is the share that stands beside it."""
-    for row in theory.limits()["limits"]:
-        assert theory.LEFT_OUT[row["ratio"]][0](row["value"]) == pytest.approx(row["share"], rel=0.05)
+    for row in pivot.limits()["limits"]:
+        assert pivot.LEFT_OUT[row["ratio"]][0](row["value"]) == pytest.approx(row["share"], rel=0.05)

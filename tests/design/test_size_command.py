@@ -9,7 +9,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import read_design
 from studies.cases.problem import FOLDER, named_case
-from studies.design.evaluate import answers, of_spline
+from studies.design.evaluate import answers
 from tests import gates
 from tests.exchange.test_data_page import described
 
@@ -196,7 +196,7 @@ def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
     case, best = named_case("large_steel_pivot"), named_case(path)
     assert (best.length, best.width) == (pytest.approx(0.3), pytest.approx(0.05))
     assert best.effects == case.effects
-    sized, own = of_spline(answers(best)).quantities(), of_spline(answers(case)).quantities()
+    sized, own = answers(best).measured().quantities(), answers(case).measured().quantities()
     assert sized["centre-shift"] < 0.5 * own["centre-shift"]
     assert sized["stiffness"] == pytest.approx(own["stiffness"], rel=2e-6)
     assert sized["stress"] <= 0.5 * best.yield_strength * (1.0 + 1e-6)

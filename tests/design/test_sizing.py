@@ -8,11 +8,18 @@ import pytest
 from studies.cases.effects import Effects
 from studies.design import margins
 from studies.design import task as questions
-from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds, answers, by_elements, of_spline
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    STATIONS,
+    VARIATION,
+    PathEnds,
+    answers,
+    by_elements,
+)
 from studies.design.margins import off, resized
-from studies.design.optimise import NEARLY, best, feasible, numbered, optimise, search, starts
+from studies.design.optimise import NEARLY, best, feasible, numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme, gradient_error
-from studies.design.task import FIBRES, OBJECTIVES, variables_of
+from studies.design.task import OBJECTIVES, variables_of
 from studies.effects.beyond import with_sections
 from studies.record.progress import silent
 from tests import gates
@@ -36,17 +43,15 @@ def narrow(own):
 
 
 def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
-    limits = {"variation": changes.pop("variation")} if "variation" in changes else {}
+    variation = changes.pop("variation", None)
     question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
-    start, found = own
-    stress = float(np.abs(found.stress).max())
-    task = questions.task_of(start, question, stiffness=found.stiffness, stress=stress, **limits)
+    task = question.task(*own, variation=variation)
     return replace(task, **changes)
 
 
 def _quick(task):
     """The optimum of narrow strips from a start that reaches it in ten paths."""
-    found = optimise(task, starts(task, 8)[3])
+    found = optimise(task, task.starts(8)[3])
     assert found is not None and found.converged, found
     return found
 
@@ -79,7 +84,7 @@ def test_optimum_of_narrow_strips(own, narrow):
 
 
 def _variables(task, start):
-    return task.low + task.span * starts(task, 8)[start]
+    return task.low + task.span * task.starts(8)[start]
 
 
 @pytest.mark.parametrize("name", ["stress", "aspect", "slenderness", "stiffness", "inclination at its most"])
@@ -114,7 +119,7 @@ def test_a_start_without_a_path_is_outside(own):
 def test_constraints_that_no_design_meets(own):
     """With a stress that nothing meets, no start leads to an optimum and each says by how much it misses."""
     task = _task(own, allowable_stress=1e6)
-    found = search(task, starts(task, 2)[1:], silent)
+    found = search(task, task.starts(2)[1:], silent)
     assert best(found) is None and numbered(found) == [0] * len(found)
     assert all("no design here meets the constraints (worst by" in each.message for each in found)
 
@@ -123,7 +128,7 @@ def test_a_start_far_outside_is_led_to_a_feasible_design(own):
     """Steps to the constraints lead there in few paths, each less violated than the one before."""
     task = _task(own)
     programme, history = Programme.of(task), []
-    at = feasible(programme, starts(task, FAR + 1)[FAR], history)
+    at = feasible(programme, task.starts(FAR + 1)[FAR], history)
     left = [violation for _, violation in history]
     assert left[0] > 0.1 and left == sorted(left, reverse=True) and left[-1] <= NEARLY
     assert programme.solved < 10 and at.min() >= 0.0 and at.max() <= 1.0
@@ -134,7 +139,7 @@ def test_a_start_far_outside_is_led_to_a_feasible_design(own):
 def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
     """Starts far outside end feasible, and at the same optimum when they are moved by 1e-14."""
     task = _task(own)
-    begin = starts(task, 8)[start]
+    begin = task.starts(8)[start]
     moves = (np.zeros(5), *(1e-14 * np.random.default_rng(k).choice([-1.0, 1.0], 5) for k in range(3)))
     found = search(task, np.clip(begin + moves, 0.0, 1.0), silent)
     assert all(each.converged for each in found), [each.message for each in found]
@@ -146,7 +151,7 @@ def test_mirror_image_answers_the_same(own):
     task = _task(own)
     values = _variables(task, 2)
     mirrored = values * (1, 1, 0, 1, 1) + (0, 0, 1.0 - values[2], 0, 0)
-    one, other = (of_spline(answers(task.problem(each))) for each in (values, mirrored))
+    one, other = (answers(task.problem(each)).measured() for each in (values, mirrored))
     np.testing.assert_allclose(one.shift, other.shift, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(one.stiffness, other.stiffness, rtol=1e-9)
     np.testing.assert_allclose(one.stress, other.stress, rtol=1e-9, atol=1.0)
@@ -187,7 +192,7 @@ def test_tolerances_change_what_whole_solves_say(own, monkeypatch):
 
 
 def _difference(problem, found):
-    spline, elements = of_spline(found).quantities(), by_elements(problem)[0].quantities()
+    spline, elements = found.measured().quantities(), by_elements(problem)[0].quantities()
     return max(abs(spline[name] / elements[name] - 1.0) for name in spline)
 
 
@@ -198,7 +203,7 @@ def _difference(problem, found):
 def test_factor_over_table_one(own, objective, gate):
     """The best optimum is many times better than Table 1, in both models; other starts end at worse ones."""
     task = _task(own, objective, 1.0)
-    every = starts(task, 8)
+    every = task.starts(8)
     found = optimise(task, every[BEST])
     assert found is not None and found.converged
     gates.check(gate, found.objective / own[1].largest(objective))
@@ -229,7 +234,7 @@ def test_gradients_under_a_sideways_load(own):
     )
     start = replace(table_one, effects=force, increments=4, rotation=0.3)
     found = answers(start)
-    assert found.stress.shape == (3 * FIBRES,)
+    assert found.stress.shape == (3 * 4 * len(STATIONS),)
     assert found.rotation.tolist() == pytest.approx(
         [0.0, *(side * k / 4 for side in (0.3, -0.3) for k in range(1, 5))]
     )
@@ -237,7 +242,7 @@ def test_gradients_under_a_sideways_load(own):
     task = _task((start, found))
     assert set(Programme(task=task, scale=dict.fromkeys(OBJECTIVES, 1.0)).row_names()) >= {"stress"}
     gates.check("sizing_gradients", gradient_error(task, variables_of(start)))
-    spline, elements = of_spline(found).quantities(), by_elements(start)[0].quantities()
+    spline, elements = found.measured().quantities(), by_elements(start)[0].quantities()
     apart = max(abs(spline[name] / elements[name] - 1.0) for name in spline)
     gates.check("sizing_finite_elements", apart)
 
@@ -246,7 +251,7 @@ def test_gradients_under_a_sideways_load(own):
 def wide(own):
     """The least centre shift of wide strips as planar beams, and its task."""
     task = _task(own, aspect=1.0)
-    found = optimise(task, starts(task, 8)[BEST])
+    found = optimise(task, task.starts(8)[BEST])
     assert found is not None and found.converged
     return task, found
 

@@ -4,8 +4,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.document import CaseError
-from studies.sweep.plan import design_of
-from studies.sweep.points import solve_each
+from studies.sweep.points import solve
 from tests.sweep.sweeps import plan
 
 GOOD = {
@@ -135,8 +134,8 @@ def test_a_load_that_the_scene_does_not_name_is_no_axis():
         plan(LOADED.format(scene=""))
     named = 'scene.effects = "bending,stretching,strip_inertia,body_inertia,applied_moment"'
     asked = plan(LOADED.format(scene=named)).task
-    status, _, _ = solve_each(asked, [{"effects.applied_moment.moment_Nm": 1.0}])
-    assert status == ["converged"]
+    status, _, _ = solve(asked, {"effects.applied_moment.moment_Nm": 1.0})
+    assert status == "converged"
 
 
 def test_a_scene_without_a_load_leaves_its_parameters_aside():
@@ -144,6 +143,6 @@ def test_a_scene_without_a_load_leaves_its_parameters_aside():
     guide = 'case = "parallel_strip_guide"\n[vary]\nscene.effects = [{lists}]\n'
     lists = ["bending,stretching,strip_inertia,body_inertia", "bending,stretching,applied_force"]
     asked = plan(guide.format(lists=", ".join(f'"{names}"' for names in lists))).task
-    bare, loaded = (design_of(asked, {"scene.effects": names}) for names in lists)
+    bare, loaded = (asked.design({"scene.effects": names}) for names in lists)
     assert set(bare.effects.tables) == set()
     assert set(loaded.effects.tables) == {"applied_force"}

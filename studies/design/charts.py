@@ -5,10 +5,10 @@ K L/(EI); distance by which the body's point at the crossing moves, over L; larg
 largest less smallest stiffness up to theta over that at rest; loads P L^2/(EI), at that point. All of these
 depend on the two ratios alone where strips are slender, and the table `collapse` says by how much they do
 not. Strain is that of the extreme fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own
-mirror image, so one side tells both.
+mirror image, so one side tells both. Where the theory ends is what a plain beam leaves out of a strip's
+stiffness.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from math import pi
@@ -16,16 +16,19 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.optimize import brentq
 
 from spline_model import solve_many
 from spline_model.batch import Batch
+from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
-from studies.answers.settings import SplineSettings
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import FORCE, capacity
+from studies.answers.validity import Strip, anticlastic_factor, strips_of
 from studies.cases.effects import Effects
+from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
-from studies.charts import figures
-from studies.charts.theory import PIVOTS, judged, limits
+from studies.design.figures import CHARTS
 from studies.engine.study import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 
@@ -35,8 +38,8 @@ RATIOS, INCLINATIONS = np.linspace(0.1, 0.9, 33), np.linspace(25.0, 65.0, 17)
 ROTATIONS, INCREMENT = (5.0, 10.0, 15.0, 30.0, 45.0), 2.5
 #: Slenderness L/t of the charts, those that they are compared with, and from where on they shall hold.
 SLENDER, OTHERS, FROM = 200.0, (15.0, 20.0, 30.0, 50.0, 100.0), 30.0
-#: Width over length, which a beam's answer does not depend on.
-WIDTH = 0.1
+#: Width over length and Poisson's ratio, which a beam's answer does not depend on.
+WIDTH, POISSON = 0.1, 0.3
 POINTS = 10
 QUANTITIES = ("stiffness", "shift", "stress", "variation")
 #: Strengths sigma_y L/(E t) whose ranges are listed, and the ratios of that list.
@@ -44,6 +47,16 @@ STRENGTHS, LISTED = (0.05, 0.1, 0.2, 0.3, 0.5), (0.1273, 0.2, 0.3, 0.4, 0.5)
 #: Designs, rotations [deg], errors and control points of the table of points, and their reference.
 COARSE = ((0.1, 0.3, 0.5, 0.7, 0.9), (25.0, 45.0, 65.0))
 TURNS, LEVELS, COUNTS, REFERENCE = (5.0, 10.0, 15.0, 30.0, 45.0, 90.0), (1e-2, 1e-3, 1e-4), range(4, 12), 14
+#: Pivots that are marked where the theory ends, and elements a strip by which their shear is weighed.
+PIVOTS = (
+    "cross_axis_pivot",
+    "spring_steel_pivot",
+    "titanium_pivot",
+    "polymer_pivot",
+    "silicon_pivot",
+    "large_steel_pivot",
+)
+ELEMENTS = 160
 #: Loads P L^2/(EI) up to this one, and the designs that bear them, by half of the ratios: what holds for one
 #: holds for what it lacks to one. Directions from x to y [rad].
 MOST, STATES = 20.0, 20
@@ -58,12 +71,11 @@ def turned(ratios: Array, inclinations: Array, largest: float, slenderness: floa
         {
             "length": 1.0,
             "youngs_modulus": 1.0,
-            "poisson_ratio": 0.3,
+            "poisson_ratio": POISSON,
             "density": 1.0,
             "body_mass": 1.0,
             "body_moment_of_inertia": 1.0,
-            "area": WIDTH * thickness,
-            "second_moment_of_area": WIDTH * thickness**3 / 12.0,
+            **of_sides(WIDTH, thickness),
             "crossing_ratio": ratios,
             "inclination": np.radians(inclinations),
         },
@@ -169,25 +181,14 @@ def _worst(errors: Array) -> float:
     return float(errors.max()) if np.isfinite(errors).all() else np.inf
 
 
-def _loads() -> Iterator[tuple[float, float, str]]:
-    yield from product(*LOADED, DIRECTIONS)
-
-
 def loaded(ratio: float, inclination: float, direction: str) -> Answer:
     """Return the stiffness of a pivot at rest under a growing load, and the load at which it buckles."""
     problem = _at_crossing(ratio, inclination)
-    angle, unit = (
-        DIRECTIONS[direction],
-        problem.youngs_modulus * problem.second_moment_of_area / problem.length**2,
-    )
+    angle = DIRECTIONS[direction]
+    unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length**2
     force = tuple(MOST * unit * part for part in (np.cos(angle), np.sin(angle)))
-    names = (*problem.effects.names, FORCE)
-    under = replace(
-        problem,
-        rotation=0.0,
-        increments=STATES,
-        effects=Effects(names=names, tables={FORCE: {"force": force}}),
-    )
+    effects = Effects(names=(*problem.effects.names, FORCE), tables={FORCE: {"force": force}})
+    under = replace(problem, rotation=0.0, increments=STATES, effects=effects)
     design = {"crossing_ratio": ratio, "inclination_deg": inclination, "direction": direction}
     path = answer_static(under, SplineSettings(control_points=POINTS))
     rows = [
@@ -210,9 +211,59 @@ def _at_crossing(ratio: float, inclination: float) -> Problem:
         crossing_ratio=ratio,
         inclination=angle,
         centre_offset=(0.0, -(1.0 - ratio) * case.length * float(np.sin(angle))),
-        area=WIDTH * case.length * thickness,
-        second_moment_of_area=WIDTH * case.length * thickness**3 / 12.0,
+        **of_sides(WIDTH * case.length, thickness),
     )
+
+
+def judged(name: str) -> Answer:
+    """Return where a pivot of the suite lies, and what a beam leaves out of its stiffness over its range."""
+    problem = named_case(name)
+    answer = answer_static(problem, SplineSettings(control_points=POINTS))
+    shear, plain = (
+        answer_static(problem, FeSettings(elements=ELEMENTS, element=element)).torque[-1]
+        for element in ("reissner", "corotational")
+    )
+    strip = max(strips_of(problem, answer), key=lambda each: each.curvature)
+    return {
+        "validity": {
+            "pivot": name,
+            "rotation_deg": np.degrees(problem.rotation),
+            "thickness_ratio": strip.thickness_ratio,
+            "width_ratio": strip.width_ratio,
+            "curvature_ratio": strip.curvature_ratio,
+            "clamped_least": float(strip.clamped[0]),
+            "clamped_most": float(strip.clamped[1]),
+            "flattened": float(strip.flattened),
+            "roots": -strip.turned_roots,
+            "shear": shear / plain - 1.0,
+        }
+    }
+
+
+def _roots(ratio: float) -> float:
+    """Return the stiffness that roots take of a strip of that thickness over length."""
+    section = {"thickness": ratio, "width": WIDTH}
+    strip = Strip(length=1.0, **section, youngs_modulus=1.0, poisson_ratio=POISSON, density=1.0)
+    return float(strip.turned_roots)
+
+
+#: Ratio -> what of it a plain beam leaves out of the stiffness, and the range that is searched.
+LEFT_OUT = {
+    "width_ratio": (lambda ratio: plate_factors(ratio, POISSON).linear - 1.0, (0.02, 1.5)),
+    "thickness_ratio": (_roots, (1e-4, 0.5)),
+    "curvature_ratio": (lambda ratio: float(anticlastic_factor(ratio, POISSON)) - 1.0, (0.01, 40.0)),
+}
+
+
+def limits() -> Answer:
+    """Return the ratios at which what a plain beam leaves out is a share of the stiffness."""
+    return {
+        "limits": [
+            {"ratio": name, "share": share, "value": brentq(lambda x, of=of, s=share: of(x) - s, *ends)}
+            for name, (of, ends) in LEFT_OUT.items()
+            for share in (0.01, 0.05)
+        ]
+    }
 
 
 def _held(tables: Tables) -> list[dict[str, Any]]:
@@ -228,7 +279,7 @@ STUDY = Study(
         Part(ask=_ranges),
         Part(ask=_points),
         Part(ask=limits),
-        Part(at=_loads, ask=loaded),
+        Part(at=lambda: product(*LOADED, DIRECTIONS), ask=loaded),
         Part(at=lambda: PIVOTS, ask=judged),
     ),
     claims=(
@@ -241,5 +292,5 @@ STUDY = Study(
             most=0.01,
         ),
     ),
-    figures=figures.DRAWN,
+    figures=CHARTS,
 )

@@ -1,1 +1,0 @@
-"""Charts to design with: dimensionless, over crossing ratio and inclination."""
