@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import MORE, MOST
 from spline_model.accurate_motion import Task, solve_accurately
-from spline_model.companion import with_companion
 from spline_model.compile import compile_scene
-from spline_model.content import unresolved
+from spline_model.content import unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
