@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import MORE, MOST
 from spline_model.accurate_motion import Task, solve_accurately
-from spline_model.companion import with_companion
 from spline_model.compile import compile_scene
-from spline_model.content import unresolved
+from spline_model.content import unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
@@ -26,8 +25,9 @@ from spline_model.errors import (
 from spline_model.mechanism import Mechanism
 from spline_model.modes import settle
 from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
-from spline_model.motion.records import Records, Trajectory
-from spline_model.motion.start import Motion, Start, Steps, set_in_motion
+from spline_model.motion.moves import Moves, Steps, carry
+from spline_model.motion.records import Trajectory
+from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
 from spline_model.scene import Scene
@@ -37,11 +37,12 @@ __all__ = ["EXPLICIT_STEPS", "INTEGRATORS", "STEP", "Trajectory", "checked", "so
 
 Array = NDArray[np.float64]
 
-INTEGRATORS: dict[str, Callable[..., Records]] = {
-    "energy": energy_consistent.integrate,
-    "generalised-alpha": generalised_alpha.integrate,
-    **{name: partial(explicit.integrate, integrator=name) for name in explicit.SCHEMES},
+INTEGRATORS: dict[str, Callable[..., Moves]] = {
+    "energy": energy_consistent.Stepper,
+    "generalised-alpha": generalised_alpha.stepper,
+    **{name: partial(explicit.Stepper, integrator=name) for name in explicit.SCHEMES},
 }
+"""What makes of a start what advances it."""
 EXPLICIT_STEPS = {"explicit": 0.5, "leapfrog": 0.9}
 """Default explicit step over the longest stable one, which is that of the highest frequency at start and at
 rest: stress stiffens the strips on the way, and near its limit Runge-Kutta takes energy from axial waves."""
@@ -142,10 +143,10 @@ def _run(
         step = _default_step(integrator, begun, duration)
     steps = Steps.of(duration, step, records, layout.size + layout.coordinate_count + 7)
     laps.lap("compile")
-    solve, ran = INTEGRATORS[integrator], integrator
+    stepper, ran = INTEGRATORS[integrator], integrator
     if integrator == "energy" and begun.motion.massless:
-        solve, ran = quasi_static.integrate, quasi_static.NAME
-    run = solve(begun, steps, **options)
+        stepper, ran = quasi_static.stepper, quasi_static.NAME
+    run = carry(stepper(begun, **options), steps)
     laps.lap("solve")
     return Trajectory.of(
         begun.motion.system,

@@ -21,35 +21,28 @@ transposed Jacobian, Eq 30 its minus sign.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import compile_scene
+from spline_model.compile import System, compile_scene
 from spline_model.content import STEPS_PER_PERIOD
-from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.errors import InvalidParameter, require_positive
-from spline_model.impulses.forces import fill_drag
-from spline_model.impulses.solver import TOLERANCE, ImpulseSolver, Outcome, Run, State
-from spline_model.impulses.steps import EULER, predict, printed_advance, solve_step
+from spline_model.effects import DrivenDisplacement, DrivenRotation, RootCompliance
+from spline_model.effects.elastic import ANTICLASTIC
+from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
+from spline_model.impulses.arrays import IMPULSES, Problem, Space
+from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
+from spline_model.motion.arrays import zeros
+from spline_model.motion.moves import Steps, carry
 from spline_model.motion.records import Trajectory
-from spline_model.motion.start import Steps
+from spline_model.motion.start import Motion, set_in_motion
 from spline_model.newton import Laps
 
-__all__ = [
-    "ImpulseSolver",
-    "Outcome",
-    "State",
-    "contraction",
-    "impulse_solver",
-    "solve_impulses",
-    "stability_limit",
-    "sweep_errors",
-]
+__all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
 
 Array = NDArray[np.float64]
 
@@ -57,13 +50,111 @@ STEP = 0.01
 """The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
 SWEEPS = 30
 """Default of the most sweeps for one linear system."""
+TOLERANCE = 1e-9
+"""Residual of a stable step, and gap that sweeps close, in EI/L^2, EI/L, L and rad."""
 STABILITY_LIMIT = 2.0
 """omega h up to which symplectic Euler does not amplify an oscillation."""
-_REASONS = {
-    "printed": "the step is above the stability limit",
-    "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
-}
-"""Why a run of a form stops."""
+
+
+class ImpulseSolver:
+    """Steps of one scene; ``impulse_solver`` makes one.
+
+    Holds work space, so that no two threads may use it at once. What it returns shares no memory
+    with it: the same state and arguments give the same bits.
+    """
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        system: System,
+        *,
+        form: str,
+        impulses: str,
+        sweeps: int,
+        tolerance: float,
+    ) -> None:
+        require_choice("form", form, tuple(REASONS))
+        require_choice("impulses", impulses, IMPULSES)
+        require_positive("tolerance", tolerance, "1")
+        require_count("sweeps", sweeps, 1)
+        self.motion, soft = set_in_motion(system), form == "stable"
+        self.motion.require_compiled("sequential impulses")
+        held = "another one for sequential impulses"
+        if ANTICLASTIC in mechanism.design.curling:
+            raise InvalidParameter("effects", ANTICLASTIC, held)
+        if system.scene.of(RootCompliance):
+            raise InvalidParameter("effects", "root_compliance", held)
+        self.mechanism, self.system, self.form = mechanism, system, form
+        self.problem = Problem.of(
+            self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
+        )
+        sizes = {"N": len(self.problem.unit), "Q": len(self.problem.mass), "R": len(self.problem.rows)}
+        self.space = zeros(Space, sizes | {"M": len(self.problem.rigidity)})
+
+    def start(self, rotation: float | None = None, body: str | None = None) -> State:
+        """The static state at the rotation [rad] of a body, or undriven: where the paper's releases start.
+
+        Raises ConvergenceError if statics does not reach it.
+        """
+        if rotation is not None and not math.isfinite(rotation):
+            raise InvalidParameter("rotation", rotation, "a finite angle [rad]")
+        return self.start_at(static_state(self.mechanism.at_start(), rotation, body=body))
+
+    def start_at(self, z: Array, v: Array | None = None) -> State:
+        """A state at the unknowns z (N or more,), at rest or with velocity v (Q,).
+
+        z may be another system's of the same strips and bodies, such as of statics with other drives:
+        what it has beyond this one's is left out. The constraints should hold in both.
+        """
+        layout = self.system.layout
+        count = layout.coordinate_count
+        given = np.asarray(z, dtype=float)
+        speed = np.zeros(count) if v is None else np.array(v, dtype=float)
+        _require_numbers("z", given, count, math.inf, "m, rad, N")
+        _require_numbers("v", speed, count, count, "m/s, rad/s")
+        unknowns = np.zeros(layout.size)
+        same = min(len(given), layout.size)
+        unknowns[:same] = given[:same]
+        unknowns[self.motion.drives.row] = 0.0
+        earlier = np.array((unknowns[:count], speed))
+        return State(z=unknowns, v=speed, earlier=earlier, known=0, time=0.0, held=False)
+
+    def step(self, state: State, h: float, count: int = 1, pose: Array | None = None) -> Outcome:
+        """Take ``count`` steps of length h [s].
+
+        pose (3,): x, y [m] and rotation [rad] of the solver's body at the end of them, on a straight
+        way from where it is; the body is caught if it was free, and free again without one.
+        """
+        require_positive("h", h, "s")
+        require_count("count", count, 1)
+        held = pose is not None
+        if held != state.held:
+            state = replace(state, known=0)
+        stepper = Stepper(self, state)
+        if pose is not None:
+            way = self._driven(state, np.asarray(pose, dtype=float), h * count)
+            stepper.drive(way, np.ones_like(self.problem.active))
+        taken = stepper.steps(state.time, h, 0, count, count + 1, np.zeros((0, stepper.width)))
+        return stepper.outcome(taken, count, state.time + taken * h, held)
+
+    def look(self, state: State) -> Outcome:
+        """What a state is, as that of no steps."""
+        return Stepper(self, state).outcome(0, 0, state.time, state.held)
+
+    def _driven(self, state: State, pose: Array, duration: float) -> Motion:
+        """The motion with its drives on the way from the state to the pose."""
+        drives = self.motion.drives
+        _require_numbers("pose", pose, drives.row.size, drives.row.size, "m, rad")
+        here = state.z[drives.coordinate]
+        way = drives._replace(
+            origin=here,
+            target=pose - here,
+            first=np.zeros(pose.size, dtype=np.int64),
+            pairs=np.full(pose.size, 2, dtype=np.int64),
+            times=np.array([state.time, state.time + duration]),
+            factors=np.array([0.0, 1.0]),
+        )
+        return replace(self.motion, drives=way)
 
 
 def impulse_solver(
@@ -148,43 +239,21 @@ def solve_impulses(
     )
     steps = Steps.of(duration, step, records, 2 * system.layout.size)
     laps.lap("compile")
-    run = Run(solver, solver.start(start, body), steps.records - 1)
+    stepper = Stepper(solver, solver.start(start, body))
     laps.lap("start")
-    done = _follow(run, *steps)
+    run = carry(stepper, steps)
     laps.lap("solve")
-    message = "" if done == steps.steps else f"stopped at {done * steps.step:.6g} s: {_REASONS[form]}"
     settings = {"integrator": f"sequential impulses, {form}", "step_s": steps.step}
     settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
     return Trajectory.of(
         system,
-        run.records(steps.spacing, done // steps.every + 1, message),
+        run,
         effects=mechanism.effects,
         body=body,
         settings=settings,
         unresolved=partial(_resolution, solver, steps.step),
         laps=laps,
     )
-
-
-def _follow(run: Run, h: float, steps: int, every: int) -> int:
-    """Take the steps, drives beginning and ending at the nearest one; returns the number taken."""
-    solver = run.solver
-    motion = solver.motion
-    before = np.zeros(len(motion.drives.row), dtype=np.int64)
-    done = 0
-    instants = {round(time / h) for time in motion.event_times(steps * h, h)} - {0, steps}
-    for begin, end in pairwise((0, *sorted(instants), steps)):
-        active = motion.drives_at((begin + 0.5) * h)
-        z, v = run.moving.z, run.moving.v
-        motion = motion.from_here(z, active, before, begin * h)
-        run.change(*motion.catch(z, v, active, begin * h, h))
-        if begin == 0:
-            run.keep_start()
-        done = run.go(begin, end, h, 0.0, every, active, motion)
-        if done < end:
-            return done
-        before = active
-    return done
 
 
 def _resolution(solver: ImpulseSolver, h: float) -> str:
@@ -199,36 +268,11 @@ def _resolution(solver: ImpulseSolver, h: float) -> str:
     )
 
 
-def sweep_errors(direct: ImpulseSolver, swept: ImpulseSolver, state: State, h: float, most: int) -> Array:
-    """Error of the velocity after 1 ... ``most`` sweeps of the first linear system of a step, (most,) [1].
-
-    In the kinetic norm, over the change of velocity in the step. Both solvers are of one scene and form, one
-    of them without and one with sweeps, and the state is one of either.
-    """
-    mass = direct.motion.mass
-    exact = _velocity(direct, state, h, 1)
-    change = exact - state.v
-    scale = np.sqrt(change @ mass @ change)
-    errors = [_velocity(swept, state, h, sweeps) - exact for sweeps in range(1, most + 1)]
-    return np.array([np.sqrt(error @ mass @ error) / scale for error in errors])
-
-
-def contraction(errors: Array, floor: float = 1e-10) -> float:
-    """Factor that a sweep leaves of the error, from the last three above the floor; above 1 it grows."""
-    seen = errors[errors > floor]
-    last = seen[-4:] if len(seen) >= 2 else errors[:2]
-    return float((last[-1] / last[0]) ** (1.0 / (len(last) - 1)))
-
-
-def _velocity(solver: ImpulseSolver, state: State, h: float, sweeps: int) -> Array:
-    """The velocity (Q,) after that many sweeps of the first linear system of a step."""
-    moving, space = Run(solver, state).moving, solver.space
-    tiny = float(np.finfo(float).tiny)
-    problem = solver.problem._replace(sweeps=sweeps, iterations=1, tolerance=tiny)
-    if solver.form == "printed":
-        printed_advance(moving, state.time, h, problem, space)
-        return moving.v.copy()
-    span, lag = predict(moving, h, EULER, problem.turns, space)
-    fill_drag(state.z, problem, space)
-    solve_step(span, lag, state.time + h, problem, space, moving.counters)
-    return space.v.copy()
+def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:
+    """Refuse anything but a vector of so many finite numbers."""
+    if values.ndim != 1 or not least <= len(values) <= most:
+        expected = f"{least}" if most == least else f"{least} or more"
+        raise InvalidParameter(f"length of {name}", values.size, expected)
+    if not np.isfinite(values).all():
+        bad = float(values[~np.isfinite(values)][0])
+        raise InvalidParameter(name, bad, f"finite numbers [{unit}]")

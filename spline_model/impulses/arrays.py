@@ -13,7 +13,7 @@ from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
 from spline_model.quadrature import PointTable
-from spline_model.tables import ClampTable
+from spline_model.tables import ClampTable, DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -24,10 +24,6 @@ single constraint."""
 ITERATIONS = 12
 """Most Newton iterations of a stable step before it is halved."""
 
-COORDINATE, DRIVE, ACTIVE, BEGIN, PAIRS = range(5)
-"""Columns of ``Problem.acting``; DRIVE is a drive's place among the rows, -1 for a load."""
-ORIGIN, SIZE = range(2)
-"""Columns of ``Problem.sizes``."""
 STEPS, SOLVES, SWEEPS, HALVED, LIMITED = range(5)
 """Places of the counters: steps, linear systems, sweeps over the blocks, steps that were halved, and
 steps whose velocity was reduced so that no energy is gained."""
@@ -38,9 +34,9 @@ COUNTS, RESIDUAL, ENERGY = range(3)
 class Problem(NamedTuple):
     """What does not change in a run: N unknowns, Q coordinates, M axial modes, R rows of constraints.
 
-    points, clamps: of the scene. acting (A, 5) loads and drives, sizes (A, 2) their origin and value,
-    history (2, H) times and factors. mass, drag (Q, Q), weight (Q,); rigidity (M, M) inverse compliance and
-    relaxation (M,) [s] of the axial modes; unit (N,) makes residuals dimensionless, energy is EI/L [J];
+    points, clamps: of the scene. loads, drives: of the motion; active (D,): 1 for each drive that holds,
+    driven (D,): its place among the rows. mass, drag (Q, Q), weight (Q,); rigidity (M, M) inverse compliance
+    and relaxation (M,) [s] of the axial modes; unit (N,) makes residuals dimensionless, energy is EI/L [J];
     turns: the rotations' places. groups (G, 2): start and size in q of each strip's control points and of
     each body's pose; no inertia couples one group with another. rows (R, 3): place in z of each row's
     multiplier, in the order of the sweep, and the two groups that it acts on, -1 for none; first (B + 1,):
@@ -50,9 +46,10 @@ class Problem(NamedTuple):
 
     points: PointTable
     clamps: ClampTable
-    acting: Indices
-    sizes: Array
-    history: Array
+    loads: LoadTable
+    drives: DriveTable
+    active: Indices
+    driven: Indices
     mass: Array
     drag: Array
     weight: Array
@@ -93,12 +90,14 @@ class Problem(NamedTuple):
             ]
         rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
         ends = [len(rows)] if impulses == "direct" else np.cumsum([len(block) for block in blocks])
-        problem = cls(
+        places = {row: r for r, row in enumerate(rows[:, 0].tolist())}
+        return cls(
             points=tables.points,
             clamps=tables.clamps,
-            acting=np.zeros((0, 5), dtype=np.int64),
-            sizes=np.zeros((0, 2)),
-            history=np.zeros((2, 0)),
+            loads=motion.loads,
+            drives=motion.drives,
+            active=np.zeros(len(motion.drives.row), dtype=np.int64),
+            driven=np.array([places[row] for row in motion.drives.row.tolist()], dtype=np.int64),
             mass=motion.mass,
             drag=motion.drag if motion.drag.size else np.zeros((count, count)),
             weight=tables.weight if tables.weight.size else np.zeros(count),
@@ -114,26 +113,6 @@ class Problem(NamedTuple):
             sweeps=sweeps,
             iterations=ITERATIONS,
             tolerance=float(tolerance),
-        )
-        return problem.with_drives(motion, np.zeros(len(tables.drives.row), dtype=np.int64))
-
-    def with_drives(self, motion: Motion, active: Indices) -> Problem:
-        """With the loads and drives of a motion, of which those hold whose ``active`` (D,) is 1."""
-        drives, loads = motion.drives, motion.loads
-        place = {row: r for r, row in enumerate(self.rows[:, 0].tolist())}
-        rows = np.array([place[row] for row in drives.row.tolist()], dtype=np.int64)
-        free, always = np.full_like(loads.first, -1), np.ones_like(loads.first)
-        behind = drives.times.size + loads.first
-        mine = np.column_stack((drives.coordinate, rows, active, drives.first, drives.pairs))
-        others = np.column_stack((loads.coordinate, free, always, behind, loads.pairs))
-        return self._replace(
-            acting=np.concatenate((mine, others)),
-            sizes=np.column_stack(
-                (np.append(drives.origin, 0.0 * loads.value), np.append(drives.target, loads.value))
-            ),
-            history=np.array(
-                (np.append(drives.times, loads.times), np.append(drives.factors, loads.factors))
-            ),
         )
 
 
@@ -161,12 +140,11 @@ class Space(NamedTuple):
 
 
 class Moving(NamedTuple):
-    """A motion on its way, advanced in place, and its records.
+    """A motion on its way, advanced in place.
 
     z (N,) unknowns, v (Q,) velocities; earlier (2, Q) coordinates and velocities of the step before;
     status (3,): 1 if they count, the largest residual so far [1], the energy [J]; counters (5,);
-    totals (2,) work done on it and energy dissipated [J]. K records, the start first: states (K, N), rates
-    (K, Q), energies (K, 3) strain energy and totals [J].
+    totals (2,) work done on it and energy dissipated [J].
     """
 
     z: Array
@@ -175,9 +153,6 @@ class Moving(NamedTuple):
     status: Array
     counters: Indices
     totals: Array
-    states: Array
-    rates: Array
-    energies: Array
 
 
 def _constraints(

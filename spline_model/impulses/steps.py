@@ -23,30 +23,21 @@ of soft constraints, so that no stiffness EA stands in the update.
 
 from __future__ import annotations
 
-from spline_model.impulses.arrays import (
-    ACTIVE,
-    COUNTS,
-    DRIVE,
-    ENERGY,
-    HALVED,
-    LIMITED,
-    RESIDUAL,
-    SIZE,
-    SOLVES,
-    STEPS,
-    SWEEPS,
-)
-from spline_model.impulses.forces import (
+from spline_model.impulses.arrays import COUNTS, ENERGY, HALVED, LIMITED, RESIDUAL, SOLVES, STEPS, SWEEPS
+from spline_model.impulses.system import (
+    apply_impulses,
     axial_strains,
     damped,
     external_work,
-    factor,
     fill,
     fill_drag,
+    free_update,
     kinetic,
+    prepare,
+    row_times,
     strain_energy,
 )
-from spline_model.impulses.linear import apply_impulses, free_update, prepare, row_times
+from spline_model.motion.start import factor_of
 from spline_model.strip.compiled import copy, once
 
 MOST_ENERGY = 100.0
@@ -94,11 +85,10 @@ def printed_advance(moving, time, h, problem, space):
         x[i] += v[i]
     for r in range(space.mu.size):
         space.gap[r] = space.mu[r] = 0.0
-    for a in range(problem.acting.shape[0]):  # psi_t: the mean rate of the active drives over the step
-        acting = problem.acting[a]
-        if acting[DRIVE] >= 0 and acting[ACTIVE] == 1:
-            change = factor(a, time + h, problem) - factor(a, time, problem)
-            space.gap[acting[DRIVE]] = change * problem.sizes[a, SIZE] / h
+    for d in range(problem.active.size):  # psi_t: the mean rate of the active drives over the step
+        if problem.active[d] == 1:
+            change = factor_of(d, time + h, problem.drives) - factor_of(d, time, problem.drives)
+            space.gap[problem.driven[d]] = change * problem.drives.target[d] / h
     done, gap = apply_impulses(problem, space, x, problem.tolerance / h)
     copy(z, space.z)
     moving.totals[1] += damped(z, v, h, problem, space)
@@ -139,8 +129,8 @@ def stable_advance(moving, time, duration, problem, space):
     """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
     status = moving.status
     driven, done, step = False, 0.0, duration
-    for a in range(problem.acting.shape[0]):
-        driven |= problem.acting[a, DRIVE] >= 0 and problem.acting[a, ACTIVE] == 1
+    for d in range(problem.active.size):
+        driven |= problem.active[d] == 1
     while duration - done > 1e-9 * duration:
         step = min(step, duration - done)
         rule = EULER

@@ -225,13 +225,7 @@ def _follow_ends(s, at, tied, grid, strips, room, push):
 @part()
 def _solve_bodies(poses, tangent, load, push):
     """Accelerations of the bodies, and in place of the load the axial forces beside them; upper tangent."""
-    for i in range(load.size):
-        inverse = 1.0 / tangent[i, i]
-        for j in range(i + 1, load.size):
-            factor = tangent[i, j] * inverse
-            load[j] -= factor * load[i]
-            for k in range(j, load.size):
-                tangent[j, k] -= factor * tangent[i, k]
+    eliminate(load.size, load.size, load, tangent)
     for i in range(load.size - 1, -1, -1):
         for j in range(i + 1, load.size):
             load[i] -= tangent[i, j] * load[j]

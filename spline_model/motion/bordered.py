@@ -15,8 +15,8 @@ from scipy.linalg import get_lapack_funcs
 
 from spline_model.bordered import evaluate, open_energy
 from spline_model.checks import refuse
-from spline_model.motion.energy_consistent import Moves
-from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, rows_of
+from spline_model.motion.moves import Unreduced
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FACTORISATIONS, NEWTON, STEPS
 
@@ -26,11 +26,8 @@ TOLERANCE = 1e-10
 MOST_ITERATIONS = 15
 
 
-class Stepper(Moves):
-    """One system's arrays and the scheme's constants; holds the state while it is advanced.
-
-    A record is the bodies' poses in L, unknowns (N,), velocities (Q,) and energies (5,) in EI/L.
-    """
+class Stepper(Unreduced):
+    """One system's arrays and the scheme's constants; holds the state while it is advanced."""
 
     most_gain = MOST_GAIN_OF_OTHERS
 
@@ -43,8 +40,7 @@ class Stepper(Moves):
         self.gradient, self.hessian = np.empty(size), np.empty((size, size))
         self.energies = evaluate(self.system, self.z, 1.0, self.gradient, self.hessian)
         self.counters = np.zeros(6, dtype=np.int64)
-        self.poses = (self.motion.turns[:, None] + np.arange(-2, 1)).ravel()
-        self.width = len(self.poses) + size + len(self.v) + ENERGIES
+        self.width = size + len(self.v) + 3
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails; at any time, as nothing that acts has a history."""
@@ -95,14 +91,7 @@ class Stepper(Moves):
     def record(self) -> Array:
         """The present state's record (W,); the axial forces are those that its strains give."""
         strain = sum(self.energies) + open_energy(self.system, self.z)
-        (row,) = rows_of(self.motion, self.z[None], self.v[None], np.array([[strain, 0.0, 0.0]]))
-        poses = self.z[self.poses].reshape(-1, 3) / self.system.scales.pose
-        return np.concatenate((poses.ravel(), self.z, self.v, row / self.energy))
-
-    def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records."""
-        first, middle = len(self.poses), len(self.poses) + len(self.z)
-        return records[:, first:middle], records[:, middle:-ENERGIES]
+        return np.concatenate((self.z, self.v, (strain, 0.0, 0.0)))
 
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""

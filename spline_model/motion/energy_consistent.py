@@ -14,94 +14,182 @@ Source: Gonzalez, Time integration and discrete Hamiltonian systems, J Nonlinear
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.motion.mechanism import Moving
-from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, compact, first_gain
-from spline_model.motion.run import run, store
-from spline_model.motion.start import SAME, Array, Motion, Start, Steps
-from spline_model.motion.step import FACTORISATIONS, FOLDS, HALVED, NEWTON, REFUSED, STEPS, WHOLE
+from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
+from spline_model.motion.project import PUSH, root_energy
+from spline_model.motion.start import Array, Start
+from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
+from spline_model.motion.strip import look_at, place_strip
 from spline_model.scene import Scene
+from spline_model.strip.compiled import kernel, part
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
-SMALLEST_STEP = 2.0**-14
-"""Least fraction of a step before the run is given up."""
-MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
-"""A run is given up when it has been halved more often than this, and this for every step done: the
-swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
-WATCHED = 4096
-"""Steps after which the energy is looked at, at the latest."""
+SLOWEST_SPEED = 0.1
+"""|C'| below which, over that at rest, a strip is folded."""
 
 
-def integrate(start: Start, run: Steps) -> Records:
-    """The records of a run.
-
-    Drives begin and end at their times and start from where the body is; a body that is caught
-    changes its velocity at once, and what that costs counts as dissipated. A run whose balance
-    of energies gains more than ``MOST_GAIN`` is stopped at the last good record.
-    """
-    return carry(Stepper(start), run, start.z)
-
-
-def carry(stepper: Moves, run: Steps, z: Array | None = None) -> Records:
-    """The records of a stepper that starts from z (N,), or None where its own first record says as much."""
-    records = np.empty((run.records, stepper.width))
-    kept, message = _fill(stepper, run, records)
-    places = {"steps": STEPS, "halved_steps": HALVED, "newton_iterations": NEWTON}
-    places["factorisations"] = FACTORISATIONS
-    counters = {name: int(stepper.counters[place]) for name, place in places.items()}
-    return compact(stepper.motion, stepper.unknowns, records[:kept], z, run.spacing, message, counters)
+@part()
+def forward(state, strips, masses, work):
+    """True if every clamped end's tangent points forwards and |C'| is above a tenth of that at rest."""
+    own, modes = strips.own, strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = masses.inertia.size + s * (own + modes) + own - 2
+        for e in range(2):
+            body = strips.roots[s] if e == 0 else strips.tips[s]
+            if strips.lead == 2 and body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
+                return False
+        for p in range(strips.weight.size):
+            if not work.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]:
+                return False
+    return True
 
 
-def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
-    """Fill the records (R, W) of a run; returns how many are good, and why it stopped, if it did."""
-    step, every, duration, kept = run.step, run.every, run.steps * run.step, 0
-    for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, step), duration)):
-        stepper.switch(begin, min(end - begin, step))
-        if begin == 0.0:  # with the drives that hold from the start on
-            records[0], kept = stepper.record(), 1
-        for time, to, number, last in _pieces(begin, end, run):
-            if last > number:
-                places = slice(number // every + 1, last // every + 1)
-                done = stepper.take(0.0, step, number, last, every, step * SMALLEST_STEP, records[places])
-                solved, reached, kept = done == last, done * step, done // every + 1
-            else:
-                solved, reached = stepper.advance(time, to - time, SMALLEST_STEP) == to - time, time
-                if solved and to == last * step and last % every == 0:
-                    records[last // every], kept = stepper.record(), last // every + 1
-            good = first_gain(records[:kept, -ENERGIES:], 1.0, stepper.most_gain)
-            if good < kept:
-                most = f"more than {stepper.most_gain:g} of itself"
-                return good, f"stopped at {good * every * step:.6g} s: the energy grows by {most}"
-            if not solved:
-                return kept, f"stopped at {reached:.6g} s: {stepper.reason()}"
-    return kept, ""
+@part()
+def clamp_forces(s, state, strips, work):
+    """What the clamps do to a strip, from the forces of the step just solved."""
+    n = strips.mass.shape[1]
+    for e in range(2):
+        end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
+        maps, force = work.maps[s, e], work.force[s]
+        body = strips.roots[s] if e == 0 else strips.tips[s]
+        for k in range(2):
+            state.clamped[s, e, k] = force[k, end] + force[k, inner]
+        state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
+            maps[7] if body >= 0 else 1.0
+        )
+        if strips.lead == 1:
+            state.clamped[s, e, 2] = -work.roots[s, e, PUSH]
 
 
-def _pieces(begin: float, end: float, run: Steps) -> Iterator[tuple[float, float, int, int]]:
-    """The way from one instant to another [s]: from, to, and the first and last step's end of whole steps.
-
-    These are as many as are run before the energy is looked at; of a part of a step, which ends in the last
-    one or before it, both are the same.
-    """
-    time, step, watched = begin, run.step, max(1, WATCHED // run.every) * run.every
-    close = SAME * step
-    while end - time > close:
-        number, last = (math.floor((instant + close) / step) for instant in (time, end))
-        if last > number and abs(time - number * step) <= close:
-            last = min(last, number + watched - number % run.every)
-            to = last * step
+@part()
+def _count_work(time, h, active, state, strips, masses, work):
+    """What loads and drives did in the solved step, and what the drives' reactions were."""
+    n, dy, totals = strips.mass.shape[1], work.dy, state.totals
+    for f in range(masses.load_body.size):
+        value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
+        if i >= 0:
+            totals[0] += value * (2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i])
         else:
-            number = last = number + 1
-            to = last * step if end > last * step - close else end
-        yield time, to, number, last
-        time = to
+            place = masses.load_place[f]
+            totals[0] += value * work.move[masses.load_strip[f], place // n, place % n]
+    for d in range(masses.drive_at.size):
+        state.reaction[d] = 0.0
+        if active[d] == 1:
+            i = masses.drive_at[d]
+            totals[0] += work.residual[i] * dy[i]
+            state.reaction[d] = work.residual[i] / (cayley(dy[i])[0] if i % 3 == 2 else 1.0)
+
+
+@part()
+def _accept(time, h, active, state, strips, masses, work):
+    """Take the solved step: books of work and losses, velocities, coordinates."""
+    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
+    own, dy, y, totals = strips.own, work.dy, state.y, state.totals
+    _count_work(time, h, active, state, strips, masses, work)
+    for i in range(poses):
+        mean = dy[i] / h
+        totals[1] += h * masses.drag[i] * mean * mean
+        state.push[i] = 2.0 * (mean - state.rate[i]) / h
+        state.rate[i] = 2.0 * mean - state.rate[i]
+        y[i] = work.pose[i]
+    work.energies[1] = 0.0
+    for s in range(strips.roots.size):
+        at = poses + s * (own + modes)
+        if strips.relaxation[s] > 0.0:
+            look_at(s, state.at[s], work.at[s], h, strips, work.energies)
+        for k in range(2):
+            for i in range(n):
+                mean = work.move[s, k, i] / h
+                lost = 0.0
+                for j in range(n):
+                    lost += strips.drag[s, i, j] * work.move[s, k, j]
+                work.energies[1] += mean * lost
+                state.acceleration[s, k, i] = 2.0 * (mean - state.velocity[s, k, i]) / h
+                state.velocity[s, k, i] = 2.0 * mean - state.velocity[s, k, i]
+        for i in range(at, at + own):
+            y[i] += dy[i]
+        for i in range(at + own, at + own + modes):
+            y[i] = dy[i]
+        place_strip(s, y, at, strips, state.points[s], state.ends[s])
+        for p in range(strips.weight.size):
+            for i in range(5):
+                state.at[s, p, i] = work.at[s, p, i]
+        clamp_forces(s, state, strips, work)
+    totals[1] += work.energies[1]
+
+
+@kernel()
+def store(state, strips, masses, work, row):
+    """A record: y, the bodies' rates, points, velocities, clamps, reactions, and its energies.
+
+    These are, in EI/L: kinetic energy, potential of the weight, strain energy, work and losses.
+    """
+    at, n = 0, strips.mass.shape[1]
+    for i in range(state.y.size):
+        row[at + i] = state.y[i]
+    at += state.y.size
+    for i in range(state.rate.size):
+        row[at + i] = state.rate[i]
+    at += state.rate.size
+    work.energies[0] = 0.0
+    for s in range(strips.roots.size):
+        look_at(s, state.at[s], state.at[s], 0.0, strips, work.energies)
+        if strips.lead == 1:
+            work.energies[0] += root_energy(s, state.points[s], state.ends[s], strips)
+        for i in range(n):
+            for k in range(2):
+                row[at], row[at + 1] = state.points[s, k, i], state.velocity[s, k, i]
+                at += 2
+        for e in range(2):
+            for k in range(3):
+                row[at] = state.clamped[s, e, k]
+                at += 1
+    for d in range(state.reaction.size):
+        row[at] = state.reaction[d]
+        at += 1
+    row[at] = row[at + 1] = 0.0
+    for i in range(state.rate.size):
+        row[at] += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
+        row[at + 1] -= masses.weight[i] * state.y[i]
+    for s in range(strips.roots.size):
+        for k in range(2):
+            for i in range(n):
+                total = 0.0
+                for j in range(n):
+                    total += strips.mass[s, i, j] * state.velocity[s, k, j]
+                row[at] += 0.5 * total * state.velocity[s, k, i]
+                row[at + 1] -= strips.dead[s, k, i] * state.points[s, k, i]
+    row[at + 2], row[at + 3], row[at + 4] = work.energies[0], state.totals[0], state.totals[1]
+
+
+@kernel()
+def _run(time, step, begin, end, every, active, state, strips, masses, tolerance, work, counters, records):
+    """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
+
+    records: filled at the ends of steps whose number ``every`` divides.
+    """
+    for i in range(work.held.size):
+        work.held[i] = 0
+    for d in range(active.size):
+        if active[d] == 1:
+            work.held[masses.drive_at[d]] = 1
+    for k in range(begin, end):
+        now = time + k * step
+        solved = newton(now, step, active, state, strips, masses, tolerance, work, counters)
+        if not solved or not forward(state, strips, masses, work):
+            counters[REFUSED] = FOLDS if solved else 0
+            return k
+        _accept(now, step, active, state, strips, masses, work)
+        counters[STEPS] += 1
+        if (k + 1) % every == 0:
+            store(state, strips, masses, work, records[(k + 1) // every - begin // every - 1])
+    return end
 
 
 def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
@@ -122,87 +210,15 @@ def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int
     return f"no step, however short, goes on from {where}, where {strip.name} is nearest to fold; {helps}"
 
 
-class Moves:
-    """A scene in motion, advanced in steps that are halved at need.
+class Stepper(Moves):
+    """A scene that the scheme advances; active (D,) is 1 for each drive that holds.
 
-    width: numbers of a record.
+    Drives begin and end at their times and start from where the body is; a body that is caught
+    changes its velocity at once, and what that costs counts as dissipated.
     """
 
-    most_gain = MOST_GAIN
-    motion: Motion
-    counters: NDArray[np.int64]
-    width: int
-
-    def advance(self, time: float, duration: float, smallest: float) -> float:
-        """Advance by a step of ``duration``, halved at need down to ``smallest`` of it; the time done."""
-        nothing = np.zeros((0, self.width))
-        return duration * self.take(time, duration, 0, 1, 2, duration * smallest, nothing)
-
-    def take(
-        self, time: float, step: float, begin: int, end: int, every: int, smallest: float, records: Array
-    ) -> int:
-        """Take the steps ``begin`` ... ``end`` - 1 after a time [s], filling records (R, W).
-
-        One that fails is taken in parts. Returns the number of the first that cannot be, or end.
-        """
-        number, first = begin, begin // every
-        while number < end:
-            done = self.steps(time, step, number, end, every, records[number // every - first :])
-            self.counters[WHOLE] += done - number
-            number = done
-            if number < end:
-                last = (number + 1) // every - first
-                mine = records[last - 1 : last] if (number + 1) % every == 0 else records[:0]
-                if not self._take_parts(time + number * step, step, smallest, mine):
-                    break
-                self.counters[WHOLE] += 1
-                number += 1
-        return number
-
-    def _take_parts(self, time: float, step: float, smallest: float, record: Array) -> bool:
-        """Take a step that failed: halved, down to ``smallest`` [s], and doubled again after each success.
-
-        record (1, W), or (0, W) where none is wanted: filled at its end.
-        """
-        done, h, counters = 0.0, 0.5 * step, self.counters
-        counters[HALVED] += 1
-        while step - done > SAME * step:
-            if h < smallest or counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
-                return False
-            h = min(h, step - done)
-            wanted = len(record) > 0 and not step - (done + h) > SAME * step
-            if self.steps(time + done, h, 0, 1, 1 if wanted else 2, record) == 1:
-                done, h = done + h, min(2.0 * h, step)
-            else:
-                counters[HALVED] += 1
-                h *= 0.5
-        return True
-
-    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
-        """Take whole steps; the number of the first that fails, at whose begin all is left, or end."""
-        raise NotImplementedError
-
-    def record(self) -> Array:
-        """The present state's record (W,)."""
-        raise NotImplementedError
-
-    def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records."""
-        raise NotImplementedError
-
-    def switch(self, time: float, span: float) -> None:
-        """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
-
-    def reason(self) -> str:
-        """Why the last step was given up, and what helps."""
-        raise NotImplementedError
-
-
-class Stepper(Moves):
-    """A scene that the scheme advances; active (D,) is 1 for each drive that holds."""
-
     def __init__(self, start: Start) -> None:
-        self.motion = start.motion
+        self.motion, self.first = start.motion, start.z
         self.motion.require_compiled("energy")
         self._model = Moving.of(self.motion)
         self.width = self._model.width
@@ -214,7 +230,7 @@ class Stepper(Moves):
         """The number of the first step that fails."""
         model, asked = self._model, (time, step, begin, end, every, self.active)
         given = self._state, model.strips, model.masses, TOLERANCE, self._work, self.counters
-        return int(run(*asked, *given, records))
+        return int(_run(*asked, *given, records))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
@@ -236,17 +252,12 @@ class Stepper(Moves):
             slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
         return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
 
-    def look(self) -> tuple[Array, Array, Array]:
-        """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
-        record = self.record()[None]
-        return *self.unknowns(record), record[:, -ENERGIES:] * self.motion.system.scales.energy
-
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
         before, self.active = self.active, self.motion.drives_at(time + 0.5 * span)
         if not self.active.any():
             return
-        (z,), (v,) = self.unknowns(self.record()[None])
+        (z,), (v,), _ = self.look()
         self.motion = self.motion.from_here(z, self.active, before, time)
         self._model = self._model.with_drives(self.motion)
         v, lost = self.motion.catch(z, v, self.active, time, span)

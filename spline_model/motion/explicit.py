@@ -23,19 +23,22 @@ not kept, so that it would be of first order. One evaluation, second order, stab
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
+from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
 from spline_model.motion.arrays import State
+from spline_model.motion.energy_consistent import forward, store
 from spline_model.motion.forces import Grid, Room, move, place
 from spline_model.motion.mechanism import Moving
-from spline_model.motion.records import ENERGIES, MOST_GAIN_OF_OTHERS, Records, compact, first_gain
-from spline_model.motion.run import forward, set_points, store
-from spline_model.motion.start import Motion, Start, Steps
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS
+from spline_model.motion.start import Motion, Start
+from spline_model.motion.strip import set_points
 from spline_model.strip.compiled import kernel, part
 
 Array = NDArray[np.float64]
@@ -136,48 +139,38 @@ def _run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state
     return records.shape[0]
 
 
-class Flight:
-    """A motion about to start from (z, v), which the first record has, with space for ``rows`` more.
+class Stepper(energy_consistent.Stepper):
+    """A free scene that a scheme advances, all steps in one call; the first that fails ends the run.
 
-    records (rows + 1, W); stages: evaluations of the accelerations in a step.
+    stages: evaluations of the accelerations in a step.
     """
 
-    def __init__(self, motion: Motion, z: Array, v: Array, rows: int, integrator: str) -> None:
-        require_explicit(motion, integrator)
-        self.model = Moving.of(motion)
-        strips, masses = self.model.strips, self.model.masses
-        state, work = self.model.arrays(z, v, np.zeros(len(v)))
-        r, w = _reduced(self.model, state)
-        self.records = np.empty((rows + 1, self.model.width))
-        store(state, strips, masses, work, self.records[0])
-        grid, scheme = Grid.of(strips), SCHEMES[integrator]
-        self.stages = 4 if scheme == RUNGE_KUTTA else 1 if grid.outer else 2
-        room = Room.of(strips, masses, grid)
-        work = work._replace(at=state.at)  # a state is looked at as the end of a step that changes nothing
-        self._given = r, w, np.zeros_like(r), grid, strips, masses, room, state, work
-        self._scheme = scheme
+    most_gain = MOST_GAIN_OF_OTHERS
+    watched = sys.maxsize
+    smallest = 1.0
 
-    def fly(self, step: float, every: int) -> int:
-        """Fill the records behind the first, ``every`` steps apart, compiled; returns how many."""
-        return int(_run(self._scheme, self.stages, step, every, *self._given, self.records[1:]))
+    def __init__(self, start: Start, integrator: str) -> None:
+        require_explicit(start.motion, integrator)
+        super().__init__(start)
+        model, state = self._model, self._state
+        grid, self._scheme = Grid.of(model.strips), SCHEMES[integrator]
+        self.stages = 4 if self._scheme == RUNGE_KUTTA else 1 if grid.outer else 2
+        r, w = _reduced(model, state)
+        room = Room.of(model.strips, model.masses, grid)
+        work = self._work._replace(at=state.at)  # a state is looked at as the end of a step without changes
+        self._given = r, w, np.zeros_like(r), grid, model.strips, model.masses, room, state, work
 
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take the steps from the first on; at any time, as nothing that acts has a history."""
+        return every * int(_run(self._scheme, self.stages, step, every, *self._given, records))
 
-def integrate(start: Start, run: Steps, integrator: str) -> Records:
-    """The records of a run."""
-    begun = Flight(start.motion, start.z, start.v, run.records - 1, integrator)
-    records = begun.records[: begun.fly(run.step, run.every) + 1]
-    kept = first_gain(records[:, -ENERGIES:], 1.0, MOST_GAIN_OF_OTHERS)
-    message = ""
-    if kept < run.records:
-        message = (
-            f"unstable near {kept * run.spacing:.6g} s: the step is above the critical one; "
-            "take a shorter step"
-        )
-    done = (kept - 1) * run.every
-    counters = {"steps": done, "evaluations": begun.stages * done}
-    return compact(
-        start.motion, begun.model.unknowns, records[:kept], start.z, run.spacing, message, counters
-    )
+    def counted(self, steps: int) -> dict[str, int]:
+        """Steps and evaluations of the good records."""
+        return {"steps": steps, "evaluations": self.stages * steps}
+
+    def stopped(self, record: float, reached: float, *, grows: bool) -> str:
+        """Where it became unstable, and what helps."""
+        return f"unstable near {record:.6g} s: the step is above the critical one; take a shorter step"
 
 
 def stability_limit(integrator: str, motion: Motion) -> float:

@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter
 from spline_model.motion import bordered, energy_consistent
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS, Records
-from spline_model.motion.run import clamp_forces, forward, set_points, store
-from spline_model.motion.start import Start, Steps
+from spline_model.motion.energy_consistent import clamp_forces, forward, store
+from spline_model.motion.moves import Moves
+from spline_model.motion.records import MOST_GAIN_OF_OTHERS
+from spline_model.motion.start import Start
 from spline_model.motion.step import (
     FACTORISATIONS,
     FOLDS,
@@ -38,6 +39,7 @@ from spline_model.motion.step import (
     guess_step,
     improve,
 )
+from spline_model.motion.strip import set_points
 from spline_model.strip.compiled import copy, kernel, part
 
 Array = NDArray[np.float64]
@@ -197,6 +199,12 @@ def _run(step, first, end, every, alpha, state, strips, masses, work, counters, 
     return end
 
 
+def _joined(bodies: Array, points: Array) -> tuple[Array, Array, Array]:
+    """Numbers of bodies (Q,) and of control points (S, 2, n) in one array (C,), and its views of either."""
+    both = np.concatenate((bodies, points.ravel()))
+    return both, both[: bodies.size], both[bodies.size :].reshape(points.shape)
+
+
 class _Stepper(energy_consistent.Stepper):
     """A free scene that the scheme advances."""
 
@@ -205,21 +213,11 @@ class _Stepper(energy_consistent.Stepper):
     def __init__(self, start: Start, constants: Array) -> None:
         super().__init__(start)
         state, bodies = self._state, self._state.rate.size
-        given = (
-            (state.y[:bodies], state.points),
-            (state.rate, state.velocity),
-            (state.push, state.acceleration),
-        )
-        places, rates, pushes = (np.concatenate((one, other.ravel())) for one, other in given)
-        points, velocity, acceleration = (
-            each[bodies:].reshape(state.points.shape) for each in (places, rates, pushes)
-        )
+        places, _, points = _joined(state.y[:bodies], state.points)
+        rates, rate, velocity = _joined(state.rate, state.velocity)
+        pushes, push, acceleration = _joined(state.push, state.acceleration)
         self._state = state._replace(
-            points=points,
-            rate=rates[:bodies],
-            velocity=velocity,
-            push=pushes[:bodies],
-            acceleration=acceleration,
+            points=points, rate=rate, velocity=velocity, push=push, acceleration=acceleration
         )
         self._alpha = _Alpha(
             constants=constants,
@@ -242,8 +240,8 @@ class _Stepper(energy_consistent.Stepper):
         return int(_run(step, begin, end, every, *given, records))
 
 
-def integrate(start: Start, run: Steps, spectral_radius: float = SPECTRAL_RADIUS) -> Records:
-    """The records of a run.
+def stepper(start: Start, spectral_radius: float = SPECTRAL_RADIUS) -> Moves:
+    """What advances a free scene by the scheme.
 
     Potentials in Python, which the element does not know, ask for the scheme with multipliers.
     """
@@ -251,4 +249,4 @@ def integrate(start: Start, run: Steps, spectral_radius: float = SPECTRAL_RADIUS
     if not 0.0 <= spectral_radius <= 1.0:
         raise InvalidParameter("spectral_radius", spectral_radius, "a number from 0 to 1")
     form = bordered.Stepper if start.motion.system.open_potentials else _Stepper
-    return energy_consistent.carry(form(start, constants(spectral_radius)), run, start.z)
+    return form(start, constants(spectral_radius))

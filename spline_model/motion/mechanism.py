@@ -16,8 +16,8 @@ from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Flexures, Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.records import ENERGIES
-from spline_model.motion.run import set_points
 from spline_model.motion.start import Motion
+from spline_model.motion.strip import set_points
 from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE, Ends, ends_of, shape_of, strips_of
 from spline_model.strip.element import CURL, DROP
 
@@ -44,7 +44,7 @@ class Moving:
 
     @property
     def width(self) -> int:
-        """Numbers in a record (``spline_model.motion.run.store``)."""
+        """Numbers in a record (``spline_model.motion.energy_consistent.store``)."""
         state = zeros(State, sizes_of(self.strips, self.masses))
         shown = (state.y, state.rate, state.points, state.velocity, state.clamped, state.reaction)
         return sum(array.size for array in shown) + ENERGIES

@@ -10,13 +10,12 @@ import numpy as np
 from scipy.linalg import eigh
 
 from spline_model.errors import InvalidParameter
-from spline_model.motion import energy_consistent
 from spline_model.motion.arrays import Masses, Poses
-from spline_model.motion.energy_consistent import turned, why
+from spline_model.motion.energy_consistent import SLOWEST_SPEED, turned, why
 from spline_model.motion.massless import solve
-from spline_model.motion.records import ENERGIES, Records
-from spline_model.motion.run import SLOWEST_SPEED
-from spline_model.motion.start import Array, Start, Steps
+from spline_model.motion.moves import Moves
+from spline_model.motion.records import ENERGIES
+from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, REFUSED, SNAPS, STEPS, load_at
 from spline_model.reduced.arrays import NEGATIVE, SLOWEST
 from spline_model.reduced.assembly import assemble, factorise
@@ -36,8 +35,8 @@ SOFT = 0.5
 """Least stiffness of a strip over that at rest below which it is what stops a motion."""
 
 
-def integrate(start: Start, run: Steps) -> Records:
-    """The records of a run, from the bodies' part of the velocity."""
+def stepper(start: Start) -> Moves:
+    """What advances the bodies, from their part of the velocity."""
     motion = start.motion
     if motion.damped:
         raise InvalidParameter(
@@ -53,7 +52,7 @@ def integrate(start: Start, run: Steps) -> Records:
             "strips", "massless ones of this kind", "strip_inertia for printed forces or long B-splines"
         )
     y = from_unknowns(model, start.known.array[-1]) if y is None else y
-    return energy_consistent.carry(_Stepper(model.let_go(motion.system), y, start), run)
+    return _Stepper(model.let_go(motion.system), y, start)
 
 
 def softness(model: Reduced, y: Array, strip: int) -> float:
@@ -117,7 +116,7 @@ def _settle(poses):
 
 @part()
 def _store(poses, masses, arrays, row):
-    """A record: y, the bodies' rates and its energies, as of ``spline_model.motion.run.store``."""
+    """A record: y, the bodies' rates and its energies, as of ``energy_consistent.store``."""
     bodies, strips = arrays.bodies, arrays.strips
     shape, local = arrays.shape, arrays.local
     y, rate, n = poses.y, poses.rate, shape.order.size
@@ -178,7 +177,7 @@ def _run(
     return end
 
 
-class _Stepper(energy_consistent.Moves):
+class _Stepper(Moves):
     """Bodies on massless strips that the scheme advances."""
 
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -77,40 +77,6 @@ class Records:
     whole: Whole
     message: str
     counters: dict[str, int]
-
-
-def compact(
-    motion: Motion,
-    unknowns: Callable[[Array], tuple[Array, Array]],
-    records: Array,
-    z: Array | None,
-    spacing: float,
-    message: str,
-    counters: dict[str, int],
-) -> Records:
-    """The records (R, W) of a compiled run, ``spacing`` [s] apart, read as far as every answer needs.
-
-    The first of their numbers are poses in L, the last energies in EI/L. unknowns: what makes z (R, N) and
-    v (R, Q) of them; z (N,): of the first one, None where the record says as much.
-    """
-    scales, bodies = motion.system.scales, len(motion.turns)
-    return Records(
-        spacing=spacing,
-        poses=records[:, : 3 * bodies] * np.tile(scales.pose, bodies),
-        rows=records[:, -ENERGIES:] * scales.energy,
-        whole=Whole(motion, partial(_read, unknowns, records, z)),
-        message=message,
-        counters=counters,
-    )
-
-
-def _read(
-    unknowns: Callable[[Array], tuple[Array, Array]], records: Array, z: Array | None
-) -> tuple[Array, Array]:
-    states, rates = unknowns(records)
-    if z is not None:
-        states[0] = z
-    return states, rates
 
 
 def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,9 @@ from spline_model.compile import System
 from spline_model.effects import MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
-from spline_model.errors import InvalidParameter, require_count
+from spline_model.errors import InvalidParameter
 from spline_model.solution import Later
+from spline_model.strip.compiled import part
 from spline_model.tables import YIELDING, DriveTable, LoadTable
 
 Array = NDArray[np.float64]
@@ -24,8 +24,12 @@ Places = NDArray[np.int64]
 
 SAME = 1e-9
 """Instants nearer than this share of a step are the same."""
-MOST_MEMORY = 2e9
-"""Bytes that the records of one run may take."""
+
+
+@part(entered=True)
+def factor_of(row: int, time: float, table: DriveTable | LoadTable) -> Any:
+    """The factor of a load or a drive at an instant [s]."""
+    return factor_at(time, table.first[row], table.pairs[row], table.times, table.factors)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +112,7 @@ class Motion:
         """With the drives that begin now starting from where their bodies are."""
         drives, origin = self.drives, self.drives.origin.copy()
         for d in np.flatnonzero(active & ~before.astype(bool)):
-            factor = factor_at(time, drives.first[d], drives.pairs[d], drives.times, drives.factors)
-            origin[d] = z[drives.coordinate[d]] - factor * drives.target[d]
+            origin[d] = z[drives.coordinate[d]] - factor_of(d, time, drives) * drives.target[d]
         return replace(self, drives=drives._replace(origin=origin))
 
     def catch(self, z: Array, v: Array, active: Places, time: float, span: float) -> tuple[Array, float]:
@@ -132,8 +135,7 @@ class Motion:
         jacobian = -hessian[rows][:, :count]
         rate = np.zeros(len(rows))
         for i, d in enumerate(held):
-            history = (drives.first[d], drives.pairs[d], drives.times, drives.factors)
-            change = factor_at(time + span, *history) - factor_at(time, *history)
+            change = factor_of(d, time + span, drives) - factor_of(d, time, drives)
             rate[len(rows) - len(held) + i] = change / span * drives.target[d]
         inverse = np.linalg.pinv(self.mass)
         impulse = np.linalg.lstsq(jacobian @ inverse @ jacobian.T, rate - jacobian @ v, rcond=1e-12)[0]
@@ -194,8 +196,7 @@ class Motion:
     def _with_first_loads(self) -> System:
         """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
         loads = self.loads
-        given = zip(loads.first, loads.pairs, strict=True)
-        parts = [factor_at(0.0, first, pairs, loads.times, loads.factors) for first, pairs in given]
+        parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
         return self.system.with_tables(loads=loads._replace(value=loads.value * parts) if parts else loads)
 
     def require_compiled(self, name: str) -> None:
@@ -231,48 +232,6 @@ class Start:
     def z(self) -> Array:
         """The unknowns (N,) with the axial forces and multipliers that go with it."""
         return self._consistent[1]
-
-
-class Steps(NamedTuple):
-    """Steps of a run: their length [s] and number, and every which is recorded, which divides the number."""
-
-    step: float
-    steps: int
-    every: int
-
-    @classmethod
-    def of(cls, duration: float, step: float, records: int | None, width: int) -> Steps:
-        """As many as there are in a duration, for at most so many records of ``width`` numbers each.
-
-        Raises InvalidParameter for a step longer than the duration, and for records that do not fit
-        into MOST_MEMORY.
-        """
-        if step > duration:
-            raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
-        if records is not None:
-            require_count("records", records, 1)
-        steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
-        every = 1 if records is None else max(1, math.ceil(steps / records))
-        memory = 8.0 * width * (steps // every + 1)
-        if memory > MOST_MEMORY:
-            raise InvalidParameter(
-                "duration",
-                duration,
-                f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take "
-                f"{memory / 1e9:.3g} GB: keep fewer of them with records, or take a longer step",
-            )
-        steps = math.ceil(steps / every) * every
-        return cls(duration / steps, steps, every)
-
-    @property
-    def records(self) -> int:
-        """Records of a whole run, the start among them."""
-        return self.steps // self.every + 1
-
-    @property
-    def spacing(self) -> float:
-        """Of the records [s]."""
-        return self.step * self.every
 
 
 def set_in_motion(system: System) -> Motion:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
-from spline_model.effects.boundary import factor_at
 from spline_model.motion.project import condense, to_reduced, turn_bodies, turn_roots
+from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.strip.compiled import called, part
 
@@ -54,11 +54,16 @@ def prepare(time, h, state, strips, masses, work):
             work.steady[masses.load_strip[f], place // n, place % n] -= value
 
 
-@called()
-def load_at(f, time, masses):
-    """Value of a load."""
-    loads = masses.loads
-    return loads.value[f] * factor_at(time, loads.first[f], loads.pairs[f], loads.times, loads.factors)
+@part()
+def load_at(f, time, acts):
+    """Value of a load at an instant [s]; acts: what has tables of loads and drives."""
+    return acts.loads.value[f] * factor_of(f, time, acts.loads)
+
+
+@part()
+def driven_to(d, time, acts):
+    """Where a drive holds its coordinate at an instant [s]."""
+    return acts.drives.origin[d] + factor_of(d, time, acts.drives) * acts.drives.target[d]
 
 
 @called()
@@ -268,9 +273,8 @@ def newton(time, h, active, state, strips, masses, tolerance, work, counters):
     guess_step(h, state, strips, masses, work)
     for d in range(masses.drive_at.size):
         if active[d] == 1:
-            i, drives = masses.drive_at[d], masses.drives
-            factor = factor_at(time + h, drives.first[d], drives.pairs[d], drives.times, drives.factors)
-            dy = drives.origin[d] + factor * drives.target[d] - state.y[i]
+            i = masses.drive_at[d]
+            dy = driven_to(d, time + h, masses) - state.y[i]
             work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
     before = math.inf
     for _ in range(MOST_ITERATIONS):

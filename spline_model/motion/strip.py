@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.strip.compiled import called, part
+from spline_model.strip.compiled import called, kernel, part
 from spline_model.strip.laws import MATERIAL, curl_law
 from spline_model.strip.two_states import (
     bending_between,
@@ -125,6 +125,17 @@ def curve_at(p, points, first, d1, d2, out):
         x2 += d2[p, i] * x
         y2 += d2[p, i] * y
     out[0], out[1], out[2], out[3], out[4] = x1, y1, x2, y2, math.sqrt(x1 * x1 + y1 * y1)
+
+
+@kernel()
+def set_points(state, strips, masses):
+    """What a state's coordinates y make of its control points, end frames and curve."""
+    modes = strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = masses.inertia.size + s * (strips.own + modes)
+        place_strip(s, state.y, at, strips, state.points[s], state.ends[s])
+        for p in range(strips.weight.size):
+            curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
 
 
 @called()

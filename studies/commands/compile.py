@@ -92,12 +92,13 @@ def _from_rest(problem: Problem, settings: Settings) -> None:
     import numpy as np
 
     from spline_model.compile import compile_scene
-    from spline_model.motion.energy_consistent import integrate
-    from spline_model.motion.start import Start, Steps, set_in_motion
+    from spline_model.motion.energy_consistent import Stepper
+    from spline_model.motion.moves import Steps, carry
+    from spline_model.motion.start import Start, set_in_motion
     from spline_model.solution import Later
     from studies.answers.models import put
 
     pivot = put(problem, settings, moving=True).modelled.in_motion()
     motion = set_in_motion(compile_scene(pivot.released()))
     start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.mass)))
-    integrate(start, Steps(1e-8, 4, 1))
+    carry(Stepper(start), Steps(1e-8, 4, 1))

@@ -12,14 +12,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from spline_model.dynamics import Trajectory, solve_release
+from spline_model.impulses.stepper import contraction, sweep_errors
 from spline_model.pivot import Pivot
-from spline_model.sequential_impulse import (
-    contraction,
-    impulse_solver,
-    solve_impulses,
-    stability_limit,
-    sweep_errors,
-)
+from spline_model.sequential_impulse import impulse_solver, solve_impulses, stability_limit
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case

@@ -10,7 +10,6 @@ import numpy as np
 from spline_model.compile import compile_scene
 from spline_model.effects import StripDamping
 from spline_model.held import HeldPivot, HeldState
-from spline_model.impulses.solver import Run
 from spline_model.motion.energy_consistent import Stepper
 from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
 from spline_model.motion.start import Start, set_in_motion
@@ -60,6 +59,7 @@ class _Energy:
         system = compile_scene(pivot.released())
         known = Later(z[None, : system.layout.size].copy)
         self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
+        self._stepper.smallest = SMALLEST_PART
 
     def advance(self, steps: int, step: float) -> float:
         """Take `steps` steps of `step` seconds, halved at need down to SMALLEST_PART; returns the time done
@@ -67,7 +67,7 @@ class _Energy:
         stepper = self._stepper
         before, kept = int(stepper.counters[NEWTON]), stepper.kept()
         for _ in range(steps):
-            if stepper.advance(0.0, step, SMALLEST_PART) < step:
+            if not stepper.advance(0.0, step):
                 stepper.take_back(kept)
                 return 0.0
         self._iterations = int(stepper.counters[NEWTON]) - before
@@ -87,7 +87,7 @@ class _Impulses:
     def __init__(self, pivot: Pivot, z: Array, v: Array, form: str, way: str, sweeps: int) -> None:
         self._solver = solver = impulse_solver(pivot, form=form, impulses=way, sweeps=sweeps)
         self._count = "solves" if way == "direct" else "sweeps"
-        self._out = Run(solver, solver.start_at(z, v)).outcome(0, 0, 0.0, False)
+        self._out = solver.look(solver.start_at(z, v))
         self._dissipated, self.longest = 0.0, math.inf
         if form == "printed":
             limit, damping = stability_limit(pivot), solver.system.scene.of(StripDamping)
@@ -97,16 +97,13 @@ class _Impulses:
 
     def advance(self, steps: int, step: float) -> float:
         """As of the other; where a step must be cut below its least part, none counts."""
-        solver, begin = self._solver, self._out.state
         parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
         step, steps = min(step / parts, self.longest), steps * parts
-        run, free = Run(solver, begin), np.zeros(len(solver.motion.drives.row), dtype=np.int64)
-        taken = run.go(0, steps, step, begin.time, steps, free, solver.motion)
-        out = run.outcome(taken, steps, begin.time + taken * step, False)
+        out = self._solver.step(self._out.state, step, steps)
         if not out.complete:
             return 0.0
         self._out = out
-        self._dissipated += float(run.moving.totals[1])
+        self._dissipated += out.dissipated
         return steps * step
 
     def state(self) -> _Moving:

@@ -12,7 +12,8 @@ from spline_model.compile import compile_scene
 from spline_model.dynamics import STEP, solve_release
 from spline_model.modes import settle
 from spline_model.motion import energy_consistent
-from spline_model.motion.start import Start, Steps, set_in_motion
+from spline_model.motion.moves import Steps, carry
+from spline_model.motion.start import Start, set_in_motion
 from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
@@ -86,7 +87,7 @@ def test_single_step(benchmark):
     start = Start(motion, settle(mechanism, QUARTER_TURN), np.zeros(layout.coordinate_count))
 
     def step():
-        return energy_consistent.integrate(start, Steps(STEP, 1, 1))
+        return carry(energy_consistent.Stepper(start), Steps(STEP, 1, 1))
 
     run = benchmark(step)
     benchmark.extra_info.update(run.counters)

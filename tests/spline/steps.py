@@ -3,10 +3,11 @@
 import numpy as np
 
 from spline_model.compile import compile_scene
+from spline_model.motion.energy_consistent import store
 from spline_model.motion.mechanism import Moving
-from spline_model.motion.run import set_points, store
 from spline_model.motion.start import set_in_motion
 from spline_model.motion.step import assemble, improve, prepare
+from spline_model.motion.strip import set_points
 
 
 class Step:

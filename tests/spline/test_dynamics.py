@@ -12,8 +12,9 @@ from spline_model.dynamics import INTEGRATORS, solve_release
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.modes import natural_frequencies, static_state
 from spline_model.motion import bordered, energy_consistent, generalised_alpha
+from spline_model.motion.moves import Steps, carry
 from spline_model.motion.records import KINETIC, STRAIN
-from spline_model.motion.start import Start, Steps, set_in_motion
+from spline_model.motion.start import Start, set_in_motion
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.solution import Later
 from tests import gates
@@ -186,7 +187,8 @@ def free_flight(step, steps=400):
     v[:body] = (np.column_stack((-points[:, 1], points[:, 0])) * spin + (0.4, -0.2)).ravel()
     v[1:body:2] += 40.0 * (points[:, 0] / LENGTH) ** 2 * (np.arange(len(points)) < len(points) - 2)
     v[body : body + 3] = (0.4, -0.2, spin)
-    run = energy_consistent.integrate(Start(motion, Later(system.rest[None].copy), v), Steps(step, steps, 1))
+    start = Start(motion, Later(system.rest[None].copy), v)
+    run = carry(energy_consistent.Stepper(start), Steps(step, steps, 1))
     assert not run.message
     momentum = momenta(scene, *run.whole.both)
     energy = run.rows[:, KINETIC] + run.rows[:, STRAIN]
@@ -228,9 +230,9 @@ def test_generalised_alpha_is_that_with_multipliers():
     z = static_state(pivot, 1.0)[: system.layout.size]
     v = np.zeros(system.layout.coordinate_count)
     start, steps = Start(motion, Later(z[None].copy), v), Steps(1e-5, 20, 10)
-    ours = generalised_alpha.integrate(start, steps)
+    ours = carry(generalised_alpha.stepper(start), steps)
     stepper = bordered.Stepper(start, generalised_alpha.constants(generalised_alpha.SPECTRAL_RADIUS))
-    other = energy_consistent.carry(stepper, steps)
+    other = carry(stepper, steps)
     places = slice(0, len(v))
     assert np.abs(ours.whole.both[0] - other.whole.both[0])[:, places].max() < 1e-12
     assert np.abs(ours.rows[1:, KINETIC] / other.rows[1:, KINETIC] - 1.0).max() < 1e-9

@@ -7,16 +7,15 @@ import pytest
 
 from spline_model.compile import compile_scene
 from spline_model.dynamics import solve_release
-from spline_model.impulses.solver import ImpulseSolver
+from spline_model.impulses.stepper import contraction, sweep_errors
 from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.motion.start import set_in_motion
 from spline_model.pivot import swinging_slide_stiffness
 from spline_model.sequential_impulse import (
-    contraction,
+    ImpulseSolver,
     impulse_solver,
     solve_impulses,
     stability_limit,
-    sweep_errors,
 )
 from tests import gates
 from tests.spline.impulses import POLYMER, QUARTER, pivot, total

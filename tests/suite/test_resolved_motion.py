@@ -10,7 +10,7 @@ from fe_reference import trajectory as of_elements
 from fe_reference.dynamics import solve_release as release_elements
 from fe_reference.errors import InvalidParameter
 from fe_reference.mechanism import cross_axis_pivot as elements_pivot
-from spline_model import companion, dynamics
+from spline_model import content, dynamics
 from spline_model.dynamics import solve_motion, solve_release
 from spline_model.pivot import cross_axis_pivot
 from studies.answers.adapters import answer_release
@@ -33,7 +33,7 @@ def test_motion_that_tumbles_says_that_it_is_not_resolved():
     assert motion.converged
     assert "with 8 control points the rotation differs" in motion.resolution
     assert "the motion is not resolved" in motion.resolution
-    assert motion.rotation_error > companion.UNRESOLVED * np.abs(motion.rotation).max()
+    assert motion.rotation_error > content.UNRESOLVED * np.abs(motion.rotation).max()
 
 
 def test_swing_of_a_light_body_says_that_it_is_not_resolved():
@@ -102,7 +102,7 @@ def test_motion_without_explicit_steps_is_checked_too(effects):
 
 def test_companion_that_fails_is_told(monkeypatch):
     """A companion without an answer leaves the motion as it is and says that it was not checked."""
-    monkeypatch.setattr(companion, "_scheme", lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
+    monkeypatch.setattr(content, "_scheme", lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3)
     assert motion.status.value == "converged"
     assert motion.resolution.startswith("not checked with 8 control points: ")

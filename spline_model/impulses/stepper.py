@@ -1,0 +1,230 @@
+"""A motion by impulses, carried through a run as the others are, and what steps led to."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.impulses.arrays import COUNTS, ENERGY, RESIDUAL, Moving
+from spline_model.impulses.steps import EULER, predict, printed_advance, solve_step, stable_advance
+from spline_model.impulses.system import fill_drag, strain_energy
+from spline_model.motion.moves import Steps, Unreduced
+from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, Whole
+from spline_model.motion.start import Motion
+from spline_model.strip.compiled import copy, kernel
+
+if TYPE_CHECKING:
+    from spline_model.sequential_impulse import ImpulseSolver
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+COUNTERS = ("steps", "solves", "sweeps", "halved_steps", "limited_steps")
+REASONS = {
+    "printed": "the step is above the stability limit",
+    "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
+}
+"""Why a motion of a form stops."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Where a motion is. A step leaves it as it is and returns another.
+
+    z (N,) unknowns: coordinates, axial forces, multipliers; v (Q,) velocities; earlier (2, Q) coordinates
+    and velocities of the step before, which count if ``known`` is 1 and not if it is 0;
+    time [s]; held: whether a pose was imposed in the step that led here.
+    """
+
+    z: Array
+    v: Array
+    earlier: Array
+    known: int
+    time: float
+    held: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Outcome:
+    """What steps led to.
+
+    state: after the last step that was taken; taken, asked: numbers of steps; kinetic, strain and
+    gravity energy, and what these steps dissipated [J]; constraint_residual [m], velocity_residual
+    [m/s]; residual: the largest that a step left in its equations, or an impulse before the last
+    had to close [1];
+    counters: steps (halves count), solves, sweeps, halved_steps, limited_steps.
+    """
+
+    state: State
+    taken: int
+    asked: int
+    kinetic_energy: float
+    strain_energy: float
+    gravity_energy: float
+    dissipated: float
+    constraint_residual: float
+    velocity_residual: float
+    residual: float
+    counters: dict[str, int]
+
+    @property
+    def complete(self) -> bool:
+        """Whether all steps were taken; if not, the state is the last good one."""
+        return self.taken == self.asked
+
+
+class Stepper(Unreduced):
+    """A motion from a state, its steps between two events in one call; they see to the energy themselves."""
+
+    most_gain = math.inf
+    watched = sys.maxsize
+    smallest = 1.0
+
+    def __init__(self, solver: ImpulseSolver, state: State) -> None:
+        self.solver, self.counters = solver, np.zeros(6, dtype=np.int64)
+        self.moving = Moving(
+            z=state.z.copy(),
+            v=state.v.copy(),
+            earlier=state.earlier.copy(),
+            status=np.array([state.known, 0.0, 0.0]),
+            counters=self.counters,
+            totals=np.zeros(2),
+        )
+        self.width = len(state.z) + len(state.v) + 3
+        self.drive(solver.motion, np.zeros_like(solver.problem.active))
+        self._begin()
+
+    def _begin(self) -> None:
+        (z, v), problem = self.moving[:2], self.solver.problem
+        strain = strain_energy(z, v, problem, self.solver.space)
+        self.moving.status[ENERGY] = 0.5 * v @ problem.mass @ v + strain - problem.weight @ z[: v.size]
+
+    def drive(self, motion: Motion, active: Indices) -> None:
+        """Go on with the drives of a motion, of which those hold whose ``active`` (D,) is 1."""
+        self.motion, self.active = motion, active
+        self._problem = self.solver.problem._replace(drives=motion.drives, active=active)
+
+    def instants(self, run: Steps) -> list[float]:
+        """When drives begin, change or end: at the ends of the nearest steps [s]."""
+        nearest = {round(time / run.step) for time in super().instants(run)} - {0, run.steps}
+        return [number * run.step for number in sorted(nearest)]
+
+    def switch(self, time: float, span: float) -> None:
+        """Let drives begin, change or end at ``time``, over at least ``span`` [s]: the run starts anew."""
+        active, (z, v) = self.motion.drives_at(time + 0.5 * span), self.moving[:2]
+        self.drive(self.motion.from_here(z, active, self.active, time), active)
+        v[:], lost = self.motion.catch(z, v, active, time, span)
+        self.moving.totals[1] += lost
+        self.moving.status[COUNTS] = 0.0
+        self._begin()
+
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take the steps ``begin`` ... ``end`` - 1; the number of the first that cannot be, or end."""
+        stable = self.solver.form == "stable"
+        given = stable, self._problem, self.solver.space, records
+        return int(_advance(self.moving, time, step, begin, end, every, *given))
+
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+        record = np.empty(self.width)
+        _store(self.moving, self._problem, self.solver.space, record)
+        return record
+
+    def counted(self, steps: int) -> dict[str, int]:
+        """What was counted, by name."""
+        return dict(zip(COUNTERS, self.counters[: len(COUNTERS)].tolist(), strict=True))
+
+    def reason(self) -> str:
+        """Why the last step was given up, and what helps."""
+        return REASONS[self.solver.form]
+
+    def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
+        """Where the motion stands, for who asked for steps."""
+        moving, system = self.moving, self.motion.system
+        z, v, (row,) = self.look()
+        (gap,) = Whole(self.motion, partial(tuple, (z, v))).gaps
+        known, rest = int(moving.status[COUNTS]), system.rest[: system.weight.size]
+        return Outcome(
+            state=State(z=moving.z, v=moving.v, earlier=moving.earlier, known=known, time=time, held=held),
+            taken=taken,
+            asked=asked,
+            kinetic_energy=float(row[KINETIC]),
+            strain_energy=float(row[STRAIN]),
+            gravity_energy=float(row[WEIGHT] + system.weight @ rest),
+            dissipated=float(row[DISSIPATED]),
+            constraint_residual=float(gap[0]),
+            velocity_residual=float(gap[1]),
+            residual=float(moving.status[RESIDUAL]),
+            counters=self.counted(taken),
+        )
+
+
+def sweep_errors(direct: ImpulseSolver, swept: ImpulseSolver, state: State, h: float, most: int) -> Array:
+    """Error of the velocity after 1 ... ``most`` sweeps of the first linear system of a step, (most,) [1].
+
+    In the kinetic norm, over the change of velocity in the step. Both solvers are of one scene and form, one
+    of them without and one with sweeps, and the state is one of either.
+    """
+    mass = direct.motion.mass
+    exact = _velocity(direct, state, h, 1)
+    change = exact - state.v
+    scale = np.sqrt(change @ mass @ change)
+    errors = [_velocity(swept, state, h, sweeps) - exact for sweeps in range(1, most + 1)]
+    return np.array([np.sqrt(error @ mass @ error) / scale for error in errors])
+
+
+def contraction(errors: Array, floor: float = 1e-10) -> float:
+    """Factor that a sweep leaves of the error, from the last three above the floor; above 1 it grows."""
+    seen = errors[errors > floor]
+    last = seen[-4:] if len(seen) >= 2 else errors[:2]
+    return float((last[-1] / last[0]) ** (1.0 / (len(last) - 1)))
+
+
+def _velocity(solver: ImpulseSolver, state: State, h: float, sweeps: int) -> Array:
+    """The velocity (Q,) after that many sweeps of the first linear system of a step."""
+    moving, space = Stepper(solver, state).moving, solver.space
+    tiny = float(np.finfo(float).tiny)
+    problem = solver.problem._replace(sweeps=sweeps, iterations=1, tolerance=tiny)
+    if solver.form == "printed":
+        printed_advance(moving, state.time, h, problem, space)
+        return moving.v.copy()
+    span, lag = predict(moving, h, EULER, problem.turns, space)
+    fill_drag(state.z, problem, space)
+    solve_step(span, lag, state.time + h, problem, space, moving.counters)
+    return space.v.copy()
+
+
+@kernel()
+def _store(moving, problem, space, record):
+    """Fill a record (W,) of the present state."""
+    size, count = moving.z.size, moving.v.size
+    copy(moving.z, record[:size])
+    copy(moving.v, record[size : size + count])
+    record[size + count] = strain_energy(moving.z, moving.v, problem, space)
+    copy(moving.totals, record[size + count + 1 :])
+
+
+@kernel()
+def _advance(moving, time, h, begin, end, every, stable, problem, space, records):
+    """Take the steps ``begin`` ... ``end`` - 1 of length h, step 0 being at ``time`` [s].
+
+    Returns the number of the first step that was not taken; ``moving`` stands at its begin. records: filled
+    at the ends of steps whose number ``every`` divides.
+    """
+    for k in range(begin, end):
+        now = time + k * h
+        if stable:
+            done = stable_advance(moving, now, h, problem, space)
+        else:
+            done = printed_advance(moving, now, h, problem, space)
+        if not done:
+            return k
+        if (k + 1) % every == 0:
+            _store(moving, problem, space, records[(k + 1) // every - begin // every - 1])
+    return end

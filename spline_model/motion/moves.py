@@ -1,0 +1,261 @@
+"""How a motion is carried through a run: whole steps, parts of those that fail, events, and its records."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.errors import InvalidParameter, require_count
+from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, Whole, first_gain, rows_of
+from spline_model.motion.start import SAME, Array, Motion
+from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS, WHOLE
+
+SMALLEST_STEP = 2.0**-14
+"""Least fraction of a step before the run is given up."""
+MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
+"""A run is given up when it has been halved more often than this, and this for every step done: the
+swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
+MOST_MEMORY = 2e9
+"""Bytes that the records of one run may take."""
+WATCHED = 4096
+"""Steps after which the energy is looked at, at the latest."""
+
+
+class Steps(NamedTuple):
+    """Steps of a run: their length [s] and number, and every which is recorded, which divides the number."""
+
+    step: float
+    steps: int
+    every: int
+
+    @classmethod
+    def of(cls, duration: float, step: float, records: int | None, width: int) -> Steps:
+        """As many as there are in a duration, for at most so many records of ``width`` numbers each.
+
+        Raises InvalidParameter for a step longer than the duration, and for records that do not fit
+        into MOST_MEMORY.
+        """
+        if step > duration:
+            raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
+        if records is not None:
+            require_count("records", records, 1)
+        steps = max(1, math.ceil(duration / step * (1 - 1e-12)))  # a whole number but for round-off
+        every = 1 if records is None else max(1, math.ceil(steps / records))
+        memory = 8.0 * width * (steps // every + 1)
+        if memory > MOST_MEMORY:
+            raise InvalidParameter(
+                "duration",
+                duration,
+                f"records within {MOST_MEMORY / 1e9:g} GB; {steps} steps of {step:g} s take "
+                f"{memory / 1e9:.3g} GB: keep fewer of them with records, or take a longer step",
+            )
+        steps = math.ceil(steps / every) * every
+        return cls(duration / steps, steps, every)
+
+    @property
+    def records(self) -> int:
+        """Records of a whole run, the start among them."""
+        return self.steps // self.every + 1
+
+    @property
+    def spacing(self) -> float:
+        """Of the records [s]."""
+        return self.step * self.every
+
+
+class Moves:
+    """A scene in motion, advanced in steps that are halved at need.
+
+    most_gain: of energy; watched: steps after which the energy is looked at, at the latest; smallest: part of
+    a step that is taken at least where it fails, 1 if none is; first: unknowns (N,) of the first record, None
+    where that says as much; width: numbers of a record, of which the first are the poses in L and the last
+    the energies in EI/L.
+    """
+
+    most_gain = MOST_GAIN
+    watched = WATCHED
+    smallest = SMALLEST_STEP
+    first: Array | None = None
+    motion: Motion
+    counters: NDArray[np.int64]
+    width: int
+
+    def instants(self, run: Steps) -> list[float]:
+        """When drives begin, change or end inside a run [s]."""
+        return self.motion.event_times(run.steps * run.step, run.step)
+
+    def advance(self, time: float, duration: float) -> bool:
+        """Advance by a step of ``duration``, halved at need; whether it was done."""
+        return self.take(time, duration, 0, 1, 2, np.zeros((0, self.width))) == 1
+
+    def take(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take the steps ``begin`` ... ``end`` - 1 after a time [s], filling records (R, W).
+
+        One that fails is taken in parts. Returns the number of the first that cannot be, or end.
+        """
+        number, first = begin, begin // every
+        while number < end:
+            done = self.steps(time, step, number, end, every, records[number // every - first :])
+            self.counters[WHOLE] += done - number
+            number = done
+            if number < end:
+                last = (number + 1) // every - first
+                mine = records[last - 1 : last] if (number + 1) % every == 0 else records[:0]
+                if not self._take_parts(time + number * step, step, mine):
+                    break
+                self.counters[WHOLE] += 1
+                number += 1
+        return number
+
+    def _take_parts(self, time: float, step: float, record: Array) -> bool:
+        """Take a step that failed: halved, down to its smallest part, and doubled again after each success.
+
+        record (1, W), or (0, W) where none is wanted: filled at its end.
+        """
+        if self.smallest == 1.0:
+            return False
+        done, h, counters = 0.0, 0.5 * step, self.counters
+        counters[HALVED] += 1
+        while step - done > SAME * step:
+            most = MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]
+            if h < self.smallest * step or counters[HALVED] > most:
+                return False
+            h = min(h, step - done)
+            wanted = len(record) > 0 and not step - (done + h) > SAME * step
+            if self.steps(time + done, h, 0, 1, 1 if wanted else 2, record) == 1:
+                done, h = done + h, min(2.0 * h, step)
+            else:
+                counters[HALVED] += 1
+                h *= 0.5
+        return True
+
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take whole steps; the number of the first that fails, at whose begin all is left, or end."""
+        raise NotImplementedError
+
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+        raise NotImplementedError
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        raise NotImplementedError
+
+    def shown(self, records: Array) -> tuple[Array, Array]:
+        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        scales, bodies = self.motion.system.scales, len(self.motion.turns)
+        poses = records[:, : 3 * bodies] * np.tile(scales.pose, bodies)
+        return poses, records[:, -ENERGIES:] * scales.energy
+
+    def counted(self, steps: int) -> dict[str, int]:
+        """What was counted, by name; steps: of the good records."""
+        places = {"steps": STEPS, "halved_steps": HALVED, "newton_iterations": NEWTON}
+        places["factorisations"] = FACTORISATIONS
+        return {name: int(self.counters[place]) for name, place in places.items()}
+
+    def look(self) -> tuple[Array, Array, Array]:
+        """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
+        record = self.record()[None]
+        return *self.unknowns(record), self.shown(record)[1]
+
+    def switch(self, time: float, span: float) -> None:
+        """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
+
+    def stopped(self, record: float, reached: float, *, grows: bool) -> str:
+        """Why the run stopped: record: when the first one is due that is not good [s]; grows: its energy."""
+        if grows:
+            return f"stopped at {record:.6g} s: the energy grows by more than {self.most_gain:g} of itself"
+        return f"stopped at {reached:.6g} s: {self.reason()}"
+
+    def reason(self) -> str:
+        """Why the last step was given up, and what helps."""
+        raise NotImplementedError
+
+
+class Unreduced(Moves):
+    """The same in the scene's own unknowns.
+
+    A record is unknowns (N,), velocities (Q,), strain energy, work done and energy dissipated [J].
+    """
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        size = self.motion.system.layout.size
+        return records[:, :size], records[:, size:-3]
+
+    def shown(self, records: Array) -> tuple[Array, Array]:
+        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        z, v = self.unknowns(records)
+        return z[:, self.motion.system.layout.poses], rows_of(self.motion, z, v, records[:, -3:])
+
+
+def carry(stepper: Moves, run: Steps) -> Records:
+    """The records of a run; one whose balance of energies gains too much ends with the last good record."""
+    records = np.empty((run.records, stepper.width))
+    kept, message = _fill(stepper, run, records)
+    poses, rows = stepper.shown(records[:kept])
+    return Records(
+        spacing=run.spacing,
+        poses=poses,
+        rows=rows,
+        whole=Whole(stepper.motion, partial(_read, stepper, records[:kept])),
+        message=message,
+        counters=stepper.counted((kept - 1) * run.every),
+    )
+
+
+def _read(stepper: Moves, records: Array) -> tuple[Array, Array]:
+    """Unknowns (R, N) and velocities (R, Q) of all records of a run."""
+    states, rates = stepper.unknowns(records)
+    if stepper.first is not None:
+        states[0] = stepper.first
+    return states, rates
+
+
+def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
+    """Fill the records (R, W) of a run; returns how many are good, and why it stopped, if it did."""
+    step, every, duration, kept = run.step, run.every, run.steps * run.step, 0
+    energy = stepper.motion.system.scales.energy
+    for begin, end in pairwise((0.0, *stepper.instants(run), duration)):
+        stepper.switch(begin, min(end - begin, step))
+        if begin == 0.0:  # with the drives that hold from the start on
+            records[0], kept = stepper.record(), 1
+        for time, to, number, last in _pieces(begin, end, run, stepper.watched):
+            if last > number:
+                places = slice(number // every + 1, last // every + 1)
+                done = stepper.take(0.0, step, number, last, every, records[places])
+                solved, reached, kept = done == last, done * step, done // every + 1
+            else:
+                solved, reached = stepper.advance(time, to - time), time
+                if solved and to == last * step and last % every == 0:
+                    records[last // every], kept = stepper.record(), last // every + 1
+            good = first_gain(stepper.shown(records[:kept])[1], energy, stepper.most_gain)
+            if good < kept or not solved:
+                return good, stepper.stopped(good * every * step, reached, grows=good < kept)
+    return kept, ""
+
+
+def _pieces(begin: float, end: float, run: Steps, most: int) -> Iterator[tuple[float, float, int, int]]:
+    """The way from one instant to another [s]: from, to, and the first and last step's end of whole steps.
+
+    These are as many as are run before the energy is looked at, at most; of a part of a step, which ends in
+    the last one or before it, both are the same.
+    """
+    time, step, watched = begin, run.step, max(1, most // run.every) * run.every
+    close = SAME * step
+    while end - time > close:
+        number, last = (math.floor((instant + close) / step) for instant in (time, end))
+        if last > number and abs(time - number * step) <= close:
+            last = min(last, number + watched - number % run.every)
+            to = last * step
+        else:
+            number = last = number + 1
+            to = last * step if end > last * step - close else end
+        yield time, to, number, last
+        time = to
