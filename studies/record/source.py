@@ -61,9 +61,9 @@ _VERSIONED = {"ctx", "kind", "type_comment", "type_params"}
 class _Definition:
     """One definition: a text that is equal for equal code, and what stands in it.
 
-    `chains` are its dotted names that begin in this repository, `said` the names of attributes and the words of its strings; `entries` are
-    those of a table by its keys, or the methods of a class but for those that Python calls; where a class has
-    a base of another library it is open: that may call any of them.
+    `chains` are its dotted names that begin in this repository, `said` the names of attributes and the words
+    of its strings; `entries` are those of a table by its keys, or the methods of a class but for those that
+    Python calls; where a class has a base of another library it is open: that may call any of them.
     """
 
     module: str
@@ -129,16 +129,13 @@ def _definition(nodes: list[ast.stmt], module: str, ours: Set[str]) -> _Definiti
         }
     walked = [node for statement in own for node in ast.walk(statement)]
     inner = {id(node.value) for node in walked if isinstance(node, ast.Attribute)}
+    chains = (_chain(node) for node in walked if id(node) not in inner)
     attributes = (node.attr for node in walked if isinstance(node, ast.Attribute))
     texts = [node.value for node in walked if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     return _Definition(
         module=module,
         code=_canonical(own),
-        chains=frozenset(
-            chain
-            for node in walked
-            if id(node) not in inner and (chain := _chain(node)).partition(".")[0] in ours
-        ),
+        chains=frozenset(chain for chain in chains if chain.partition(".")[0] in ours),
         said=frozenset(attributes).union(WORD.findall("\n".join(texts))),
         entries={key: _definition(value, module, ours) for key, value in entries.items()},
         is_class=is_class,
