@@ -53,7 +53,7 @@ def _outcomes(family: str, model: str = DEFAULT) -> Stored:
 
 @lru_cache(maxsize=1)
 def _all(results: Results) -> pd.DataFrame:
-    """Return model, family and kind of end of every case that a model was asked; twenty facts are made of it."""
+    """Return model, family and kind of end of every case that a model was asked; once, for twenty facts."""
     tables = (results.table(GROUP + family, "outcomes").assign(family=family) for family in FAMILIES)
     every = pd.concat(tables)
     return every.assign(kind=kinds(every))

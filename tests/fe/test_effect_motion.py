@@ -59,7 +59,8 @@ def plucked(name: str, key: str, ratio: float) -> tuple[float, float]:
     return rate / omega, frequency / omega
 
 
-@pytest.mark.parametrize("name", [pytest.param("strip_damping", marks=pytest.mark.slow), "strip_drag"])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["strip_damping", "strip_drag"])
 def test_damping_ratio_of_a_cantilever(name: str) -> None:
     """The first mode decays with beta omega / 2 of the material, or alpha / (2 omega) of the drag."""
     key = {"strip_damping": "relaxation_time", "strip_drag": "rate"}[name]

@@ -50,13 +50,11 @@ FILMS = {
 }
 
 
-#: Films that take seconds to track.
-LONG = ("hard", "wide")
+#: Their names; those that take seconds to track are of slow tests.
+NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name in ("hard", "wide"))) for name in FILMS]
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in FILMS]
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_pose_of_a_film(name):
     """Requirement: every frame is found, and the rms errors stay below 0.05 deg and 0.08 mm with the camera
     known, its lens bent or not, 0.06 deg and 0.10 mm without, 0.12 deg and 0.20 mm with blur and noise
@@ -71,7 +69,7 @@ def test_pose_of_a_film(name):
         assert max(shifts) <= 0.20
 
 
-@pytest.mark.parametrize("name", [*FILMS, "finger"])
+@pytest.mark.parametrize("name", [*NAMES, "finger"])
 def test_tracking_gates_have_teeth(name, monkeypatch):
     """Requirement: with corners as the detector gives them, on a picture of half the size, all of them
     fail."""

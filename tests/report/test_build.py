@@ -129,7 +129,10 @@ def test_sentence_on_seconds_gives_way_on_a_busy_machine(content):
     assert typeset(spoilt)
 
 
-@pytest.mark.parametrize("kind", ["facts", "listings", "figures", "holds"])
+@pytest.mark.parametrize(
+    "kind",
+    ["facts", "figures", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("listings", "holds"))],
+)
 def test_unknown_name_ends_the_build(content, kind):
     """What a section quotes and nothing gives is named in one line."""
     spoilt = copy.deepcopy(content)
