@@ -12,7 +12,7 @@ from studies.commands.parser import command
 from studies.errors import BadInput
 
 if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
-    from studies.engine.study import Study
+    from studies.engine import Study
 
 #: Command -> what it does.
 COMMANDS: dict[str, str] = {

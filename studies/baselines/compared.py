@@ -17,7 +17,7 @@ from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.baselines.variant import Baseline, Variant, grid
 from studies.cases.problem import Problem
-from studies.engine.study import Row, lacking
+from studies.engine import Row, lacking
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.work_precision import equal_error

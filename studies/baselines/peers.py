@@ -29,7 +29,7 @@ from studies.baselines.compared import (
 from studies.baselines.exudyn_strips import exudyn_ancf
 from studies.baselines.openseespy import openseespy_frame
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables, records
+from studies.engine import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look

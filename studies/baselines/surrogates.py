@@ -24,7 +24,7 @@ from studies.baselines.constraint_model import CHAINED, chained_constraint_model
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.cases.problem import TABLE_1, Problem, named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.published.account import CASE as GUIDE

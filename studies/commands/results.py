@@ -10,7 +10,7 @@ import pandas as pd
 
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
-from studies.engine.study import Kept, Study, Tables, answered, cores, processes
+from studies.engine import Kept, Study, Tables, answered, cores, processes
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.progress import Bar

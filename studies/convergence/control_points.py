@@ -18,7 +18,7 @@ from studies.answers.reference import QUANTITIES, largest_errors
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence.sweep import reaching, spline_row
-from studies.engine.study import Answer, Claim, Part, Study, Tables, percent
+from studies.engine import Answer, Claim, Part, Study, Tables, percent
 from studies.paper import formulations
 from studies.paper.formulations import refined
 from studies.record.marks import Doubt

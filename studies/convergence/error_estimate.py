@@ -25,7 +25,7 @@ from studies.answers.reference import sampled
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.record.marks import Slope, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, Look

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.convergence.swing_sweep import INTEGRATORS, MODES, PARTS
-from studies.engine.study import Claim, Study, Tables
+from studies.engine import Claim, Study, Tables
 from studies.record.marks import Doubt, Level
 from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
 from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, Look

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from studies.convergence.impulse_tables import PAPER_STEP, PARTS
-from studies.engine.study import Claim, Study, Tables
+from studies.engine import Claim, Study, Tables
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLUE, GREEN, GREY, ORANGE, RED, Look

@@ -18,7 +18,7 @@ from spline_model.sequential_impulse import impulse_solver, solve_impulses, stab
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Part
+from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.record.progress import measure
 

@@ -15,7 +15,7 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
 from studies.record.marks import Doubt, Slope
 from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet

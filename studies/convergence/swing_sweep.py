@@ -15,7 +15,7 @@ from studies.answers.reference import SWING_MESHES, sampled
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Part
+from studies.engine import Answer, Part
 from studies.paper import formulations
 from studies.paper.formulations import FE, SETTINGS
 

@@ -29,7 +29,7 @@ from studies.cases.effects import Effects
 from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
 from studies.design.figures import CHARTS
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 
 CASE = "cross_axis_pivot"

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from studies.design.task import BASELINES, QUESTIONS, TABLE_ONE, WIDE
-from studies.engine.study import Tables, records
+from studies.engine import Tables, records
 from studies.record.marks import Contours, Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, Look, page

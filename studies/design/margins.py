@@ -21,7 +21,7 @@ from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIABLES, VARIATION, 
 from studies.design.optimise import Outcome, best, search
 from studies.design.task import OBJECTIVES, UNITS, Task, variables_of, varied
 from studies.effects.beyond import ALL, SECTIONS, relative_change, with_sections
-from studies.engine.study import Claim, Tables
+from studies.engine import Claim, Tables
 from studies.kinds import Array
 from studies.record.progress import silent
 

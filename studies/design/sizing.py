@@ -18,7 +18,7 @@ from studies.design import task as questions
 from studies.design.evaluate import CENTRE_SHIFT, VARIATION, Answers, Measured, answers, by_elements
 from studies.design.optimise import Outcome, best, numbered, search
 from studies.design.programme import gradient_error
-from studies.engine.study import Answer, Part, Study
+from studies.engine import Answer, Part, Study
 from studies.record.progress import measure, silent
 
 #: Control points of what is timed, and how often it is.

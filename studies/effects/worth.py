@@ -16,7 +16,7 @@ from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
-from studies.engine.study import Answer, Claim, Part, Study, Tables, records
+from studies.engine import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level, Slope, Words
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.response import Response
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Part, Study, Tables, finding
+from studies.engine import Answer, Part, Study, Tables, finding
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, PAPER, REFINED, SETTINGS

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from studies.answers.motion import Motion
 from studies.answers.reference import Swing, SwingReference, sampled
 from studies.answers.settings import SplineSettings
-from studies.engine.study import Answer, Part, Row, Study, Tables, finding
+from studies.engine import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
 from studies.record.marks import Doubt

@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
-from studies.engine.study import Answer, Part, Study, Tables, absent, lacking
+from studies.engine import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session import Session
 from studies.record import style

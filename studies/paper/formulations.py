@@ -27,7 +27,7 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Part, Study, Tables
+from studies.engine import Answer, Part, Study, Tables
 from studies.kinds import Array
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import ORANGE, RED, Look

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from studies.answers.metrics import relative_error, trajectory_error
 from studies.answers.reference import Reference, errors
 from studies.answers.response import Response
-from studies.engine.study import Answer, Claim, Part, Row, Study, Tables, finding
+from studies.engine import Answer, Claim, Part, Row, Study, Tables, finding
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, REFINED, SETTINGS

@@ -28,7 +28,7 @@ from fe_reference import PlateFactors, plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import TABLE_1, named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.published.solids import guide_compliance, linear_factor, solid_factor
 from studies.record.marks import Level, Words

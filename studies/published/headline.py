@@ -17,7 +17,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.constraint_model import guide
-from studies.engine.study import Answer, Claim, Part, Study, Tables, records
+from studies.engine import Answer, Claim, Part, Study, Tables, records
 from studies.published.account import BOTH, CASE, CLOSE, LOAD, SHELL, accounted, guide_shape
 from studies.published.account import LOOKS as WORDS
 from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published

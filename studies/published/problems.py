@@ -24,7 +24,7 @@ from scipy.interpolate import CubicSpline
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.errors import BadInput
 from studies.published import case
 from studies.published.arcs import LIMIT, Arc, arc_of

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.engine.study import Answer, Part
+from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published

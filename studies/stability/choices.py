@@ -18,7 +18,7 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
-from studies.engine.study import Answer, Part, Tables
+from studies.engine import Answer, Part, Tables
 from studies.kinds import Array
 from studies.stability import family, maps
 

@@ -15,7 +15,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Part
+from studies.engine import Answer, Part
 from studies.stability import family, maps
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.

@@ -15,7 +15,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.engine.study import Answer, Part, Row, Study
+from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.record.store import Digits
 

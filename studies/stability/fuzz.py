@@ -12,7 +12,7 @@ from studies.answers.adapters import answer_release
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Answer, Claim, Part, Tables
+from studies.engine import Answer, Claim, Part, Tables
 from studies.errors import BadInput
 from studies.stability import family, maps
 

@@ -23,7 +23,7 @@ from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import TABLE_1, named_case
-from studies.engine.study import Answer, Part, Tables
+from studies.engine import Answer, Part, Tables
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT

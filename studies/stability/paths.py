@@ -15,7 +15,7 @@ from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine.study import Part, Tables
+from studies.engine import Part, Tables
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look

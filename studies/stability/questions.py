@@ -11,7 +11,7 @@ from scipy.special import ellipe, ellipk
 from studies.answers.settings import Settings
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Part
+from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published

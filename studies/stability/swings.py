@@ -22,7 +22,7 @@ from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Part, Row, Tables
+from studies.engine import Answer, Part, Row, Tables
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look

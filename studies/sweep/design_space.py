@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.sweep import space_figure
 from studies.sweep.points import CONVERGED

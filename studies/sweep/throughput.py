@@ -19,7 +19,7 @@ import pandas as pd
 import pyarrow.parquet as pq
 from matplotlib.figure import Figure
 
-from studies.engine.study import Answer, Claim, Part, Study, Tables, absent, lacking
+from studies.engine import Answer, Claim, Part, Study, Tables, absent, lacking
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, Look
 from studies.sweep.design_space import SPACE

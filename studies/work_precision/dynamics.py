@@ -20,7 +20,7 @@ from studies.baselines.compared import missing
 from studies.baselines.own import FINE_RECORDS
 from studies.baselines.variant import Variant, ranked
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper.formulations import DURATION, INSTANTS
 from studies.work_precision.equal_error import diagram, digits, finer, less

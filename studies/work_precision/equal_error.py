@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.engine.study import Claim, Tables, records
+from studies.engine import Claim, Tables, records
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import Look
 from studies.work_precision.series import SPLINE

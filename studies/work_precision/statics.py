@@ -23,7 +23,7 @@ from studies.baselines.compared import missing
 from studies.baselines.own import spline
 from studies.baselines.variant import Variant
 from studies.cases.problem import named_case
-from studies.engine.study import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.record.marks import Slope
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, sheet
 from studies.record.style import BASES, BLUE, GREEN, Look

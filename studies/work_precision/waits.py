@@ -16,7 +16,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.compared import spread
 from studies.cases.problem import TABLE_1, named_case
-from studies.engine.study import Answer, Part, Study, Tables
+from studies.engine import Answer, Part, Study, Tables
 from studies.record.source import ROOT
 from studies.record.style import BLACK, BLUE, page
 

@@ -10,7 +10,7 @@ import pytest
 from studies.answers.settings import SplineSettings
 from studies.cases.document import CaseError
 from studies.commands import readme
-from studies.engine.study import answered
+from studies.engine import answered
 from studies.published import problems
 from studies.published.case import (
     AT_LEAST,

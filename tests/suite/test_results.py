@@ -13,7 +13,7 @@ from matplotlib.legend import Legend
 
 from studies.__main__ import main
 from studies.commands import readme
-from studies.engine.study import answered
+from studies.engine import answered
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import style

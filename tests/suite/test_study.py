@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from studies.engine.study import Claim, Kept, Part, Study, answered, finding, processes
+from studies.engine import Claim, Kept, Part, Study, answered, finding, processes
 
 ASKED: list[int] = []
 

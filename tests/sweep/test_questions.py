@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.engine import study
+from studies import engine as study
 from studies.record.source import ROOT
 from studies.sweep import throughput
 from studies.sweep.design_space import SPACE, WITTRICK, rounded

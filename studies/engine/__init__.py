@@ -1,1 +1,0 @@
-"""Engine: what a study declares, and what answers it."""
