@@ -36,10 +36,8 @@ def source_hash(module: str, *, said: str | None = None, root: Path = ROOT) -> s
         said: text in which an effect's name is looked for, as that of case files; None counts all effects.
         root: folder of the packages.
     """
-    digest = hashlib.sha256()
-    for place, code in sorted(_Reach(module, said, root).found.items()):
-        digest.update(f"{place}\n{code}\n".encode())
-    return digest.hexdigest()
+    found = sorted(_Reach(module, said, root).found.items())
+    return hashlib.sha256("".join(f"{place}\n{code}\n" for place, code in found).encode()).hexdigest()
 
 
 def reached(module: str, *, said: str | None = None, root: Path = ROOT) -> list[str]:
@@ -228,10 +226,9 @@ class _Reach:
         while self.waiting or self._entries():
             definition = self.waiting.pop()
             self.said |= definition.said
-            named = {(definition.module, chain) for chain in definition.chains} - self.named
-            self.named |= named
-            for module, chain in named:
-                self._name(module, chain)
+            for name in {(definition.module, chain) for chain in definition.chains} - self.named:
+                self.named.add(name)
+                self._name(*name)
 
     def _module(self, name: str) -> _Module | None:
         """Return a module of this repository that can influence numbers; None for any other name."""

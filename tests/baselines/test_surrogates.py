@@ -10,12 +10,7 @@ from studies.baselines import constraint_model as beams
 from studies.baselines import one_coordinate, pseudo_rigid, surrogates
 from studies.baselines.answer import SolvedMotion, SolvedPath, geometry_of
 from studies.baselines.compared import SURROGATES
-from studies.baselines.constraint_model import (
-    chained_constraint_model,
-    constraint_model,
-    guide,
-    with_beams,
-)
+from studies.baselines.constraint_model import chained_constraint_model, constraint_model, guide, with_beams
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import (
     four_bar,
