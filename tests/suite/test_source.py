@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import PACKAGES, ROOT, WITHOUT_INFLUENCE, reached, source_hash
+from studies.record.definitions import PACKAGES
+from studies.record.source import ROOT, WITHOUT_INFLUENCE, reached, source_hash
 from studies.record.store import inputs
 from studies.registry import STUDIES, study_of
 
