@@ -2,15 +2,13 @@
 
 import argparse
 import sys
-import time
-from concurrent.futures import Executor
+from collections.abc import Iterator
 from typing import Any
 
-import pandas as pd
-
+from studies.asking import Asking, Kept, cores, processes, whole
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
-from studies.engine import Kept, Study, Tables, answered, cores, processes
+from studies.engine import Study, Tables
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.progress import Bar
@@ -19,7 +17,7 @@ from studies.record.store import Store, same
 from studies.registry import STUDIES, selected, study_of
 
 #: Where the answers of interrupted studies by the present source are kept; not a result.
-KEPT = ROOT / ".cache" / "studies"
+KEPT = ROOT / ".cache" / "answers"
 DIFFERS = 1
 PROCESSES = Argument(
     "--processes N",
@@ -42,17 +40,28 @@ def run(arguments: argparse.Namespace) -> int:
     stored result. One that was interrupted goes on from there. Exit code 0: done; 2: bad input, for example
     a folder that cannot be written to.
     """
-    names = selected(arguments.names)
     store = Store(arguments.results)
     store.require_writable()
-    with processes(arguments.processes) as pool:
-        for name in names:
-            reason = study_of(name).missing()
-            if reason:
-                print(f"{name}: left as it is: {reason}", file=sys.stderr)
-                continue
-            seconds = _run(name, store, pool)
-            print(f"{name}: {seconds:.1f} s: {store.data(name)}, figures in {store.figures}", file=sys.stderr)
+    names = []
+    for name in selected(arguments.names):
+        if reason := study_of(name).missing():
+            print(f"{name}: left as it is: {reason}", file=sys.stderr)
+        else:
+            names.append(name)
+    for name, asking, bar in _whole(names, arguments.processes, keep=True):
+        study = asking.study
+        store.save_tables(
+            name,
+            asking.tables(),
+            module=STUDIES[name],
+            cases=study.cases,
+            command=f"python -m studies run {name}",
+            elapsed=asking.seconds,
+        )
+        asking.forget()
+        with style.applied():
+            store.save_figures(name, study.draw(store.load_tables(name)))
+        bar.say(f"{name}: {asking.seconds:.1f} s: {store.data(name)}, figures in {store.figures}")
     return 0
 
 
@@ -91,20 +100,23 @@ def verify(arguments: argparse.Namespace) -> int:
     with another table is named and keeps what is stored. Exit code 0: all that could be
     computed here is fresh; 1: a table differs; 2: bad input.
     """
-    store, code = Store(arguments.results), 0
-    with processes(arguments.processes) as pool:
-        for name in selected(arguments.names):
-            study = study_of(name)
-            known: dict[str, Any] = {"module": STUDIES[name], "cases": study.cases}
-            said = study.missing() or store.state(name, **known).kind
-            if said == "stale":
-                differing = _differing(store.load_tables(name), _computed(name, pool), study)
-                if differing:
-                    said, code = f"differs: {', '.join(differing)}", DIFFERS
-                else:
-                    store.renew(name, **known)
-                    said = f"the same, {store.state(name, **known).kind}"
+    store, code, stale = Store(arguments.results), 0, []
+    for name in selected(arguments.names):
+        study = study_of(name)
+        said = study.missing() or store.state(name, module=STUDIES[name], cases=study.cases).kind
+        if said == "stale":
+            stale.append(name)
+        else:
             print(f"{name}: {said}", file=sys.stderr)
+    for name, asking, bar in _whole(stale, arguments.processes):
+        known: dict[str, Any] = {"module": STUDIES[name], "cases": asking.study.cases}
+        differing = _differing(store.load_tables(name), asking.tables(), asking.study)
+        if differing:
+            code = DIFFERS
+            bar.say(f"{name}: differs: {', '.join(differing)}")
+        else:
+            store.renew(name, **known)
+            bar.say(f"{name}: the same, {store.state(name, **known).kind}")
     return code
 
 
@@ -125,29 +137,16 @@ def status(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _run(name: str, store: Store, pool: Executor | None) -> float:
-    """Compute, store and draw one study; return the seconds it took."""
-    start = time.perf_counter()
-    study = study_of(name)
-    kept = Kept(KEPT / f"{name.replace('/', '_')}_{source_hash(STUDIES[name])[:16]}.pickle")
-    store.save_tables(
-        name,
-        _computed(name, pool, kept),
-        module=STUDIES[name],
-        cases=study.cases,
-        command=f"python -m studies run {name}",
-        elapsed=time.perf_counter() - start,
-    )
-    kept.forget()
-    with style.applied():
-        store.save_figures(name, study.draw(store.load_tables(name)))
-    return time.perf_counter() - start
-
-
-def _computed(name: str, pool: Executor | None, kept: Kept | None = None) -> dict[str, pd.DataFrame]:
-    """Return the tables of one study while a bar shows how far it is."""
-    with Bar(name) as bar:
-        return answered(study_of(name), bar, kept=kept, pool=pool, module=STUDIES[name])
+def _whole(names: list[str], count: int, *, keep: bool = False) -> Iterator[tuple[str, Asking, Bar]]:
+    """Yield studies as their points are all answered, by so many processes, while a bar shows how far they
+    are; answers are kept from an interrupted run to the next where asked for."""
+    askings, names_at = {}, {STUDIES[name]: name for name in names}
+    for place, name in names_at.items():
+        file = KEPT / f"{name.replace('/', '_')}_{source_hash(place)[:16]}.pickle"
+        askings[place] = Asking(study_of(name), Kept(file) if keep else None)
+    with processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
+        for place in whole(askings, bar, pool):
+            yield names_at[place], askings[place], bar
 
 
 def _differing(stored: Tables, found: Tables, study: Study) -> list[str]:

@@ -1,5 +1,6 @@
 """How long work takes: bars on the error stream for more than two seconds, and times that are measured."""
 
+import sys
 import timeit
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -43,6 +44,12 @@ class Bar:
             self._bar = tqdm(total=total, desc=self._label, delay=DELAY, leave=False, dynamic_ncols=True)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
+
+    def say(self, line: str) -> None:
+        """Print a line on the error stream, in place of the bar, which goes on below it."""
+        if self._bar is not None:
+            self._bar.clear()
+        print(line, file=sys.stderr)
 
     def __enter__(self) -> Self:
         return self

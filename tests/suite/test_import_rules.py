@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import ROOT, imports
+from studies.record.definitions import imports
+from studies.record.source import ROOT
 
 REPOSITORY = {"spline_model", "fe_reference", "studies", "tests", "report"}
 MODELS = {

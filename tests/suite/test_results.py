@@ -12,8 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.legend import Legend
 
 from studies.__main__ import main
+from studies.asking import answered
 from studies.commands import readme
-from studies.engine import answered
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.record import style

@@ -1,9 +1,12 @@
 """The engine of studies: tables, findings, points beside each other, and on from where it was interrupted."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pandas as pd
 import pytest
 
-from studies.engine import Claim, Kept, Part, Study, answered, finding, processes
+from studies.asking import Asking, Kept, answered, processes, whole
+from studies.engine import Claim, Part, Study, finding
 
 ASKED: list[int] = []
 
@@ -22,6 +25,11 @@ def study(numbers=(1, 2), **given):
 
 
 STUDY = study(numbers=(1, 2, 4))
+TWO_PARTS = Study(
+    cases=(),
+    parts=(Part(at=lambda: (1,), ask=squared, alone=True), Part(at=lambda: (2,), ask=squared)),
+    figures={},
+)
 
 
 def test_tables_follow_from_rows_and_from_tables():
@@ -86,10 +94,23 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
     assert not kept.read()
 
 
+def test_what_must_be_alone_comes_after_all_others():
+    """A study is whole as soon as its points are answered; those that must be alone are asked last."""
+    place = f"{__name__}:TWO_PARTS"
+    askings = {place: Asking(TWO_PARTS), __name__: Asking(STUDY)}
+    ASKED.clear()
+    with ThreadPoolExecutor(1) as pool:
+        assert [*whole(askings, pool=pool)] == [__name__, place]
+    assert ASKED == [2, 1, 2, 4, 1]
+    assert all(asking.seconds > 0.0 for asking in askings.values())
+
+
 @pytest.mark.slow
 def test_processes_give_the_same_tables():
     """Points answered beside each other stand where they do one after the other."""
+    asking = Asking(STUDY)
     with processes(2) as pool:
-        beside = answered(STUDY, pool=pool, module=__name__)
+        assert [*whole({__name__: asking}, pool=pool)] == [__name__]
+    beside = asking.tables()
     for name, table in answered(STUDY).items():
         pd.testing.assert_frame_equal(beside[name], table)
