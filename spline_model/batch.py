@@ -105,7 +105,8 @@ def solve_many(
                 numbers = designs_of(kind, Given.of(base.design), given.rows(rows), turned[rows])
                 deep = depth[rows] if depth.size else depth
                 share = (workers, kind, place, rows, numbers, deep, increments, batch)
-                list(pool.map(partial(_solve_share, *share), range(workers)))
+                together = map if workers == 1 else pool.map
+                list(together(partial(_solve_share, *share), range(workers)))
     return batch
 
 
