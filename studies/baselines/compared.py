@@ -15,7 +15,7 @@ from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements as own_elements
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
-from studies.baselines.variant import Baseline, Variant, grid
+from studies.baselines.variant import Baseline, Variant, grid, repeats_of
 from studies.cases.problem import Problem
 from studies.engine import Row, lacking
 from studies.kinds import Array
@@ -123,7 +123,7 @@ def _label(variant: Variant) -> str:
 
 #: Rows of errors and work, and those of times.
 Tried = tuple[list[Row], list[Row]]
-#: Timed solves of a path in a pass.
+#: Largest number of timed solves of a path in a pass.
 REPEAT = 5
 
 PATH_ERRORS = ("trajectory", "torque", "torque_at_end", "worst", "fineness")
@@ -181,12 +181,14 @@ def tried(
 
     Args:
         solve: returns errors and work of a variant, and what can be timed. errors: their columns.
-        judged: the error at which times are compared; repeat: timed runs in a pass [1].
+        judged: the error at which times are compared; repeat: timed runs in a pass [1], fewer of what takes
+            long.
     """
     nothing = dict.fromkeys(errors, np.nan)
     rows: list[Row] = []
     solved: dict[Variant, Followed] = {}
     seconds: dict[Variant, list[float]] = {}
+    repeats: dict[Variant, int] = {}
     for variant in variants:
         row: Row = {"model": variant.baseline.model, "group": variant.series}
         row |= {"variant": _label(variant), "theory": NAMES[variant.theory], "reason": ""}
@@ -200,11 +202,13 @@ def tried(
             rows.append(row | {"status": "failed", "reason": str(error)} | nothing)
             continue
         rows.append(row | {"status": "converged"} | outcome)
-        seconds[variant] = [*solved[variant].seconds(repeat)]
+        once = solved[variant].seconds(1)
+        repeats[variant] = min(repeat, repeats_of(*once))
+        seconds[variant] = [*(once if repeats[variant] == 1 else solved[variant].seconds(repeats[variant]))]
     again = list(_compared(rows, seconds, judged))
     for _ in range(1, PASSES):
         for variant in again:
-            seconds[variant] += solved[variant].seconds(repeat)
+            seconds[variant] += solved[variant].seconds(repeats[variant])
     return rows, [{"model": v.baseline.model, "variant": _label(v)} | spread(seconds[v]) for v in solved]
 
 

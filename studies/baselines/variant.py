@@ -12,12 +12,12 @@ import numpy as np
 from studies.baselines.answer import BaselineFailed, Followed, SolvedMotion, SolvedPath
 from studies.errors import BadInput
 
-#: Time that repeats of a motion may take together [s], and their largest number.
+#: Time that repeats of a solve may take together [s], and their largest number.
 AFFORDED, REPEATS = 0.3, 7
 
 
 def repeats_of(seconds: float) -> int:
-    """Return how often a motion that takes so long [s] is timed."""
+    """Return how often what takes so long [s] is timed."""
     return int(min(REPEATS, max(1.0, AFFORDED / max(seconds, 1e-9))))
 
 

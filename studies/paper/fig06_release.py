@@ -37,19 +37,15 @@ QUANTITIES = (
 LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)} | {REFINED_SPLINE: CHECK}
 
 
-def _compared(name: str) -> Answer:
-    """Return a motion with its differences to the limit of refinement, its summary and the findings."""
-    motion, limit = _motion(name), formulations.refined_swing()
-    return {
-        "motions": _trace(name, sampled(motion, formulations.INSTANTS), limit.swing),
-        "summary": _summary(name, motion, limit),
-        "findings": _findings(name, motion, _motion(FE)) if name in SPLINES else [],
-    }
+def _compared() -> Answer:
+    """Return motions with their differences to the limit of refinement, summaries and findings.
 
-
-def _refined() -> Answer:
-    """Return the limit of refinement and its uncertainties: in rad, in m, relative for the frequency."""
+    `reference` has the uncertainties of the limit: in rad, in m, relative for the frequency. All of it is one
+    point, since the limit takes most of the time.
+    """
     limit = formulations.refined_swing()
+    motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
+    traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
     largest = {
         "rotation_rad": float(limit.uncertainty.max()),
         "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
@@ -57,7 +53,11 @@ def _refined() -> Answer:
         "frequency": limit.frequency_uncertainty,
     }
     return {
-        "motions": _trace(REFINED, limit.swing, limit.swing),
+        "motions": pd.concat(
+            _trace(name, swing, limit.swing) for name, swing in {REFINED: limit.swing, **traces}.items()
+        ),
+        "summary": [_summary(name, motion, limit) for name, motion in motions.items()],
+        "findings": [row for name in SPLINES for row in _findings(name, motions[name], motions[FE])],
         "reference": [{"quantity": name, "uncertainty": value} for name, value in largest.items()],
     }
 
@@ -178,6 +178,6 @@ def _findings(name: str, motion: Motion, elements: Motion) -> list[Row]:
 
 
 STUDY = Study(
-    parts=(Part(ask=_refined), Part(at=lambda: (*SPLINES, FE, REFINED_SPLINE), ask=_compared)),
+    parts=(Part(ask=_compared),),
     figures={"fig06_release": _figure},
 )

@@ -5,6 +5,7 @@ Beside the outcomes: load against deflection, critical points, and the branches 
 
 import math
 from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -31,28 +32,22 @@ PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 
 
-def _tables() -> Answer:
-    """Return curves and critical points (a row a state) and branches (a row a depth, model and branch)."""
-    curves, critical = _elastica(), []
-    for part, frame in {
-        questions.COLUMN: bent_column(max(PUBLISHED)),
-        questions.TOGGLE: published("williams_toggle").frame(),
-        questions.LEE: published("lees_frame").frame(),
-    }.items():
-        for model in DRAWN:
-            bends = part == questions.COLUMN
-            arc = arc_of(frame, family.ARCS[model], follow_branch=bends)
-            curves += _states(part, model, frame, arc)
-            for point in arc.critical:
-                at = _at(part, frame, point.load, point.place)
-                critical.append({"part": part, "model": model, "kind": point.kind, **at})
-    branches = [
-        _branch(pushed_pivot(depth), model, branch)
-        for depth in sorted({*questions.DEPTHS, *BETWEEN})
-        for model in PUSHED
-        for branch in (PRIMARY, OTHER)
+def _frame(part: str) -> Frame:
+    """Return the frame of a part of the figure."""
+    if part == questions.COLUMN:
+        return bent_column(max(PUBLISHED))
+    return published({questions.TOGGLE: "williams_toggle", questions.LEE: "lees_frame"}[part]).frame()
+
+
+def _curve(part: str, model: str) -> Answer:
+    """Return a curve and its critical points, a row a state."""
+    frame = _frame(part)
+    arc = arc_of(frame, family.ARCS[model], follow_branch=part == questions.COLUMN)
+    critical = [
+        {"part": part, "model": model, "kind": each.kind, **_at(part, frame, each.load, each.place)}
+        for each in arc.critical
     ]
-    return {"curves": curves, "critical": critical, "branches": branches}
+    return {"curves": _states(part, model, frame, arc), "critical": critical}
 
 
 def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any]]:
@@ -90,10 +85,11 @@ def _elastica() -> list[dict[str, Any]]:
     return rows
 
 
-def _branch(frame: Frame, model: str, branch: str) -> dict[str, Any]:
+def _branch(depth: float, model: str, branch: str) -> Answer:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
+    frame = pushed_pivot(depth)
     arc = arc_of(frame, family.ARCS[model], follow_branch=branch == OTHER)
-    return {
+    found = {
         "model": model,
         "branch": branch,
         "asked_mm": 1e3 * frame.load,
@@ -104,6 +100,7 @@ def _branch(frame: Frame, model: str, branch: str) -> dict[str, Any]:
         "first_bifurcation_mm": min((1e3 * point.load for point in arc.critical), default=math.nan),
         "says": arc.message or arc.warning,
     }
+    return {"branches": found}
 
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -188,6 +185,8 @@ def _pivot(panel: Axes, branches: pd.DataFrame) -> None:
 
 STUDY = family.study(
     questions.ASKED,
-    Part(ask=_tables),
+    Part(ask=lambda: {"curves": _elastica()}),
+    Part(at=lambda: product((questions.COLUMN, questions.TOGGLE, questions.LEE), DRAWN), ask=_curve),
+    Part(at=lambda: product(sorted({*questions.DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
     figures={"stability_buckling": _figure},
 )

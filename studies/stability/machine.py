@@ -7,8 +7,10 @@ import resource
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import cache, partial
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -43,9 +45,17 @@ COLOURS = {family.DEFAULT: BLUE, family.LOCKING_FREE: SKY, family.PAPER: RED}
 
 
 def _pieces(model: str, count: int) -> Answer:
-    """Return the drift of a column over so many pieces, the memory after each, and its outcome."""
-    drift, memory = zip(*_run(model, count), strict=True)
+    """Return the drift of a column over so many pieces, the memory after each, and its outcome.
+
+    They run in a process of their own: the largest memory of any other would be that of what it did before.
+    """
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as own:
+        drift, memory = zip(*own.submit(_all_of, model, count).result(), strict=True)
     return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift, "timings_memory": memory}
+
+
+def _all_of(model: str, count: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    return list(_run(model, count))
 
 
 def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
@@ -115,7 +125,7 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
 
 
 LONG_RUN = family.study(
-    Part(at=PIECES.items, ask=_pieces, alone=True),
+    Part(at=PIECES.items, ask=_pieces),
     figures={"stability_long_run": _drift_figure},
 )
 """A million steps of free swing without damping: energy, constraints and memory."""

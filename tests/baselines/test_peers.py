@@ -186,7 +186,8 @@ def test_study_runs_without_other_codes(monkeypatch):
 
     for module in (exudyn_ancf, exudyn_exact, openseespy_frame):
         monkeypatch.setattr(module, "installed", lambda: False)
-    monkeypatch.setattr(compared, "REPEAT", 1)
+    for name in ("REPEAT", "PASSES"):
+        monkeypatch.setattr(compared, name, 1)
     limits, theories = path_limits(CASE)
     rows, times = compared.compared_paths(CASE, limits)
     assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]

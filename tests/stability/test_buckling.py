@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.engine import answered
+from studies.asking import answered
 from studies.stability import buckling
 from studies.stability.buckling import OTHER, PRIMARY
 from studies.stability.family import DEFAULT, FE, PAPER, TWELVE
