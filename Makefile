@@ -46,10 +46,10 @@ $(EXTRA): $(STAMP) requirements-interactive.lock
 	@touch $@
 
 test: $(STAMP)  ## run the quick tests
-	$(BIN)/python -m pytest -q -n auto --dist loadgroup -m "not slow"
+	$(BIN)/python -m pytest -q -n auto --dist loadfile -m "not slow"
 
 test-all: $(STAMP)  ## run all tests
-	$(BIN)/python -m pytest -q -n auto --dist loadgroup
+	$(BIN)/python -m pytest -q -n auto --dist loadfile
 
 mutate: $(STAMP)  ## put slips into a copy of both models: a named test must notice each (10 minutes)
 	$(BIN)/python -m tests.mutate $(ARGS)

@@ -135,7 +135,7 @@ def test_a_start_far_outside_is_led_to_a_feasible_design(own):
     assert feasible(programme, at, []) is at
 
 
-@pytest.mark.parametrize("start", [FAR, 5])
+@pytest.mark.parametrize("start", [FAR, pytest.param(5, marks=pytest.mark.slow)])
 def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
     """Starts far outside end feasible, and at the same optimum when they are moved by 1e-14."""
     task = _task(own)
@@ -269,6 +269,7 @@ def test_what_was_sized_as_a_beam_is_off_as_a_plate_and_is_sized_anew(wide):
     assert effects["all three"]["stress"] == pytest.approx(row["former_stress"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_gradients_with_sections_and_roots(own):
     """The optimiser's gradients are those of answers with every effect of the third dimension assembled."""
     start = with_sections(replace(own[0], increments=2))

@@ -137,7 +137,7 @@ def statically(model: Model, bodies: dict[str, np.ndarray]) -> np.ndarray:
     return rest + structure.displacement(path.states[-1].y)[:, :2]
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("integrator", [EXPLICIT, pytest.param(IMPLICIT, marks=pytest.mark.slow)])
 def test_free_fall_against_drag(integrator: str) -> None:
     """A free strip that falls against drag follows g/a^2 (a t - 1 + exp(-a t)) and does not bend."""
     gravity, rate, duration = 9.81, 300.0, 5e-3
@@ -203,6 +203,7 @@ def test_motion_balance(element: str, wide: bool) -> None:
     hold(f"fe_motion_balance_{element}", error)
 
 
+@pytest.mark.slow
 def test_integrators_agree_on_a_scene() -> None:
     """Both integrators follow the same motion of a mechanism with every effect."""
 

@@ -26,7 +26,7 @@ from tests.interactive.films import error, errors, film, names, raw, rms, truth,
 @pytest.mark.parametrize(
     "optics",
     [
-        Optics(gamma=2.2, blur=1.6, noise=3.0),
+        pytest.param(Optics(gamma=2.2, blur=1.6, noise=3.0), marks=pytest.mark.slow),
         pytest.param(Optics(gamma=1.8, blur=1.2), marks=pytest.mark.slow),
         pytest.param(Optics(gamma=2.4, blur=1.2), marks=pytest.mark.slow),
         pytest.param(Optics(gamma=1.0, blur=1.2), marks=pytest.mark.slow),

@@ -15,9 +15,6 @@ from PIL import Image
 from studies.commands import interactive
 from studies.record.source import ROOT
 
-#: One process asks the commands where the extra is not installed.
-pytestmark = pytest.mark.xdist_group("without the extra")
-
 #: Runs the commands, in words of JSON, where cv2 cannot be imported: exit code and both streams of each.
 WITHOUT = """
 import contextlib, io, json, sys, importlib.util as u

@@ -51,7 +51,7 @@ FILMS = {
 
 
 #: Their names; those that take seconds to track are of slow tests.
-NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name in ("hard", "wide"))) for name in FILMS]
+NAMES = [pytest.param(name, marks=[pytest.mark.slow] * (name not in ("lens", "far"))) for name in FILMS]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -109,6 +109,7 @@ def test_corner_bias_gate_has_teeth():
         gates.check("tracking_corner_bias", gates.teeth("tracking_corner_bias")["shift_px"])
 
 
+@pytest.mark.slow
 def test_said_uncertainty_is_the_true_one(plain):
     """Requirement: the standard deviation that is shown is 0.7 to 1.5 times the true error."""
     events = [Tracker().see(picture, 0.0) for picture in plain]

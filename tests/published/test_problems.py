@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from studies.answers.settings import SplineSettings
+from studies.asking import answered
 from studies.cases.document import CaseError
 from studies.commands import readme
-from studies.engine import answered
 from studies.published import problems
 from studies.published.case import (
     AT_LEAST,

@@ -15,9 +15,6 @@ from studies.record.source import ROOT
 from studies.record.store import RESULTS, Store
 from tests.report.sources import OneTable
 
-#: One process makes the content and the pages for all tests of the report.
-pytestmark = pytest.mark.xdist_group("report")
-
 FIG04 = "paper/fig04_trajectory"
 
 

@@ -7,9 +7,6 @@ import pytest
 from report.build import OUTPUT, typeset
 from studies.record.source import ROOT
 
-#: One process makes the content and the pages for all tests of the report.
-pytestmark = pytest.mark.xdist_group("report")
-
 #: Of a page of A4 [pt]: nothing is nearer to the edge than the running lines leave.
 CLEAR = 40.0
 #: Share of the page that at least is not white.
@@ -52,6 +49,7 @@ def _filled(picture):
     return 0.0 if not inside.size else (inside[-1] - top) / (bottom - top)
 
 
+@pytest.mark.slow
 def test_pages_are_two_thirds_full(pdf):
     """No page ends above two thirds of its height, but for the last of the part and of the supplement, and
     neither is longer than a reader bears: nineteen pages, and forty in all."""

@@ -9,9 +9,6 @@ from studies.record.store import Store
 from studies.registry import STUDIES
 from tests.report.sources import FOLDER, SECTIONS, prose, quoted, text
 
-#: One process makes the content and the pages for all tests of the report.
-pytestmark = pytest.mark.xdist_group("report")
-
 #: Figures that the text shows once their study is there.
 LATER = {"headline"}
 #: Years, pages and volumes stand there.

@@ -14,9 +14,6 @@ from studies.record.store import Store
 from studies.stability.family import COLUMNS, DEFAULT, VARIED
 from tests.report.sources import SECTIONS, OneTable, text
 
-#: One process makes the content and the pages for all tests of the report.
-pytestmark = pytest.mark.xdist_group("report")
-
 
 def _stored(study, name):
     return Store().load_tables(study)[name]

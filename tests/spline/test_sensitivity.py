@@ -67,14 +67,14 @@ def _worst(seed, grid):
     return max(_error(design, parameter, rotation, grid) for parameter in PARAMETERS)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(1))
 def test_agrees_with_extrapolated_differences(seed):
     """Every quantity by every parameter agrees with differences on random designs."""
     gates.check("sensitivities", _worst(seed, FORMS[0]))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2, 22))
+@pytest.mark.parametrize("seed", range(1, 22))
 def test_agrees_with_extrapolated_differences_on_many_designs(seed):
     """The same on more designs, in all forms of strip in turn."""
     gates.check("sensitivities", _worst(seed, FORMS[seed % len(FORMS)]))

@@ -117,7 +117,7 @@ def test_a_refused_step_keeps_the_last_good_state():
     [
         (TABLE_ONE, {"control_points": 4}),
         (TABLE_ONE, {}),
-        (POLYMER, {}),
+        pytest.param(POLYMER, {}, marks=pytest.mark.slow),
         pytest.param(POLYMER, {"stretch": "inextensible"}, marks=pytest.mark.slow),
     ],
     ids=["Table 1, n = 4", "Table 1", "polymer", "polymer, inextensible"],

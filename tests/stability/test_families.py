@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.engine import answered
+from studies.asking import answered
 from studies.registry import STUDIES, study_of
 from studies.stability import machine, paths, swings
 from studies.stability.family import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX, VARIED

@@ -23,9 +23,6 @@ from studies.effects.beyond import prices
 from studies.effects.scenes import Variant, size_of
 from studies.record.store import Store
 
-#: One process makes the audit that most tests read.
-pytestmark = pytest.mark.xdist_group("audit")
-
 TABLE_1 = FOLDER / "cross_axis_pivot.toml"
 FULL = ("bending", "stretching", "strip_inertia", "body_inertia", "section_rotary_inertia", "gravity")
 TOLERANCE = 1e-3

@@ -13,9 +13,6 @@ from studies.answers.reference import QUANTITIES
 from studies.cases.problem import FOLDER
 from studies.convergence.sweep import reaching, with_orders
 
-#: One process makes the study that most tests read.
-pytestmark = pytest.mark.xdist_group("converge")
-
 
 @pytest.fixture(scope="module")
 def short(tmp_path_factory):

@@ -7,9 +7,9 @@ import pytest
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
+from studies.asking import answered
 from studies.cases.problem import named_case
 from studies.convergence import error_estimate
-from studies.engine import answered
 from tests import gates
 
 

@@ -23,7 +23,9 @@ COARSE = {
 }
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(
+    "model", [pytest.param(model, marks=[pytest.mark.slow] * (model == "fe-shear")) for model in MODELS]
+)
 def test_release_of_every_model(model, case, command):
     """The JSON holds exactly the named keys; the motion begins at rest at the start and swings through."""
     words = ["release", case(), "--model", model, *COARSE[model], "--rotation-deg", 30, "--duration", 0.02]
@@ -281,6 +283,7 @@ def test_accuracy_of_a_motion_is_reported(case, command):
     assert any(line.startswith("estimated error of the rotation ") for line in lines)
 
 
+@pytest.mark.slow
 def test_accuracy_of_a_motion_of_elements_is_reported(case, command):
     """With --accuracy the elements are doubled, and JSON and table have meshes and errors."""
     words = ["release", case(), "--model", "fe", "--elements", 3, "--accuracy", 3e-2, "--duration", 5e-4]

@@ -108,6 +108,7 @@ def test_companion_that_fails_is_told(monkeypatch):
     assert motion.resolution.startswith("not checked with 8 control points: ")
 
 
+@pytest.mark.slow
 def test_elements_estimate_their_error_by_a_coarser_mesh():
     """The estimate of ten elements is their difference to five over three, near that to a finer mesh."""
     ten, forty = (

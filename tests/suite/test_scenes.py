@@ -48,7 +48,10 @@ def test_both_models_drive_every_mechanism_alike(name, command):
     assert np.abs(ends["fe"] - ends["spline"])[:, 2].max() < 5e-3
 
 
-@pytest.mark.parametrize("name", MECHANISMS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name != "cantilever_with_body")) for name in MECHANISMS],
+)
 def test_both_models_release_every_mechanism_alike(name, command):
     """After 5 ms all bodies are where the other model has them, and energies balance."""
     places = []

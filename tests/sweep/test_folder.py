@@ -56,7 +56,7 @@ def test_table_has_a_row_a_point_in_order(whole):
     assert csv["torque_Nm"].equals(table["torque_Nm"])
 
 
-@pytest.mark.parametrize("points", [0, 100, 200])
+@pytest.mark.parametrize("points", [100, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 200))])
 def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, monkeypatch):
     """Requirement: after an interruption at any time only what is missing is solved, to the same table."""
     out = tmp_path / "out"
@@ -157,7 +157,7 @@ def test_what_a_killed_run_left_is_removed(whole, tmp_path):
     assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
-@pytest.mark.parametrize("room", [1000, 5000, 20000])
+@pytest.mark.parametrize("room", [5000, *(pytest.param(n, marks=pytest.mark.slow) for n in (1000, 20000))])
 def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
     """Requirement: where no more can be written the refusal says so, nothing is left half-written, and with
     room the sweep goes on to the same table: full at the manifest, at a part, at the table."""
