@@ -2,8 +2,9 @@
 const SPAN = 60, MOST = 3000;
 // Width [px] and quality of a picture that is kept, and how long before a state one may be that stands for it [s].
 const WIDTH = 320, QUALITY = 0.6, BEFORE = 1;
-// Part of the largest rate of rotation below which no centre is drawn.
-const SLOW = 0.15;
+// Part of the largest rate of rotation below which no centre is drawn: where a release begins to turn, the strips' quick
+// vibration moves the body as much as the turn does.
+const SLOW = 0.25;
 
 export class Ring {
   constructor() { this.states = []; this.place = 0; this.live = true; }
