@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import time
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -20,6 +21,14 @@ def opened(server, *, token=None, hello=True, **options):
             assert json.loads(socket.recv(5))["kind"] == "welcome"
             assert json.loads(socket.recv(5))["kind"] == "state"
         yield socket
+
+
+def emptied(server, within=10.0):
+    """Whether all sockets of a server are closed within some seconds."""
+    end = time.monotonic() + within
+    while server.open and time.monotonic() < end:
+        time.sleep(0.05)
+    return server.open == 0
 
 
 def say(socket, **event):

@@ -6,7 +6,7 @@ import re
 import signal
 import subprocess
 import sys
-import time
+from urllib.request import urlopen
 
 import numpy as np
 import pytest
@@ -86,8 +86,10 @@ def test_interrupt_ends_the_server():
     with subprocess.Popen(words, cwd=ROOT, stderr=subprocess.PIPE, text=True) as process:
         assert process.stderr
         said = process.stderr.readline()
-        assert re.match(r"studies: open http://127\.0\.0\.1:\d+/#token=[\w-]{32,} ", said)
-        time.sleep(0.5)
+        found = re.match(r"studies: open (http://127\.0\.0\.1:\d+/)#token=[\w-]{32,} ", said)
+        assert found
+        with urlopen(found[1], timeout=10.0) as page:  # it is at work
+            assert page.status == 200
         process.send_signal(signal.SIGINT)
         assert process.wait(10.0) == 0
 

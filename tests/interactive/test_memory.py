@@ -2,7 +2,6 @@
 
 import json
 import os
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import film
+from tests.interactive.sockets import emptied
 
 STATM = Path("/proc/self/statm")
 #: Frames of ten minutes, and those after which everything has been allocated once.
@@ -57,9 +57,6 @@ def test_ten_minutes_of_film_do_not_grow(monkeypatch):
                 if shown == WARM:
                     start = resident()
             grown = resident() - start
-        end = time.monotonic() + 5.0
-        while hosted.open and time.monotonic() < end:
-            time.sleep(0.05)
-        assert hosted.open == 0
+        assert emptied(hosted)
     assert found == FRAMES
     assert grown < GROWTH
