@@ -24,8 +24,9 @@ from spline_model.effects import (
     StripInertia,
 )
 from spline_model.effects.base import Constraint, OpenPotential
+from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
-from spline_model.scene import Layout, Scene
+from spline_model.scene import Scene
 from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, weight
 
 Array = NDArray[np.float64]

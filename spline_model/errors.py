@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from numbers import Real
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from spline_model.static_answers import StaticSolution
+from typing import Any
 
 
 class InvalidParameter(ValueError):
@@ -24,7 +21,7 @@ class ConvergenceError(RuntimeError):
 
     Attributes
     ----------
-    solution : the converged part of the path, last good state included.
+    solution : the converged part of the path as a ``StaticSolution``, last good state included.
     load_factor : fraction of the path that was reached, 0 to 1.
     history : residual norms of the failed attempts, dimensionless.
     """
@@ -33,7 +30,7 @@ class ConvergenceError(RuntimeError):
         self,
         message: str,
         *,
-        solution: StaticSolution,
+        solution: Any,
         load_factor: float,
         history: tuple[tuple[float, ...], ...],
     ) -> None:

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.continuation.followed import Point
 from spline_model.continuation.follower import Follower, equilibrium, first_point
-from spline_model.continuation.point import Point, stand
+from spline_model.continuation.point import stand
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.reduced.elements import Elements, followed

@@ -20,8 +20,9 @@ from spline_model.effects import (
 )
 from spline_model.effects.base import Constraint, Load
 from spline_model.effects.boundary import STEADY, History, Sized
+from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
-from spline_model.scene import Layout, Scene
+from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed
+from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.follower import Follower, first_point, hermite_extrapolation
-from spline_model.continuation.point import Point, directed
+from spline_model.continuation.point import directed
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import require_choice
 from spline_model.newton import Newton, correct

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import NOT_TRACKED, Point, directed, hermite, reached
+from spline_model.continuation.followed import Followed, Point
+from spline_model.continuation.point import NOT_TRACKED, directed, hermite, reached
 from spline_model.effects import DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.newton import correct

@@ -4,23 +4,60 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
 
 from spline_model import checks
 from spline_model.bordered import evaluate, open_energy
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
-from spline_model.newton import Counters, Pattern, getrf, getrs
+from spline_model.pattern import Pattern
 from spline_model.solution import Later
 
-if TYPE_CHECKING:
-    from spline_model.continuation.point import Point
-
 Array = NDArray[np.float64]
+
+getrf, getrs = get_lapack_funcs(("getrf", "getrs"))  # without the checks and warnings of lu_factor
+
+
+@dataclass(kw_only=True)
+class Counters:
+    """Work that was done; the same on every machine."""
+
+    increments: int = 0
+    halved_increments: int = 0
+    newton_iterations: int = 0
+    residual_evaluations: int = 0
+    tangent_evaluations: int = 0
+    factorisations: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Point:
+    """A converged state and its tangent in the parameter s of its path.
+
+    z (N,); rate (N,) dz/ds and slope d(load factor)/ds: s is the load factor itself (slope 1)
+    or the arc length; inertia: negative eigenvalues of the reduced tangent, drives held;
+    turn (N,) dz/d(rotation) of the driven rotation at fixed load factor, None without one, and
+    stiffness [N m/rad] d(torque)/d(rotation) of it, nan without one;
+    energies (bending, axial) [J]; potential P [J], of which dP/d(load factor) = conjugate
+    along any path of equilibria, and conjugate_rate = d(conjugate)/ds.
+    """
+
+    load_factor: float
+    z: Array
+    rate: Array
+    slope: float
+    turn: Array | None
+    stiffness: float
+    inertia: int
+    energies: tuple[float, float]
+    potential: float
+    conjugate: float
+    conjugate_rate: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import Point, reached
+from spline_model.continuation.followed import Followed, Point
+from spline_model.continuation.point import reached
 from spline_model.continuation.watch import Watch
 from spline_model.errors import InvalidParameter
 from spline_model.newton import Newton, solve

@@ -3,14 +3,14 @@ lies on the same path, by the energy gained between them against the work done."
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed
+from spline_model.continuation.followed import Followed, Point
 from spline_model.effects import Bending, Stretching
 from spline_model.newton import Newton
 
@@ -35,31 +35,6 @@ ROUND_OFF = 1e-10
 
 NODES, WEIGHTS = (np.polynomial.legendre.leggauss(4)[i] / 2 for i in range(2))
 NODES = NODES + 0.5
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Point:
-    """A converged state and its tangent in the parameter s of its path.
-
-    z (N,); rate (N,) dz/ds and slope d(load factor)/ds: s is the load factor itself (slope 1)
-    or the arc length; inertia: negative eigenvalues of the reduced tangent, drives held;
-    turn (N,) dz/d(rotation) of the driven rotation at fixed load factor, None without one, and
-    stiffness [N m/rad] d(torque)/d(rotation) of it, nan without one;
-    energies (bending, axial) [J]; potential P [J], of which dP/d(load factor) = conjugate
-    along any path of equilibria, and conjugate_rate = d(conjugate)/ds.
-    """
-
-    load_factor: float
-    z: Array
-    rate: Array
-    slope: float
-    turn: Array | None
-    stiffness: float
-    inertia: int
-    energies: tuple[float, float]
-    potential: float
-    conjugate: float
-    conjugate_rate: float
 
 
 def _has_potential(system: System) -> bool:

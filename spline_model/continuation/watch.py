@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
-from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import Point, directed, done_by_load_factor, jumped, reached
+from spline_model.continuation.followed import Followed, Point
+from spline_model.continuation.point import directed, done_by_load_factor, jumped, reached
 from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
 from spline_model.effects.base import Constraint, Load
 from spline_model.newton import correct

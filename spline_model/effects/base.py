@@ -9,13 +9,12 @@ class; a class that no effect names has a table of length zero.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from spline_model.scene import Layout
+from spline_model.layout import Layout
 
 Array = NDArray[np.float64]
 

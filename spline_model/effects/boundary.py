@@ -9,17 +9,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects.base import Constraint, Load, Potential
 from spline_model.errors import InvalidParameter, require_finite
+from spline_model.layout import Layout
 from spline_model.strip.compiled import kernel
-
-if TYPE_CHECKING:
-    from spline_model.scene import Layout
 
 Array = NDArray[np.float64]
 History = tuple[tuple[float, float], ...]

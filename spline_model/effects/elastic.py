@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +12,12 @@ from spline_model.basis import AxialModes, SplineBasis
 from spline_model.effects.base import Potential
 from spline_model.effects.plate import rigidity_of, rigidity_rate
 from spline_model.errors import (
-    InvalidParameter,
     require_choice,
     require_count,
     require_not_negative,
     require_positive,
 )
 from spline_model.strip.laws import curl_factors
-
-if TYPE_CHECKING:
-    from spline_model.design import Design, StripDesign
 
 Array = NDArray[np.float64]
 
@@ -68,31 +63,6 @@ class Curl:
     def drop(self, basis: SplineBasis, u: Array) -> Array:
         """nu^2 g at u (P,): the part of the plate's rigidity that the curl takes at small curvature."""
         return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * self.rigidity(basis, u))
-
-    @classmethod
-    def of(cls, design: Design, strip: StripDesign) -> Curl | None:
-        """The curl of a strip, if the design names an effect of it; refused where it has none."""
-        if not design.curling:
-            return None
-        names, nu, measure = " and ".join(design.curling), strip.poisson_ratio, design.discretisation.measure
-        clamped, flattens = (name in design.curling for name in CURLING)
-        width, thickness, natural = strip.width, strip.thickness, design.pre_strain.get("curvature", 0.0)
-        if width is None or thickness is None:
-            raise InvalidParameter(f"width of {strip.name}", width, f"width and thickness [m] for {names}")
-        ratio, (low, high), name = width / strip.length, WIDTHS, strip.name
-        reach = f"{low:g} to {high:g}"
-        for right, what, got, expected in (
-            (strip.rise == 0.0, f"rise of {name}", strip.rise, f"0, a straight strip, for {names}"),
-            (natural == 0.0, "natural curvature of pre_strain", natural, f"0 for {names}"),
-            (0.0 <= nu <= 0.5, f"poisson_ratio of {name}", nu, f"0 to 0.5 for {names}"),
-            (not flattens or measure == "material", "measure", measure, f"material for {ANTICLASTIC}"),
-            (not clamped or strip.tip, f"tip of {name}", None, f"ground or a body for {CLAMPED_WIDTH}"),
-            (not clamped or low <= ratio <= high, f"width over length of {name}", ratio, reach),
-        ):
-            if not right:
-                raise InvalidParameter(what, got, expected)
-        flattening = math.sqrt(3.0 * (1.0 - nu * nu)) * width**2 / thickness
-        return cls(poisson_ratio=nu, clamped=ratio * clamped, flattening=flattening * flattens)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

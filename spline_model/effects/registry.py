@@ -7,6 +7,7 @@ effects. A new effect is a class with such a function in a file of its own, and 
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any
@@ -38,10 +39,35 @@ def _bending(design: Design) -> Iterator[Effect]:
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
-            curl=elastic.Curl.of(design, strip),
+            curl=_curl(design, strip),
             measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
+
+
+def _curl(design: Design, strip: StripDesign) -> elastic.Curl | None:
+    """The curl of a strip, if the design names an effect of it; refused where it has none."""
+    if not design.curling:
+        return None
+    names, nu, measure = " and ".join(design.curling), strip.poisson_ratio, design.discretisation.measure
+    clamped, flattens = (name in design.curling for name in elastic.CURLING)
+    width, thickness, natural = strip.width, strip.thickness, design.pre_strain.get("curvature", 0.0)
+    if width is None or thickness is None:
+        raise InvalidParameter(f"width of {strip.name}", width, f"width and thickness [m] for {names}")
+    ratio, (low, high), name = width / strip.length, elastic.WIDTHS, strip.name
+    reach = f"{low:g} to {high:g}"
+    for right, what, got, expected in (
+        (strip.rise == 0.0, f"rise of {name}", strip.rise, f"0, a straight strip, for {names}"),
+        (natural == 0.0, "natural curvature of pre_strain", natural, f"0 for {names}"),
+        (0.0 <= nu <= 0.5, f"poisson_ratio of {name}", nu, f"0 to 0.5 for {names}"),
+        (not flattens or measure == "material", "measure", measure, f"material for {elastic.ANTICLASTIC}"),
+        (not clamped or strip.tip, f"tip of {name}", None, f"ground or a body for {elastic.CLAMPED_WIDTH}"),
+        (not clamped or low <= ratio <= high, f"width over length of {name}", ratio, reach),
+    ):
+        if not right:
+            raise InvalidParameter(what, got, expected)
+    flattening = math.sqrt(3.0 * (1.0 - nu * nu)) * width**2 / thickness
+    return elastic.Curl(poisson_ratio=nu, clamped=ratio * clamped, flattening=flattening * flattens)
 
 
 def _stretching(design: Design) -> Iterator[Effect]:

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import Point
+from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.effects import Shear
 from spline_model.errors import InvalidParameter

@@ -15,12 +15,12 @@ from spline_model.compile import System, compile_scene
 from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
+from spline_model.layout import Layout
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.reduced.states import gathered, whole_tangents
-from spline_model.scene import Layout
 from spline_model.sections import STATIONS
 from spline_model.sensitivity.element import Curve, Elements, times_each, turned
 from spline_model.sensitivity.parameters import KEYWORDS, Rates, Varied

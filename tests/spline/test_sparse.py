@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from spline_model import newton
+from spline_model import pattern
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
-from spline_model.newton import filled_entries
+from spline_model.pattern import filled_entries
 from spline_model.pivot import cross_axis_pivot
 from spline_model.statics import solve_statics
 from tests import gates
@@ -25,7 +25,7 @@ def both(monkeypatch, dense=None, **settings):
     """The path by the sparse and by the dense factorisation, the latter of changed settings if given."""
     sparse = solve_statics(pivot(**settings), rotation=1.5, increments=6)
     with monkeypatch.context() as patch:
-        patch.setattr(newton.Pattern, "of", lambda system: None)
+        patch.setattr(pattern.Pattern, "of", lambda system: None)
         return sparse, solve_statics(pivot(**(settings | (dense or {}))), rotation=1.5, increments=6)
 
 
@@ -88,7 +88,7 @@ def test_both_factorisations_count_the_same_inertia(monkeypatch):
     made = opposed(offset=0.03, basis="bspline", control_points=40)
     sparse = solve_statics(made, rotation=-0.3, increments=8)
     with monkeypatch.context() as patch:
-        patch.setattr(newton.Pattern, "of", lambda system: None)
+        patch.setattr(pattern.Pattern, "of", lambda system: None)
         dense = solve_statics(made, rotation=-0.3, increments=8)
     assert set(sparse.inertia) == {0, 1}
     assert np.array_equal(sparse.inertia, dense.inertia)

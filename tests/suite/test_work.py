@@ -14,8 +14,8 @@ from spline_model.motion import forces
 from spline_model.motion.arrays import Flexures
 from spline_model.motion.mechanism import Moving
 from spline_model.motion.start import set_in_motion
-from spline_model.newton import LEAST_SIZE
 from spline_model.path import follow
+from spline_model.pattern import LEAST_SIZE
 from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced import beside
 from spline_model.reduced.model import reduced
