@@ -3,7 +3,7 @@
 Data flow one way, and so do the imports:
 
     effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
-    control (with Newton's method) -> response -> arc_length -> critical -> path -> statics
+    control (with Newton's method) -> response -> critical -> path -> statics
     structure -> mass, loads -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution, trajectory
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
