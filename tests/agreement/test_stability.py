@@ -4,13 +4,12 @@ import math
 
 import numpy as np
 import pytest
-
 from fe_reference.arc_length import follow_arc
+
+from fe_reference import BodyDesign, StripDesign, compliant_mechanism
 from fe_reference.control import spans
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
 from fe_reference.structure import structure_of
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_statics
+from spline_model import cross_axis_pivot, solve_loads, solve_statics
 from tests import gates
 from tests.fe import frames as fe_frames
 from tests.fe.cases import extrapolated
@@ -92,7 +91,7 @@ def fe_buckling_deg(elements, offset=0.01, half=0.05):
         **{n: TABLE_ONE[n] for n in ("area", "second_moment_of_area", "youngs_modulus")}
     )
     ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
-    model = mechanism(
+    model = compliant_mechanism(
         strips=[
             StripDesign(name=f"strip_{i}", start=a, end=b, tip="body", **section)
             for i, (a, b) in enumerate(ends)

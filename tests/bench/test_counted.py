@@ -11,17 +11,14 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from fe_reference import bending
+from fe_reference import DEFAULT_EFFECTS, bending
+from fe_reference import cross_axis_pivot as element_pivot
 from fe_reference.bending import ROUND_OFF, bent_element
-from fe_reference.effects import DEFAULT_EFFECTS
-from fe_reference.mechanism import cross_axis_pivot as element_pivot
 from fe_reference.structure import structure_of
-from spline_model import newton
+from spline_model import cross_axis_pivot, newton, solve_statics
 from spline_model.compile import compile_scene
-from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
-from spline_model.statics import solve_statics
 from studies.record.source import ROOT
 from tests.table_one import SIX, TABLE_ONE
 

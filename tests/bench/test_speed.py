@@ -5,19 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from fe_reference.mechanism import cross_axis_pivot as element_pivot
-from fe_reference.statics import solve_statics as solve_element_statics
-from spline_model.batch import solve_many
+from fe_reference import cross_axis_pivot as element_pivot
+from fe_reference import solve_statics as solve_element_statics
+from spline_model import cross_axis_pivot, solve_many, solve_release, solve_statics
 from spline_model.compile import compile_scene
-from spline_model.dynamics import STEP, solve_release
+from spline_model.dynamics import STEP
 from spline_model.modes import settle
 from spline_model.motion import energy_consistent
 from spline_model.motion.moves import Steps, carry
 from spline_model.motion.start import Start, set_in_motion
-from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.elements import Elements
 from spline_model.reduced.model import at_rest
-from spline_model.statics import solve_statics
 from tests.table_one import SIX, TABLE_ONE
 
 QUARTER_TURN = math.pi / 2

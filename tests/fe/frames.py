@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from fe_reference import BodyDesign, Model, StripDesign, compliant_mechanism
 from fe_reference.control import Control
 from fe_reference.loads import full_load
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
-from fe_reference.model import Model
 from fe_reference.structure import structure_of
 
 EFFECTS = ("bending", "stretching", "applied_force")
@@ -37,7 +36,7 @@ def toggle(*, rise: float = 0.386, load: float = 60.0, **discretisation: Any) ->
         for name, x in (("left", -half), ("right", half))
     ]
     return led(
-        mechanism(
+        compliant_mechanism(
             strips=strips,
             bodies=[BodyDesign(name="apex", centre=(0.0, rise))],
             effects=EFFECTS,
@@ -56,7 +55,7 @@ def lees_frame(*, load: float = 3.0, **discretisation: Any) -> Control:
         for a, b in itertools.pairwise(joints)
     ]
     return led(
-        mechanism(
+        compliant_mechanism(
             strips=strips,
             bodies=[BodyDesign(name=name, centre=place) for name, place in joints.items()],
             effects=EFFECTS,
@@ -73,7 +72,7 @@ def column(*, load: float, side: float = 0.0, slenderness: float = 1e3, **discre
     section = section_of(area=slenderness**2, second_moment_of_area=1.0, youngs_modulus=1.0)
     strip = StripDesign(name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", **section)
     return led(
-        mechanism(
+        compliant_mechanism(
             strips=[strip],
             bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
             effects=EFFECTS,

@@ -5,22 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fe_reference.model import ELEMENTS
-from fe_reference.statics import solve_loads, solve_statics
+from fe_reference import ELEMENTS, solve_loads, solve_statics
 from tests import gates
-from tests.fe.cases import (
-    EI,
-    FORCE,
-    LENGTH,
-    MOMENT,
-    QUICK_ELEMENTS,
-    SECTION,
-    cantilever,
-    extrapolated,
-    hold,
-    pivot,
-)
+from tests.fe.cases import EI, FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, cantilever, extrapolated, pivot
 from tests.fe.elastica import by_elliptic_integrals, by_quadrature
+from tests.gates import hold
 
 LOADS = (0.5, 1.0, 2.0, 5.0, 7.5, 10.0)
 

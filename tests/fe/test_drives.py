@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from fe_reference.dynamics import solve_motion
-from fe_reference.loads import DrivenRotation, drive_spans
+from fe_reference import DrivenRotation, Model, solve_motion
+from fe_reference.loads import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
-from fe_reference.model import Model
 from fe_reference.structure import structure_of
-from tests.fe.cases import hold, pivot
+from tests.fe.cases import pivot
+from tests.gates import hold
 
 
 def led_off_its_mass(elements: int = 3) -> Model:

@@ -7,11 +7,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from fe_reference.dynamics import Trajectory, solve_release
-from fe_reference.errors import ConvergenceError, InvalidParameter
-from fe_reference.modes import natural_frequencies
-from fe_reference.solution import Status
-from tests.fe.cases import LENGTH, hold, observed_order, pivot
+from fe_reference import (
+    ConvergenceError,
+    InvalidParameter,
+    Status,
+    Trajectory,
+    natural_frequencies,
+    solve_release,
+)
+from tests.fe.cases import LENGTH, observed_order, pivot
+from tests.gates import hold
 
 QUARTER = np.pi / 2.0
 

@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
+from fe_reference import ELEMENTS
 from fe_reference.arrays import Array
 from fe_reference.mass import about_mass_centre
-from fe_reference.model import ELEMENTS
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, hold
+from tests.fe.cases import LENGTH
 from tests.fe.scenes import PARAMETERS, SIDED_SCENE, WIDE, four_bar
 from tests.fe.test_gradients import derivative
+from tests.gates import hold
 
 
 def scene(element: str, about_mass: bool, wide: bool) -> Structure:

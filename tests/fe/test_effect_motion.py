@@ -5,19 +5,26 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_reference import (
+    ELEMENTS,
+    BodyDesign,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    natural_frequencies,
+    solve_motion,
+    solve_release,
+)
 from fe_reference.actions import Actions
 from fe_reference.control import Control
-from fe_reference.dynamics import INTEGRATORS, solve_motion, solve_release
+from fe_reference.dynamics import INTEGRATORS
 from fe_reference.loads import drive_spans
 from fe_reference.mass import about_mass_centre
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
-from fe_reference.model import ELEMENTS, Model
-from fe_reference.modes import natural_frequencies
 from fe_reference.motion import course
 from fe_reference.path import follow
 from fe_reference.schemes import Explicit, critical_step
 from fe_reference.structure import structure_of
-from tests.fe.cases import EI, hold, pivot
+from tests.fe.cases import EI, pivot
 from tests.fe.scenes import (
     GUIDE,
     MASSLESS,
@@ -29,6 +36,7 @@ from tests.fe.scenes import (
     four_bar,
     free_cantilever,
 )
+from tests.gates import hold
 
 EXPLICIT, IMPLICIT = INTEGRATORS
 #: A force that bends the cantilever by a millionth of its length, let go within the first step.
@@ -159,7 +167,7 @@ def test_impulse_of_a_load() -> None:
     force = {"force": (30.0, -20.0), "history": history}
 
     def error(step: float = 1e-6) -> float:
-        model = mechanism(
+        model = compliant_mechanism(
             strips=[
                 StripDesign(
                     name="strip", start=(0.0, 0.0), end=(GUIDE, 0.0), root=None, tip="body", **SECTION

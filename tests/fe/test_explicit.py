@@ -6,18 +6,16 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from fe_reference.dynamics import solve_release
-from fe_reference.errors import ConvergenceError
+from fe_reference import ELEMENTS, FREE, Body, ConvergenceError, Model, Status, solve_release
 from fe_reference.loads import drive_spans
 from fe_reference.mass import about_mass_centre, carried_over, lumped_nodes, mass_matrix
-from fe_reference.model import ELEMENTS, FREE, Body, Model
 from fe_reference.motion import Samples, course
 from fe_reference.schemes import Explicit, critical_step
-from fe_reference.solution import Status
 from fe_reference.statics import settled_state
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, cantilever, hold, pivot
+from tests.fe.cases import LENGTH, cantilever, pivot
 from tests.fe.test_gradients import far_state
+from tests.gates import hold
 
 QUARTER = np.pi / 2.0
 

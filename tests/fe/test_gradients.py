@@ -5,10 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from fe_reference import ELEMENTS
 from fe_reference.law import FORCES, TANGENT, elements
-from fe_reference.model import ELEMENTS, rotation_matrix
+from fe_reference.model import rotation_matrix
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import FORCE, LENGTH, hold, pivot
+from tests.fe.cases import FORCE, LENGTH, pivot
+from tests.gates import hold
 
 #: Sixth-order central difference of a first derivative, offsets 1 to 3.
 WEIGHTS = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_reference import control
-from fe_reference.model import ELEMENTS, rotation_matrix
-from fe_reference.statics import solve_statics
-from tests.fe.cases import FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, hold, pivot, rotated
+from fe_reference import ELEMENTS, control, solve_statics
+from fe_reference.model import rotation_matrix
+from tests.fe.cases import FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, pivot, rotated
+from tests.gates import hold
 
 QUARTER = np.pi / 2.0
 #: Eighth-order central difference of a first derivative, offsets 1 to 4.

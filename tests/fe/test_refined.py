@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from fe_reference import (
+    ELEMENTS,
     ConvergenceError,
     InvalidParameter,
     Model,
+    StripDesign,
+    compliant_mechanism,
     natural_frequencies,
     solve_loads,
     solve_mechanism,
@@ -17,8 +20,6 @@ from fe_reference import (
     solve_release,
     solve_statics,
 )
-from fe_reference.mechanism import StripDesign, mechanism
-from fe_reference.model import ELEMENTS
 from fe_reference.refined import finer
 from tests.fe.cases import pivot
 from tests.fe.scenes import SECTION, four_bar
@@ -124,7 +125,7 @@ def test_finer_meshes_of_arcs_lie_on_the_arc(rise: float) -> None:
 
     def made(elements: int) -> Model:
         strip = StripDesign(name="arc", start=(0.1, 0.2), end=(0.3, 0.1), tip=None, rise=rise, **SECTION)
-        return mechanism(strips=[strip], elements=elements)
+        return compliant_mechanism(strips=[strip], elements=elements)
 
     twice, wanted = finer(made(3)).strips[0], made(6).strips[0]
     assert twice.nodes == pytest.approx(wanted.nodes, abs=1e-14)

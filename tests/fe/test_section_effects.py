@@ -7,19 +7,27 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    ELEMENTS,
+    BodyDesign,
+    InvalidParameter,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    natural_frequencies,
+    plate_factors,
+    solve_loads,
+    solve_statics,
+    strip_fields,
+)
 from fe_reference.bending import CURL, section
-from fe_reference.effects import DEFAULT_EFFECTS
-from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
-from fe_reference.model import ELEMENTS, Model
-from fe_reference.modes import natural_frequencies
-from fe_reference.plate import plate_factors
-from fe_reference.section_forces import strip_fields
-from fe_reference.statics import solve_loads, solve_statics
 from fe_reference.structure import structure_of
-from tests.fe.cases import LENGTH, TABLE_1, extrapolated, hold, with_shear_factor
+from tests.fe.cases import LENGTH, TABLE_1, extrapolated, with_shear_factor
 from tests.fe.scenes import BARE as BARE_SECTION
 from tests.fe.scenes import GUIDE, SIDED, WIDE, four_bar, free_cantilever, guide
+from tests.gates import hold
 
 BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
 
@@ -39,7 +47,7 @@ def to_body(
     **discretisation: Any,
 ) -> Model:
     """Return a horizontal strip from ground to a body of a mass and a moment of inertia."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), tip="body", **strip)],
         bodies=[BodyDesign(name="body", centre=(length, 0.0), mass=mass[0], moment_of_inertia=mass[1])],
         effects=(*effects, *parameters),

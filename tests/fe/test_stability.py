@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
-
 from fe_reference.arc_length import follow_arc
+
+from fe_reference import solve_statics
 from fe_reference.control import spans
-from fe_reference.statics import solve_statics
 from fe_reference.structure import structure_of
 from tests import gates
-from tests.fe.cases import extrapolated, hold, observed_order, pivot
+from tests.fe.cases import extrapolated, observed_order, pivot
 from tests.fe.frames import column, lees_frame, toggle
+from tests.gates import hold
 
 EULER = np.pi**2 / 4.0
 

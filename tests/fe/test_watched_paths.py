@@ -8,13 +8,21 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
-from fe_reference.model import ELEMENTS, Model
+from fe_reference import (
+    ELEMENTS,
+    BodyDesign,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+)
 from fe_reference.path import WORK_MISMATCH, follow
-from fe_reference.statics import solve_mechanism, solve_statics
 from fe_reference.structure import structure_of
-from tests.fe.cases import extrapolated, hold, pivot
+from tests.fe.cases import extrapolated, pivot
 from tests.fe.frames import toggle
+from tests.gates import hold
 
 #: Spring steel, 100 mm x 10 mm x 0.5 mm.
 LENGTH = 0.1
@@ -35,7 +43,7 @@ def lever(elements: int = 10, element: str = "corotational") -> Model:
     """Return a horizontal strip with a body at its tip, 10 mm long."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(LENGTH, 0.0), tip="tip", **SECTION)
     body = BodyDesign(name="tip", centre=(0.11, 0.0), mass=0.05)
-    return mechanism(strips=[strip], bodies=[body], elements=elements, element=element)
+    return compliant_mechanism(strips=[strip], bodies=[body], elements=elements, element=element)
 
 
 def column(load: float, elements: int = 10, element: str = "corotational", aside: float = 1e-3) -> Model:
@@ -43,7 +51,7 @@ def column(load: float, elements: int = 10, element: str = "corotational", aside
     section = {**SECTION, "density": 1e-9}
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, LENGTH), tip="tip", **section)
     body = BodyDesign(name="tip", centre=(aside, LENGTH), mass=load * EULER)
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip],
         bodies=[body],
         elements=elements,
@@ -57,7 +65,7 @@ def stretched(load: float, elements: int = 10, element: str = "corotational") ->
     """Return a strip between two clamps that would be longer by a natural strain of `load` EI/(EA L^2)."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(LENGTH, 0.0), tip="ground", **SECTION)
     strain = load * EULER / (SECTION["youngs_modulus"] * SECTION["area"])
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip],
         elements=elements,
         element=element,

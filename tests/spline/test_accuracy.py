@@ -7,12 +7,16 @@ from functools import cache
 import numpy as np
 import pytest
 
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    Status,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+)
 from spline_model import accuracy as accuracies
 from spline_model.accuracy import distances
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.pivot import cross_axis_pivot
-from spline_model.solution import Status
-from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import TABLE_ONE
 

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from spline_model.errors import ConvergenceError
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_mechanism, solve_statics
+from spline_model import ConvergenceError, cross_axis_pivot, solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.spline.frames import column, lees_frame, toggle
 from tests.table_one import SIX

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from spline_model import InvalidParameter
 from spline_model.basis import HatModes, LegendreModes, SlideModes, SplineBasis, bezier, cubic_bspline
-from spline_model.errors import InvalidParameter
 
 ROUND_OFF = 5e-13  # degree 11 with derivatives that grow like n^2
 U = np.linspace(0.0, 1.0, 33)

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_statics
+from spline_model import cross_axis_pivot, solve_loads, solve_statics
 from studies.published.case import published
 from tests import gates
 from tests.spline.scenes import LENGTH, cantilever, elastica_tip

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from mpmath import ellipk, mp
 
+from spline_model import InvalidParameter, cross_axis_pivot, solve_loads, solve_mechanism, solve_statics
 from spline_model.compile import compile_scene
 from spline_model.continuation.critical import ReducedTangent
 from spline_model.continuation.followed import Followed
-from spline_model.errors import InvalidParameter
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.spline.frames import column, opposed
 from tests.table_one import SIX, TABLE_ONE

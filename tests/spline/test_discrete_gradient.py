@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from spline_model.pivot import cross_axis_pivot
+from spline_model import cross_axis_pivot
 from spline_model.strip.laws import MATERIAL, SPATIAL, stretching_law
 from spline_model.strip.two_states import stretching_between
 from tests import gates

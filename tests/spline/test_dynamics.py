@@ -7,15 +7,21 @@ from functools import cache
 import numpy as np
 import pytest
 
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_release,
+    swinging_slide_stiffness,
+)
 from spline_model.compile import compile_scene
-from spline_model.dynamics import INTEGRATORS, solve_release
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.modes import natural_frequencies, static_state
+from spline_model.dynamics import INTEGRATORS
+from spline_model.modes import static_state
 from spline_model.motion import bordered, energy_consistent, generalised_alpha
 from spline_model.motion.moves import Steps, carry
 from spline_model.motion.records import KINETIC, STRAIN
 from spline_model.motion.start import Start, set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.solution import Later
 from tests import gates
 from tests.spline.scenes import LENGTH, swinging

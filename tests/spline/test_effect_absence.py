@@ -7,18 +7,22 @@ import sys
 import numpy as np
 import pytest
 
+from spline_model import (
+    DEFAULT_EFFECTS,
+    REGISTRY,
+    compliant_mechanism,
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_mechanism,
+    solve_motion,
+    swinging_slide_stiffness,
+)
 from spline_model.bordered import assemble
 from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_motion
 from spline_model.effects import registry
-from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
-from spline_model.mechanism import mechanism
-from spline_model.modes import natural_frequencies
 from spline_model.motion import energy_consistent
 from spline_model.motion.start import set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.quadrature import STRETCHING
-from spline_model.statics import solve_mechanism
 from tests import gates
 from tests.spline.effect_scenes import EXTRA, scene_with
 from tests.table_one import SIX
@@ -109,7 +113,7 @@ def test_inextensible_strips_have_no_axial_modes():
 def test_massless_strips_leave_the_body_alone_dynamic():
     """Requirement: without strip inertia three degrees of freedom are dynamic, and energy is kept."""
     pivot = cross_axis_pivot(**SIX).design
-    scene = mechanism(
+    scene = compliant_mechanism(
         strips=pivot.strips, bodies=pivot.bodies, effects=("bending", "stretching", "body_inertia")
     )
     massive = natural_frequencies(scene_with(), count=1).frequency[0]

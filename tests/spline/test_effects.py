@@ -3,13 +3,16 @@
 import numpy as np
 import pytest
 
+from spline_model import (
+    DEFAULT_EFFECTS,
+    DrivenRotation,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_motion,
+    swinging_slide_stiffness,
+)
 from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_motion
-from spline_model.effects import DrivenRotation
-from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.motion.start import set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
-from spline_model.statics import solve_mechanism
 from tests import gates
 from tests.spline.effect_scenes import EXTRA, PARAMETERS, scene_with
 from tests.spline.steps import Step

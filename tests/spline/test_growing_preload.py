@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from spline_model import BodyDesign, compliant_mechanism
 from spline_model.compile import compile_scene
-from spline_model.mechanism import BodyDesign, mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, RATE
 from spline_model.reduced.equilibrium import newton
@@ -16,7 +16,7 @@ from tests.spline.test_reduced import FORMS, stretching, strip
 
 def bridge(form):
     """A body between a curved and a straight strip, all of them heavy and pre-strained."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[
             strip("a", (0, 0), (0.1, 0), tip="b", rise=0.02),
             strip("c", (0.12, 0.01), (0.2, 0.05), root="b", tip="ground"),

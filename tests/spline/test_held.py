@@ -5,11 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.errors import InvalidParameter
-from spline_model.held import HeldPivot
-from spline_model.pivot import BODY, cross_axis_pivot
-from spline_model.statics import solve_loads, solve_statics
+from spline_model import (
+    DrivenDisplacement,
+    DrivenRotation,
+    HeldPivot,
+    InvalidParameter,
+    cross_axis_pivot,
+    solve_loads,
+    solve_statics,
+)
+from spline_model.pivot import BODY
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 

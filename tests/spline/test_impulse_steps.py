@@ -5,12 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.dynamics import solve_motion
-from spline_model.effects import DrivenRotation
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.pivot import BODY, swinging_slide_stiffness
-from spline_model.sequential_impulse import impulse_solver, solve_impulses
+from spline_model import (
+    BodyDesign,
+    ConvergenceError,
+    DrivenRotation,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    impulse_solver,
+    solve_impulses,
+    solve_motion,
+    swinging_slide_stiffness,
+)
+from spline_model.pivot import BODY
 from tests import gates
 from tests.spline.impulses import POLYMER, QUARTER, pivot, total
 from tests.table_one import TABLE_ONE
@@ -126,7 +133,7 @@ def chain():
         BodyDesign(name="middle", centre=(0.09, 0.0), mass=5e-3, moment_of_inertia=2e-6),
         BodyDesign(name="end", centre=(0.19, 0.0), mass=5e-3, moment_of_inertia=2e-6),
     ]
-    return mechanism(
+    return compliant_mechanism(
         strips=strips,
         bodies=bodies,
         effects=(

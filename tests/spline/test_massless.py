@@ -7,10 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from spline_model import cross_axis_pivot, solve_release, swinging_slide_stiffness
 from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_release
 from spline_model.motion.quasi_static import softness
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced.model import from_unknowns, reduced
 from tests.table_one import TABLE_ONE
 

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from spline_model import DEFAULT_EFFECTS, InvalidParameter, cross_axis_pivot, natural_frequencies
 from spline_model.compile import compile_scene
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.modes import linear_modes, natural_frequencies
-from spline_model.pivot import cross_axis_pivot
+from spline_model.modes import linear_modes
 from tests import gates
 from tests.spline.scenes import LENGTH, RIGIDITY, swinging
 from tests.table_one import SIX, TABLE_ONE

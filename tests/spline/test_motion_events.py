@@ -5,16 +5,20 @@ import math
 import numpy as np
 import pytest
 
+from spline_model import (
+    DrivenRotation,
+    InvalidParameter,
+    cross_axis_pivot,
+    solve_motion,
+    solve_release,
+    swinging_slide_stiffness,
+)
 from spline_model.compile import compile_scene
 from spline_model.content import CARRIED, energy_content
-from spline_model.dynamics import solve_motion, solve_release
-from spline_model.effects import DrivenRotation
-from spline_model.errors import InvalidParameter
 from spline_model.modes import static_state
 from spline_model.motion import energy_consistent
 from spline_model.motion.records import KINETIC, STRAIN, energy_gain, first_gain
 from spline_model.motion.start import set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
 

@@ -5,15 +5,19 @@ import math
 import numpy as np
 import pytest
 
+from spline_model import (
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_statics,
+)
 from spline_model.compile import compile_scene
 from spline_model.continuation.arc_length import follow_arc
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.path import follow
-from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.model import at_rest, from_unknowns, reduced
 from spline_model.reduced.states import whole_tangents
-from spline_model.statics import solve_statics
 from tests.spline.frames import column, opposed, toggle
 from tests.spline.test_branches import heavy, strained
 from tests.table_one import SIX, TABLE_ONE
@@ -49,7 +53,7 @@ def stretching(form):
 
 def guide(form):
     """Two parallel strips under a body that is pushed aside and weighs."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip("a", (0, 0), (0, 0.1), tip="b"), strip("c", (0.05, 0), (0.05, 0.1), tip="b")],
         bodies=[BodyDesign(name="b", centre=(0.025, 0.1), mass=0.02)],
         effects=("bending", stretching(form), "applied_force", "gravity"),
@@ -60,7 +64,7 @@ def guide(form):
 
 def free_end(form):
     """A cantilever whose tip is free and loaded."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip("a", (0, 0), (0.1, 0))],
         bodies=[],
         effects=("bending", stretching(form), "tip_force", "gravity"),
@@ -71,7 +75,7 @@ def free_end(form):
 
 def arc(form):
     """A curved, pre-strained strip with a body."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip("a", (0, 0), (0.1, 0), tip="b", rise=0.02)],
         bodies=[BodyDesign(name="b", centre=(0.11, 0.01))],
         effects=("bending", stretching(form), "applied_force", "pre_strain"),
@@ -82,7 +86,7 @@ def arc(form):
 
 def chain(form):
     """Three strips in a row: from the ground to a body, between two bodies, and back to the ground."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[
             strip("a", (0, 0), (0.1, 0), tip="b"),
             strip("c", (0.12, 0.01), (0.2, 0.05), root="b", tip="d"),
@@ -187,7 +191,7 @@ def test_what_the_elements_do_not_know_is_left_to_the_bordered_system():
 def buckling_column():
     """A column pressed to one and a half times Euler's load."""
     load = 1.5 * math.pi**2 / 4 * STEEL["youngs_modulus"] * STEEL["second_moment_of_area"] / 0.1**2
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip("a", (0, 0), (0, 0.1), tip="b")],
         bodies=[BodyDesign(name="b", centre=(0.0, 0.1))],
         effects=("bending", "stretching", "applied_force"),

@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 
-from spline_model.dynamics import solve_release
-from spline_model.modes import natural_frequencies
-from spline_model.pivot import SLIDE_STIFFNESS, cross_axis_pivot, swinging_slide_stiffness
-from spline_model.sequential_impulse import solve_impulses
-from spline_model.statics import solve_statics
+from spline_model import (
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_impulses,
+    solve_release,
+    solve_statics,
+    swinging_slide_stiffness,
+)
+from spline_model.pivot import SLIDE_STIFFNESS
 from tests.table_one import TABLE_ONE
 
 

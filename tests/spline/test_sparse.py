@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from spline_model import newton
+from spline_model import cross_axis_pivot, newton, solve_statics
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
 from spline_model.newton import filled_entries
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
 from tests import gates
 from tests.spline.frames import opposed
 from tests.table_one import TABLE_ONE

@@ -6,19 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_many,
+    solve_mechanism,
+    solve_statics,
+)
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
 from spline_model.continuation.point import jumped, stand
 from spline_model.continuation.resolution import LARGEST_DEFECT
-from spline_model.design import Discretisation, StripDesign
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.mechanism import mechanism
+from spline_model.design import Discretisation
 from spline_model.newton import solve
 from spline_model.path import follow
-from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.path import is_work, work_of
-from spline_model.statics import solve_from, solve_mechanism, solve_statics
+from spline_model.statics import solve_from
 from tests import gates
 from tests.spline.frames import opposed
 from tests.table_one import SIX, TABLE_ONE
@@ -249,7 +255,7 @@ def weighed(control_points):
     """Moment defect of a cantilever that hangs far down under its own weight."""
     names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
     strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **{n: TABLE_ONE[n] for n in names})
-    made = mechanism(
+    made = compliant_mechanism(
         strips=[strip],
         effects=("bending", "stretching", "gravity"),
         parameters={"gravity": {"acceleration": (0.0, -3e5)}},

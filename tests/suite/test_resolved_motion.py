@@ -6,13 +6,11 @@ import math
 import numpy as np
 import pytest
 
+from fe_reference import InvalidParameter
+from fe_reference import cross_axis_pivot as elements_pivot
+from fe_reference import solve_release as release_elements
 from fe_reference import trajectory as of_elements
-from fe_reference.dynamics import solve_release as release_elements
-from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import cross_axis_pivot as elements_pivot
-from spline_model import content, dynamics
-from spline_model.dynamics import solve_motion, solve_release
-from spline_model.pivot import cross_axis_pivot
+from spline_model import content, cross_axis_pivot, dynamics, solve_motion, solve_release
 from studies.answers.adapters import answer_release
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
