@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from fe_reference import Body, Model, Section, Strip, cross_axis_pivot
-from fe_reference.model import rotation_matrix
 from tests.table_one import TABLE_ONE
 
 QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
@@ -49,6 +48,11 @@ def with_shear_factor(model: Model, factor: float) -> Model:
     """Return the model with another shear factor in all strips."""
     section = replace(model.strips[0].section, shear_factor=factor)
     return replace(model, strips=tuple(replace(strip, section=section) for strip in model.strips))
+
+
+def rotation_matrix(angle: float) -> np.ndarray:
+    """Return the matrix (2, 2) that turns by an angle [rad]."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def rotated(model: Model, angle: float) -> Model:

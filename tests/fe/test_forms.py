@@ -10,9 +10,8 @@ from fe_reference import ELEMENTS
 from fe_reference.actions import Actions
 from fe_reference.law import FORCES, TANGENT, elements
 from fe_reference.mass import about_mass_centre
-from fe_reference.model import rotation_matrix
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH
+from tests.fe.cases import LENGTH, rotation_matrix
 from tests.fe.scenes import PARAMETERS, four_bar
 from tests.gates import hold
 

@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from fe_reference import ELEMENTS, solve_loads, solve_mechanism, solve_statics
-from fe_reference.model import rotation_matrix
 from studies.published.case import published
-from tests.fe.cases import EI, LENGTH, QUICK_ELEMENTS, cantilever, extrapolated, pivot, rotated
+from tests.fe.cases import (
+    EI,
+    LENGTH,
+    QUICK_ELEMENTS,
+    cantilever,
+    extrapolated,
+    pivot,
+    rotated,
+    rotation_matrix,
+)
 from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, four_bar, free_cantilever, guide
 from tests.gates import hold
 
