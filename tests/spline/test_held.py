@@ -14,7 +14,6 @@ from spline_model import (
     solve_loads,
     solve_statics,
 )
-from spline_model.pivot import BODY
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 
@@ -47,8 +46,8 @@ def disagreement(pose, increments=8, slide=None, **settings):
     pivot = cross_axis_pivot(**(SIX | settings | other))
     reference, displacement = pivot, state.pose[:2] - pivot.centre
     drives = (
-        DrivenRotation(body=BODY, angle=rotation),
-        DrivenDisplacement(body=BODY, displacement=tuple(displacement)),
+        DrivenRotation(body="body", angle=rotation),
+        DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
     system, path = solve_loads(reference.with_effects(*drives), increments=increments)
     z = path.states[-1]
