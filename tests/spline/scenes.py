@@ -1,9 +1,4 @@
-"""A cantilever with a body at its tip, and the closed form of its elastica."""
-
-import math
-
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
+"""A cantilever with a body at its tip."""
 
 from spline_model import BodyDesign, StripDesign, compliant_mechanism
 
@@ -30,24 +25,3 @@ def cantilever(*effects, force=0.0, moment=0.0, tip=(0.0, 0.0), **discretisation
         parameters={name: given for name, given in parameters.items() if name in effects},
         **discretisation,
     )
-
-
-def elastica_tip(load):
-    """Tip (x/L, y/L, rotation) of an inextensible cantilever under a tip force of ``load`` EI/L^2.
-
-    Bisshopp and Drucker, Large deflection of cantilever beams, Q Appl Math 3 (1945) 272.
-    """
-
-    def parts(rotation):
-        m = (1.0 + math.sin(rotation)) / 2.0
-        return m, math.asin(1.0 / math.sqrt(2.0 * m))
-
-    def too_long(rotation):
-        m, phi = parts(rotation)
-        return ellipk(m) - ellipkinc(phi, m) - math.sqrt(load)
-
-    rotation = brentq(too_long, 1e-9, math.pi / 2 - 1e-12, xtol=1e-15, rtol=1e-15)
-    m, phi = parts(rotation)
-    x = math.sqrt(2.0 * math.sin(rotation) / load)
-    y = 1.0 - 2.0 / math.sqrt(load) * (ellipe(m) - ellipeinc(phi, m))
-    return x, y, rotation

@@ -24,15 +24,6 @@ def test_four_control_points_are_the_papers_blending_functions():
     assert np.abs(bezier(4).evaluate(U) - printed).max() < ROUND_OFF
 
 
-def test_derivatives_are_those_of_the_values():
-    """Requirement: first and second derivatives agree with a polynomial fitted to the values."""
-    basis = bezier(7)
-    for i, column in enumerate(basis.evaluate(U).T):
-        fit = np.polynomial.Polynomial.fit(U, column, 6)
-        assert np.abs(fit.deriv(1)(U) - basis.evaluate(U, 1)[:, i]).max() < 1e-10  # the fit's conditioning
-        assert np.abs(fit.deriv(2)(U) - basis.evaluate(U, 2)[:, i]).max() < 1e-8
-
-
 def test_gauss_rule_is_exact_to_twice_its_points():
     """Requirement: k points in each span integrate degree 2 k - 1 exactly and degree 2 k not."""
     u, weight = cubic_bspline(6).gauss_rule(3)

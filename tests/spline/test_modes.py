@@ -4,45 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from spline_model import InvalidParameter, cross_axis_pivot, natural_frequencies
 from tests import gates
+from tests.closed_forms import CANTILEVER_ROOTS, end_body_roots
 from tests.spline.scenes import LENGTH, RIGIDITY, cantilever
 from tests.table_one import SIX, TABLE_ONE
-
-
-def roots(equation, count):
-    """First positive roots of an equation in z = beta L."""
-    grid = np.linspace(0.05, 3.2 * count, 400 * count)
-    values = [equation(z) for z in grid]
-    found = [
-        brentq(equation, a, b, xtol=1e-14)
-        for a, b, fa, fb in zip(grid, grid[1:], values, values[1:], strict=False)
-        if fa * fb < 0
-    ]
-    return np.array(found[:count])
-
-
-def cantilever_equation(z):
-    """Clamped-free beam, over cosh: 1/cosh + cos."""
-    return 1 / math.cosh(z) + math.cos(z)
-
-
-def end_body_equation(mass, inertia):
-    """Cantilever with a tip mass [mu L] and a tip inertia [mu L^3]."""
-
-    def equation(z):
-        c, s, ch, sh = math.cos(z), math.sin(z), math.cosh(z), math.sinh(z)
-        return (
-            1
-            + c * ch
-            + mass * z * (c * sh - s * ch)
-            - inertia * z**3 * (c * sh + s * ch)
-            + mass * inertia * z**4 * (1 - c * ch)
-        ) / ch
-
-    return equation
 
 
 def frequencies(count, *effects, **made):
@@ -53,7 +20,7 @@ def frequencies(count, *effects, **made):
 
 def cantilever_error(control_points):
     """Largest relative error of the first four cantilever frequencies."""
-    exact = roots(cantilever_equation, 4) ** 2
+    exact = CANTILEVER_ROOTS[:4] ** 2
     return np.abs(frequencies(4, control_points=control_points) / exact - 1).max()
 
 
@@ -61,7 +28,7 @@ def end_body_error(control_points):
     """Largest relative error of the first three frequencies with a heavy and with an extended end body."""
     errors = []
     for tip in ((1.0, 1e-9), (1.0, 0.1), (0.2, 0.5)):
-        exact = roots(end_body_equation(*tip), 3) ** 2
+        exact = end_body_roots(*tip, 3) ** 2
         found = frequencies(3, "body_inertia", tip=tip, control_points=control_points)
         errors.append(np.abs(found / exact - 1).max())
     return max(errors)
@@ -81,13 +48,6 @@ def test_frequency_gates_have_teeth(gate):
     """Requirement: the same checks fail with fewer control points."""
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check(gate, CHECKS[gate](**gates.teeth(gate)))
-
-
-def test_published_roots():
-    """Requirement: the equations themselves have the published roots."""
-    assert np.abs(roots(cantilever_equation, 2) - (1.8751040687, 4.6940911330)).max() < 1e-10
-    assert abs(roots(end_body_equation(1.0, 1e-12), 1)[0] - 1.24792) < 5e-6
-    assert abs(roots(end_body_equation(1.0, 0.1), 1)[0] - 1.19567) < 5e-6
 
 
 def test_modes_about_a_bent_state():

@@ -19,7 +19,6 @@ from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
 from spline_model.newton import solve
 from spline_model.statics import solve_from
-from tests import gates
 from tests.spline.frames import opposed
 from tests.table_one import SIX, TABLE_ONE
 
@@ -74,31 +73,6 @@ def test_half_a_turn_either_way(control_points, degrees):
     assert answer.status.value == "converged"
     assert answer.inertia.max() == 0
     assert answer.critical_points == ()
-
-
-def hysteresis(increments=(1, 2, 5, 20, 200), **back):
-    """Largest difference between the way there and back, in torque and place, relative."""
-    worst = 0.0
-    for count in increments:
-        path = to(90, increments=count)
-        pivot = cross_axis_pivot(**(SIX | back))
-        both = solve_statics(pivot, rotation=[math.pi / 2, 0.0], increments=count)
-        there, returned = slice(0, count + 1), slice(count, None)
-        torque = np.abs(both.torque[returned][::-1] - path.torque[there]).max() / path.torque.max()
-        place = np.abs(both.centre[returned][::-1] - path.centre[there]).max() / TABLE_ONE["length"]
-        worst = max(worst, torque, place)
-    return worst
-
-
-def test_there_and_back_leaves_nothing_behind():
-    """Requirement: driven to 90 deg and back in any number of increments, it comes back the same way."""
-    gates.check("spline_hysteresis", hysteresis())
-
-
-def test_hysteresis_gate_has_teeth():
-    """Requirement: the check notices another discretisation on the way back."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_hysteresis", hysteresis((20,), **gates.teeth("spline_hysteresis")))
 
 
 GUESSES = {
