@@ -1,22 +1,23 @@
-"""Critical loads and what lies beyond them: a compressed column as finite elements."""
+"""Critical loads and what lies beyond them: a compressed column and a toggle as finite elements."""
 
 from typing import Any
 
 import numpy as np
+import pytest
 
 from fe_reference import BodyDesign, Model, StripDesign, compliant_mechanism, solve_mechanism
 from tests.fe.cases import extrapolated
 from tests.gates import hold
 
 EULER = np.pi**2 / 4.0
+#: In consistent units; mass and shear do not matter.
+SECTION = {"youngs_modulus": 1.0, "poisson_ratio": 0.3, "density": 1.0}
 
 
 def column(*, load: float, side: float = 0.0, slenderness: float = 1e3, **discretisation: Any) -> Model:
     """Return a column of length 1 and EI = 1, pushed at its free tip by `load`, and by `side` of it aside."""
-    section = {"area": slenderness**2, "second_moment_of_area": 1.0, "youngs_modulus": 1.0}
-    strip = StripDesign(
-        name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", poisson_ratio=0.3, density=1.0, **section
-    )
+    section = {**SECTION, "area": slenderness**2, "second_moment_of_area": 1.0}
+    strip = StripDesign(name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", **section)
     return compliant_mechanism(
         strips=[strip],
         bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
@@ -54,3 +55,34 @@ def test_a_bent_column_follows_the_elastica() -> None:
         return float(abs(abs(np.degrees(answer.bodies["tip"][-1, 2])) - 140.0))
 
     hold("fe_bent_column", error)
+
+
+def test_a_path_that_ends_at_a_limit_point_says_so() -> None:
+    """Load control of a toggle stops at its limit point and names it, for any number of increments."""
+    section = {**SECTION, "area": 1.885e6, "second_moment_of_area": 9.27e3}
+    strips = [
+        StripDesign(
+            name=f"at {x}",
+            start=(x, 0.0),
+            end=(0.0, 0.386),
+            tip="apex",
+            **section,
+        )
+        for x in (-12.937, 12.937)
+    ]
+    toggle = compliant_mechanism(
+        strips=strips,
+        bodies=[BodyDesign(name="apex", centre=(0.0, 0.386))],
+        effects=("bending", "stretching", "applied_force"),
+        parameters={"applied_force": {"force": (0.0, -60.0)}},
+        elements=6,
+    )
+    found = []
+    for increments in (7, 20):
+        answer = solve_mechanism(toggle, increments=increments, raise_on_failure=False)
+        (limit,) = answer.critical_points
+        assert (answer.status.value, limit.kind) == ("not_converged", "limit point")
+        assert answer.message.startswith("limit point: the strips give way with the body at ")
+        found.append(limit.load_factor)
+    assert found[0] == pytest.approx(found[1], rel=1e-8)
+    assert found[0] == pytest.approx(0.5749, rel=0.02)

@@ -236,37 +236,6 @@ def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
     )
 
 
-def test_a_path_that_ends_at_a_limit_point_says_so() -> None:
-    """Load control of a toggle stops at its limit point and names it, for any number of increments."""
-    section = {**SECTION, "area": 1.885e6, "second_moment_of_area": 9.27e3, "youngs_modulus": 1.0}
-    strips = [
-        StripDesign(
-            name=f"at {x}",
-            start=(x, 0.0),
-            end=(0.0, 0.386),
-            tip="apex",
-            **section,
-        )
-        for x in (-12.937, 12.937)
-    ]
-    toggle = compliant_mechanism(
-        strips=strips,
-        bodies=[BodyDesign(name="apex", centre=(0.0, 0.386))],
-        effects=("bending", "stretching", "applied_force"),
-        parameters={"applied_force": {"force": (0.0, -60.0)}},
-        elements=6,
-    )
-    found = []
-    for increments in (7, 20):
-        answer = solve_mechanism(toggle, increments=increments, raise_on_failure=False)
-        (limit,) = answer.critical_points
-        assert (answer.status.value, limit.kind) == ("not_converged", "limit point")
-        assert answer.message.startswith("limit point: the strips give way with the body at ")
-        found.append(limit.load_factor)
-    assert found[0] == pytest.approx(found[1], rel=1e-8)
-    assert found[0] == pytest.approx(0.5749, rel=0.02)
-
-
 def test_loads_grow_at_rotation_zero() -> None:
     """A pivot held at rotation 0 takes its loads in equal steps, and their work is what the strips store."""
     answer = solve_statics(pressed(force=15e3, elements=8), rotation=0.0, increments=4)
