@@ -3,7 +3,7 @@
 Data flow one way, and so do the imports:
 
     effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
-    control (with Newton's method) -> response -> arc_length -> critical -> path -> statics
+    control (with Newton's method) -> response -> critical -> path -> statics
     structure -> mass, loads -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution, trajectory
     solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
@@ -21,8 +21,8 @@ from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
 from .loads import DrivenRotation
-from .mechanism import BodyDesign, StripDesign, cross_axis_pivot
-from .model import Body, Model, Section, Strip
+from .mechanism import BodyDesign, StripDesign, compliant_mechanism, cross_axis_pivot
+from .model import ELEMENTS, FREE, Body, Model, Section, Strip
 from .modes import Modes, natural_frequencies
 from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
@@ -32,6 +32,8 @@ from .trajectory import Trajectory
 
 __all__ = [
     "DEFAULT_EFFECTS",
+    "ELEMENTS",
+    "FREE",
     "Body",
     "BodyDesign",
     "ConvergenceError",
@@ -49,6 +51,7 @@ __all__ = [
     "StripDesign",
     "StripFields",
     "Trajectory",
+    "compliant_mechanism",
     "cross_axis_pivot",
     "natural_frequencies",
     "plate_factors",

@@ -7,7 +7,7 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -192,17 +192,10 @@ class Outcome:
     factors: Factors | None = None
 
 
-#: Changes of coordinates and parameter that correct a state, from these, the balance there and its factors.
-Correct = Callable[[Array, float, Balance, Factors], tuple[Array, float]]
-
-
-def equilibrate(
-    control: Control, start: Array, parameter: float, counters: Counter[str], correct: Correct | None = None
-) -> Outcome:
+def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> Outcome:
     """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
 
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
-    correct: by default Newton's step, which leaves the parameter as it is.
     """
     tolerance = max(TOLERANCE, control.structure.round_off)
     y, norms = start.copy(), []
@@ -234,11 +227,7 @@ def equilibrate(
                 factors=factors,
             )
         counters["newton_iterations"] += 1
-        if correct is None:
-            y = y - factors.solve(balance.residual)
-        else:
-            move, change = correct(y, parameter, balance, factors)
-            y, parameter = y + move, parameter + change
+        y = y - factors.solve(balance.residual)
 
 
 def taken(control: Control, y: Array, parameter: float) -> Outcome:

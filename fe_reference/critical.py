@@ -2,15 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from itertools import islice
 
 import numpy as np
 from scipy.optimize import brentq
 
-from .arc_length import Walk
 from .arrays import Array, Flags
-from .control import Control, equilibrate, taken
-from .matrix import Singular, Symmetric
+from .control import Control, equilibrate
+from .matrix import Symmetric
 from .response import State, respond
 from .solution import CriticalPoint
 
@@ -20,10 +18,8 @@ STANDS = 0.25
 INVERSE_ITERATIONS = 6
 #: Stiffness below which it is round-off, in EI/L, and part of an increment within which its zero is placed.
 ROUND_OFF, PLACED = 1e-9, 1e-6
-#: First and longest step to a limit point, in strip lengths and rad, and how many there may be.
-FIRST, LONGEST, MOST = 1e-3, 0.05, 60
 #: A limit point is what stopped the path if it lies within this part of it.
-NEAR = 1e-2
+NEAR = 1e-3
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
 
 
@@ -83,27 +79,24 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 
-def limit_point(control: Control, last: State, toward: float, counters: Counter[str]) -> list[CriticalPoint]:
-    """Return the limit point that a path ran into after its last state on its way to a parameter, if it did.
+def limit_point(control: Control, last: State) -> list[CriticalPoint]:
+    """Return the limit point that a path ran into right after its last state, if it did.
 
-    The path is followed in its arc length until the parameter turns back. It goes on there along its tangent,
-    at the same load.
+    Next to it the parameter is short of its limit by the square of the way to it. So the square of the rate
+    there grows as one over the rest, which is read from the last two states; the coordinates are off by twice
+    the rate times that rest. It goes on there along its tangent, at the same load.
     """
-    walk = Walk(control=control, counters=counters)
-    along = (np.zeros_like(last.y), toward - last.parameter)
-    try:
-        here = walk.place(taken(control, last.y, last.parameter), along)
-    except Singular:
+    if not last.behind:
         return []
-    for stride in islice(walk.onward(here, FIRST, LONGEST), MOST):
-        if stride.turned:
-            at = walk.before(stride, lambda state: state.pace * here.pace > 0.0)
-            kind = "turning point" if control.watched in control.held else "limit point"
-            what = f"{kind}: {_moves(control, at.rate)}"
-            return [_point(control, kind, at.y, at.parameter, at.inertia + 1, what)]
-        if abs(stride.end.parameter - last.parameter) > NEAR:
-            return []
-    return []
+    measure, (before, _, earlier) = control.structure.measure, last.behind[0]
+    slow, fast = (float(np.sum((measure * rate)[~control.is_held] ** 2)) for rate in (earlier, last.rate))
+    rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
+    if abs(rest) > NEAR:
+        return []
+    kind = "turning point" if control.watched in control.held else "limit point"
+    what = f"{kind}: {_moves(control, last.rate)}"
+    y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
+    return [_point(control, kind, y, parameter, last.inertia + 1, what)]
 
 
 def _between(before: State, after: State, part: float) -> tuple[Array, float]:

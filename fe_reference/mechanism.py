@@ -36,7 +36,7 @@ class StripDesign(Section):
     rise: float = 0.0
 
 
-def mechanism(
+def compliant_mechanism(
     *,
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),
@@ -159,7 +159,7 @@ def cross_axis_pivot(
         StripDesign(name=f"strip_{number}", start=a, end=b, tip=body.name, **section)
         for number, (a, b) in enumerate(zip(ground, ends, strict=True), start=1)
     ]
-    return mechanism(
+    return compliant_mechanism(
         strips=strips,
         bodies=[body],
         effects=effects,

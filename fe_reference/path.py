@@ -124,7 +124,7 @@ class Path:
         """
         reached = self._reach(self.states[-1], target, 0)
         if reached is None:
-            self.critical += limit_point(self.control, self.last, target, self.counters)
+            self.critical += limit_point(self.control, self.last)
             return False
         self.states.append(reached)
         self.counters["increments"] += 1

@@ -26,7 +26,6 @@ class State(Outcome):
         torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is watched.
         inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
-        pace: rate of the parameter along the path, 1 where it leads.
         work: of loads and drives since the first state of the path [J].
         behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
@@ -37,7 +36,6 @@ class State(Outcome):
     torque: float
     stiffness: float
     inertia: int
-    pace: float = 1.0
     work: float = 0.0
     behind: tuple[tuple[float, Array, Array], ...] = ()
 

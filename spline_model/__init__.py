@@ -4,8 +4,8 @@ What is imported from here is public; all else may change. Each name is loaded w
 
     from spline_model import cross_axis_pivot, solve_statics
 
-Data flow one way: design (`cross_axis_pivot`, `Mechanism`) -> scene of effects -> strips as elements
-between bodies -> statics, motion, modes, batches -> solution.
+Data flow one way: design (`cross_axis_pivot`, `compliant_mechanism`) -> scene of effects -> strips as
+elements between bodies -> statics, motion, modes, batches -> solution.
 """
 
 from __future__ import annotations
@@ -19,18 +19,27 @@ if TYPE_CHECKING:
     from spline_model.design import StripDesign as StripDesign
     from spline_model.dynamics import solve_motion as solve_motion
     from spline_model.dynamics import solve_release as solve_release
+    from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
+    from spline_model.effects.boundary import DrivenRotation as DrivenRotation
+    from spline_model.effects.plate import plate_factors as plate_factors
     from spline_model.effects.registry import DEFAULT_EFFECTS as DEFAULT_EFFECTS
+    from spline_model.effects.registry import REGISTRY as REGISTRY
     from spline_model.errors import ConvergenceError as ConvergenceError
     from spline_model.errors import InvalidParameter as InvalidParameter
     from spline_model.held import HeldPivot as HeldPivot
     from spline_model.mechanism import Mechanism as Mechanism
+    from spline_model.mechanism import compliant_mechanism as compliant_mechanism
     from spline_model.modes import natural_frequencies as natural_frequencies
+    from spline_model.pivot import Pivot as Pivot
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
+    from spline_model.pivot import swinging_slide_stiffness as swinging_slide_stiffness
     from spline_model.section_forces import moving_fields as moving_fields
     from spline_model.section_forces import static_fields as static_fields
     from spline_model.sensitivity.solve import sensitivities as sensitivities
+    from spline_model.sequential_impulse import impulse_solver as impulse_solver
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
+    from spline_model.statics import solve_loads as solve_loads
     from spline_model.statics import solve_mechanism as solve_mechanism
     from spline_model.statics import solve_statics as solve_statics
 
@@ -38,22 +47,31 @@ _HOMES = {
     "BodyDesign": "design",
     "ConvergenceError": "errors",
     "DEFAULT_EFFECTS": "effects.registry",
+    "DrivenDisplacement": "effects.boundary",
+    "DrivenRotation": "effects.boundary",
     "HeldPivot": "held",
     "InvalidParameter": "errors",
     "Mechanism": "mechanism",
+    "Pivot": "pivot",
+    "REGISTRY": "effects.registry",
     "Status": "solution",
     "StripDesign": "design",
+    "compliant_mechanism": "mechanism",
     "cross_axis_pivot": "pivot",
+    "impulse_solver": "sequential_impulse",
     "moving_fields": "section_forces",
     "natural_frequencies": "modes",
+    "plate_factors": "effects.plate",
     "sensitivities": "sensitivity.solve",
     "solve_impulses": "sequential_impulse",
+    "solve_loads": "statics",
     "solve_many": "batch",
     "solve_mechanism": "statics",
     "solve_motion": "dynamics",
     "solve_release": "dynamics",
     "solve_statics": "statics",
     "static_fields": "section_forces",
+    "swinging_slide_stiffness": "pivot",
 }
 
 

@@ -28,7 +28,7 @@ from spline_model.scene import Body, Effect, Scene, Strip
 HERE = (0.0, 0.0)
 """Displacement of what is held in place [m]."""
 
-__all__ = ["BodyDesign", "Mechanism", "StripDesign", "mechanism"]
+__all__ = ["BodyDesign", "Mechanism", "StripDesign", "compliant_mechanism"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,7 +52,7 @@ class Mechanism:
     def with_discretisation(self, **changes: Any) -> Self:
         """The same mechanism with other keywords of ``Discretisation``."""
         grid = self.design.discretisation
-        made = mechanism(
+        made = compliant_mechanism(
             strips=self.design.strips,
             bodies=self.design.bodies,
             effects=self.effects,
@@ -114,7 +114,7 @@ class Mechanism:
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
 
-def mechanism(
+def compliant_mechanism(
     *,
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),

@@ -20,7 +20,7 @@ from spline_model.design import (
 )
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_positive
-from spline_model.mechanism import Mechanism, mechanism
+from spline_model.mechanism import Mechanism, compliant_mechanism
 
 __all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "swinging_slide_stiffness"]
 
@@ -141,7 +141,9 @@ def cross_axis_pivot(
         )
         for name, (start, end) in zip(STRIPS, points, strict=True)
     ]
-    made = mechanism(strips=strips, bodies=[body], effects=effects, parameters=parameters, **described)
+    made = compliant_mechanism(
+        strips=strips, bodies=[body], effects=effects, parameters=parameters, **described
+    )
     return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
 
 

@@ -13,15 +13,18 @@ A gate is a table of ``gates.toml``, the only place where accuracy limits are wr
     parts = { model = 4e-7, discretisation = 1e-7 }  # optional: what the limit is made of ...
     factor = 2.0            # ... and the allowance on their sum, limit <= factor * sum(parts)
 
-A test calls :func:`check` with its error, and once more with the setting :func:`teeth` gives, expecting the
-refusal.
+A test calls :func:`hold` with its error as a function of the setting: the gate passes that of the defaults
+and refuses that of the setting :func:`teeth` gives.
 """
 
 import math
 import tomllib
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 PATH = Path(__file__).with_name("gates.toml")
 
@@ -88,3 +91,10 @@ def check(name: str, error: float) -> None:
         f"gate {name}: error {value:.6g} [{entry['unit']}] {verdict}"
         f" (limit {bound:.3g}, against {entry['against']}, last measured {float(entry['measured']):.3g})"
     )
+
+
+def hold(name: str, error: Callable[..., float]) -> None:
+    """Hold an error against its gate, and see the gate refuse the error of the coarser setting."""
+    check(name, error())
+    with pytest.raises(AssertionError, match=r"x the gate|is not a finite number"):
+        check(name, error(**teeth(name)))

@@ -135,7 +135,7 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
             modelled = model.pivot.cross_axis_pivot(**design.pivot_parameters(), **scene, **keywords)
         else:
             parts = design.mechanism_parameters()
-            modelled = model.mechanism.mechanism(
+            modelled = model.mechanism.compliant_mechanism(
                 strips=[model.mechanism.StripDesign(**strip) for strip in parts["strips"]],
                 bodies=[model.mechanism.BodyDesign(**body) for body in parts["bodies"]],
                 **scene,

@@ -1,4 +1,8 @@
-"""Paths of frames in arc length, by either model: critical points, and branches that cross there."""
+"""Paths of frames by either model: critical points, and branches that cross there.
+
+The spline follows them in arc length. The elements raise the load to its limit, and beyond it lead the loaded
+body along the force, as far as the displacement grows.
+"""
 
 import math
 from collections import Counter
@@ -8,16 +12,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
-from fe_reference.arc_length import ArcPath, follow_arc
 from fe_reference.control import Control, equilibrate
 from fe_reference.effects import DrivenDisplacement
-from fe_reference.errors import ConvergenceError
 from fe_reference.loads import full_load
 from fe_reference.model import Model
-from fe_reference.path import follow
+from fe_reference.path import Path, follow
 from fe_reference.response import respond
-from fe_reference.structure import structure_of
+from fe_reference.structure import Structure, structure_of
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.errors import BadInput
@@ -25,6 +28,10 @@ from studies.kinds import Array
 from studies.published.case import Frame
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
+#: Increments of elements over those of a frame where a column bends. Splines take the steps that curves need.
+FINER = 20
+#: Part of the displacement at a limit load by which a body is led on, and how often at most.
+PART, STEPS = 0.1, 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,15 +90,11 @@ def arc_of(frame: Frame, settings: Settings, *, follow_branch: bool = False) -> 
         return _of_spline(frame, settings, "follow" if follow_branch else "primary")
     leant = follow_branch and not frame.tilt
     model: Model = put(frame.aside() if leant else frame.design, settings).modelled
-    control, message = _led(model, frame), ""
+    control = _led(model, frame)
     if follow_branch and frame.tilt:
-        path, message = _let_turn(model, frame, control)
-    else:
-        try:
-            path = follow_arc(control, increments=frame.design.increments)
-        except ConvergenceError as stop:
-            path, message = stop.solution, str(stop)
-    return _of_elements(model, frame, path, message)
+        return _of_elements(model, frame, _let_turn(model, frame, control))
+    increments = frame.design.increments * (FINER if follow_branch else 1)
+    return _of_elements(model, frame, follow([control], increments))
 
 
 def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
@@ -140,11 +143,11 @@ def _led(model: Model, frame: Frame) -> Control:
     return Control(structure=structure, held=held, values=values, load=full_load(structure))
 
 
-def _let_turn(model: Model, frame: Frame, control: Control) -> tuple[ArcPath, str]:
-    """Return the state at load factor 1 that is found from a tilted body, and why it was not reached.
+def _let_turn(model: Model, frame: Frame, control: Control) -> Path:
+    """Return the path whose one state, at load factor 1, is found from a tilted body, or why there is none.
 
     The body is turned, then led to its displacement while it is turned, then let turn. So a branch is reached
-    that the path from rest crosses; the path has this one state.
+    that the path from rest crosses.
     """
     turn = structure_of(model).body_slice(model.body_index(frame.body)).stop - 1
     held = np.append(control.held, turn)
@@ -157,22 +160,84 @@ def _let_turn(model: Model, frame: Frame, control: Control) -> tuple[ArcPath, st
     before = follow(legs, frame.design.increments)
     outcome = equilibrate(control, before.states[-1].y, control.span[1], Counter())
     found = before.states[-1] if outcome.failure else respond(control, outcome)
-    return ArcPath(states=(found,)), before.message or outcome.failure
+    return Path(control=control, states=[found], message=before.message or outcome.failure)
 
 
-def _of_elements(model: Model, frame: Frame, path: ArcPath, message: str) -> Arc:
+def _led_on(path: Path, load: Array) -> tuple[Path, Array]:
+    """Return the path on from a limit of the load: the loaded body is led along the force in its place.
+
+    It ends where the load is reached, or where the displacement has a limit as well. Beside it: the load
+    factor of its states and the rate of that in its parameter, (2, S).
+    """
+    at = int(np.abs(load).argmax())
+    held, last = np.append(path.control.held, at), path.last
+    ends = last.y[held] + np.outer((0.0, 1.0), np.where(held == at, STEPS * PART * last.y[at], 0.0))
+    on = Path(control=replace(path.control, held=held, values=ends, load=None))
+    on.begin(last.y)
+    unit = load[at] * on.control.slope[-1]
+    for k in range(1, STEPS + 1):
+        if not on.advance(k / STEPS) or on.states[-1].conjugate >= unit:
+            break
+    return on, np.array([(state.conjugate, state.slope) for state in on.states]).T / unit
+
+
+def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
+    """Return the states of a path, and those on from the limit of its load if that is what stopped it."""
     structure = structure_of(model)
     at, rest = structure.body_slice(model.body_index(frame.body)), np.array([*frame.rest, 0.0])
+    parameter = [state.parameter for state in path.states]
+    place = rest + np.array([state.y[at] for state in path.states])
     critical = tuple(
-        _Critical(kind=point.kind, load=frame.load * point.parameter, place=rest + point.y[at])
+        _Critical(
+            kind=point.kind,
+            load=frame.load * point.load_factor,
+            place=np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T]),
+        )
         for point in path.critical
     )
-    return Arc(
-        load=frame.load * np.array([state.parameter for state in path.states]),
-        place=rest + np.array([state.y[at] for state in path.states]),
-        energy=np.array([sum(structure.evaluate(state.y).strain) for state in path.states]),
+    arc = Arc(
+        load=frame.load * np.array(parameter),
+        place=place,
+        energy=_stored(structure, path),
         inertia=np.array([state.inertia for state in path.states]),
         critical=critical,
-        reached=not message,
-        message=message or "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical),
+        reached=not path.message,
+        message=path.message or _told(critical),
     )
+    snaps = path.message and critical and critical[-1].kind == LIMIT
+    return _beyond(arc, frame, path, structure, at) if snaps else arc
+
+
+def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice) -> Arc:
+    """Return an arc with the states on from the limit of its load, as far as its body is led."""
+    assert path.control.load is not None
+    on, factors = _led_on(path, path.control.load)
+    if len(on.states) < 2:
+        return arc
+    load, slope = frame.load * factors
+    p, rates = [state.parameter for state in on.states], [state.rate[at] for state in on.states]
+    place = np.array([*frame.rest, 0.0]) + np.array([state.y[at] for state in on.states])
+    pulled, moved = CubicHermiteSpline(p, load, slope), CubicHermiteSpline(p, place, rates)
+    turns = pulled.derivative().roots(extrapolate=False)
+    limits = (_Critical(kind=LIMIT, load=float(pulled(turn)), place=moved(turn)) for turn in turns)
+    critical, reached = (*arc.critical[:-1], *limits), bool(load[-1] >= frame.load)
+    unstable = [state.inertia for state in on.states] + (slope < 0.0)
+    return Arc(
+        load=np.append(arc.load, load),
+        place=np.append(arc.place, place, axis=0),
+        energy=np.append(arc.energy, _stored(structure, on)),
+        inertia=np.append(arc.inertia, unstable),
+        critical=critical,
+        reached=reached,
+        message=_told(critical) if reached else f"{frame.body} is led no further than load {load[-1]:.6g}",
+    )
+
+
+def _stored(structure: Structure, path: Path) -> Array:
+    """Return the strain energy of the states of a path (S,)."""
+    return np.array([sum(structure.evaluate(state.y).strain) for state in path.states])
+
+
+def _told(critical: tuple[_Critical, ...]) -> str:
+    """Return the critical points in words."""
+    return "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical)

@@ -22,7 +22,7 @@ TABLES = Path(__file__).parent / "tables"
 DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
 LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
 CENTRE_SHIFT = "centre_shift"
-#: Asked of a path, without pins; the others of a path in arc length, or of a pivot.
+#: Asked of a path, without pins; the others of a path with its critical points, or of a pivot.
 PLACES = (DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION)
 QUANTITIES = (*PLACES, LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION, CENTRE_SHIFT)
 EQUAL, AT_MOST, AT_LEAST = "equal", "at most", "at least"
@@ -74,6 +74,7 @@ VALUE = (
     _key("values", "quantity", choice(*QUANTITIES)),
     _key("values", "at", finite("1 or deg"), optional=True),
     _key("values", "load", positive("load of the design"), optional=True),
+    _key("values", "models", _names(*MODELS), optional=True),
     _key("values", "published", finite("unit")),
     _key("values", "unit", text("the printed unit")),
     _key("values", "unit_SI", positive("SI"), attribute="scale"),
@@ -96,6 +97,7 @@ class Value:
         quantity: of `QUANTITIES`. at: which of the limit points, 1 the first; of a load or a pivot at which
             rotation [deg].
         load: times the load of the design that acts, or up to which critical points are looked for [1].
+        models: those of the problem's that are asked for it.
         published, uncertainty: in `unit`; that of the print or its reading, or of the source's own method.
         scale: what the unit is in that of the answer. bound: whether equal, or at most or least that.
         limits: largest relative difference beside the uncertainty, by kind of answer [1].
@@ -104,6 +106,7 @@ class Value:
     quantity: str
     at: float = 1.0
     load: float = 1.0
+    models: tuple[str, ...] = MODELS
     published: float
     unit: str
     scale: float

@@ -8,7 +8,7 @@ the four-bar coefficients of Jensen and Howell for cross-axis pivots; rates of c
 rates to 10 % without the strips' thickness) and the shift of the Free-Flex pivot (a chart); and the turn of
 the parallelogram's stage (of the size of its mesh's error).
 
-Answers are static paths, and paths in arc length where loads are asked.
+Answers are static paths, and paths with their critical points where loads are asked.
 """
 
 import math
@@ -148,7 +148,8 @@ def _asked() -> Iterator[tuple[str, str, str]]:
 def _compared(name: str, model: str, answer: str) -> Answer:
     """Return a row a value: as it is in print, as it was found, and whether it is met."""
     problem = published(name)
-    return {"values": [_row(name, model, answer, value) for value in problem.values]}
+    asked = (value for value in problem.values if model in value.models)
+    return {"values": [_row(name, model, answer, value) for value in asked]}
 
 
 def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:

@@ -110,7 +110,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     family.DEFAULT: {"color": BLUE},
     family.EIGHT: {"color": PURPLE, "linestyle": "", "marker": "v", "markersize": 8.0, "fillstyle": "none"},
     family.TWELVE: {"color": GREEN, "linestyle": "--"},
-    family.FE: {"color": GREY, "linestyle": "", "marker": "s", "markersize": 3.0},
+    family.FE: {"color": GREY, "linestyle": "", "marker": "s", "markersize": 3.0, "markevery": 0.03},
 }
 AXES = {
     questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]"),

@@ -163,11 +163,15 @@ def pushed_pivot(depth: float) -> Frame:
 
 
 def _outcomes_of(case: _BucklingCase) -> Answer:
-    """Return the outcomes of all models, and the reference: in closed form, or the refined spline."""
+    """Return the outcomes of all models, and the reference: in closed form, or the refined spline.
+
+    It is settled by elements, or by the value in print where they do not reach it.
+    """
     refined = case.value(case.arc(family.REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
     spread = max(_difference(case.value(case.arc(family.CHECK)), refined), _difference(refined, reference))
-    gap = _difference(case.value(case.arc(family.INDEPENDENT)), reference)
+    independent = case.value(case.arc(family.INDEPENDENT))
+    gap = _difference(case.published if math.isnan(independent) else independent, reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}

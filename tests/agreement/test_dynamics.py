@@ -6,12 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.dynamics
-import fe_reference.mechanism
-import fe_reference.modes
-import spline_model.dynamics
-import spline_model.modes
-import spline_model.pivot
+import fe_reference
+import spline_model
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -23,8 +19,8 @@ STEPS = {20: 2e-7, 40: 5e-8}
 @cache
 def elements_swing(elements):
     """Rotation of the explicit finite elements at 501 instants."""
-    pivot = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, elements=elements)
-    run = fe_reference.dynamics.solve_release(
+    pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=elements)
+    run = fe_reference.solve_release(
         pivot, start=math.pi / 2, duration=DURATION, step=STEPS[elements], samples=SAMPLES
     )
     return run.time, run.rotation
@@ -38,10 +34,10 @@ def refined_swing():
 @cache
 def spline_swing(control_points, step=2e-6, integrator="explicit", **settings):
     """Rotation of the spline at the same instants."""
-    slide = spline_model.pivot.swinging_slide_stiffness(control_points)
+    slide = spline_model.swinging_slide_stiffness(control_points)
     design = TABLE_ONE | {"control_points": control_points, "slide_stiffness": slide} | settings
-    run = spline_model.dynamics.solve_release(
-        spline_model.pivot.cross_axis_pivot(**design),
+    run = spline_model.solve_release(
+        spline_model.cross_axis_pivot(**design),
         duration=DURATION,
         step=step,
         integrator=integrator,
@@ -106,10 +102,10 @@ def test_four_consistent_control_points_swing_nearly_twice_as_fast():
 
 def mode_differences(control_points):
     """Relative differences of the first five frequencies at rest."""
-    curve = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, control_points=control_points)
-    beam = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, elements=80)
-    ours = spline_model.modes.natural_frequencies(curve, count=5).frequency
-    return np.abs(ours / fe_reference.modes.natural_frequencies(beam, count=5).frequency - 1)
+    curve = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=control_points)
+    beam = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=80)
+    ours = spline_model.natural_frequencies(curve, count=5).frequency
+    return np.abs(ours / fe_reference.natural_frequencies(beam, count=5).frequency - 1)
 
 
 def test_first_five_modes_agree():

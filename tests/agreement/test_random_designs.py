@@ -6,10 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.mechanism
-import fe_reference.statics
-import spline_model.pivot
-import spline_model.statics
+import fe_reference
+import spline_model
 from tests import gates
 
 #: Designs of a seed; the first ones are judged, the others on demand: `judged(range(COUNT))`.
@@ -59,14 +57,14 @@ def judged(numbers, **settings):
     worst, refused = 0.0, []
     for number in numbers:
         design, rotation = designs()[number]
-        pivot = spline_model.pivot.cross_axis_pivot(**design, **settings)
-        answer = spline_model.statics.solve_statics(pivot, rotation=rotation, raise_on_failure=False)
+        pivot = spline_model.cross_axis_pivot(**design, **settings)
+        answer = spline_model.solve_statics(pivot, rotation=rotation, raise_on_failure=False)
         if answer.status.value != "converged":
             refused.append(answer.message)
             continue
         fine = [
-            fe_reference.statics.solve_statics(
-                fe_reference.mechanism.cross_axis_pivot(**design, elements=count), rotation=rotation
+            fe_reference.solve_statics(
+                fe_reference.cross_axis_pivot(**design, elements=count), rotation=rotation
             )
             for count in MESHES
         ]
@@ -108,11 +106,11 @@ def stress_apart(numbers, **settings):
     worst = 0.0
     for number in numbers:
         design, rotation = designs()[number]
-        pivot = spline_model.pivot.cross_axis_pivot(**design, **settings)
-        answer = spline_model.statics.solve_statics(pivot, rotation=rotation)
+        pivot = spline_model.cross_axis_pivot(**design, **settings)
+        answer = spline_model.solve_statics(pivot, rotation=rotation)
         coarse, fine = (
-            fe_reference.statics.solve_statics(
-                fe_reference.mechanism.cross_axis_pivot(**design, elements=count), rotation=rotation
+            fe_reference.solve_statics(
+                fe_reference.cross_axis_pivot(**design, elements=count), rotation=rotation
             ).largest_stress
             for count in FINER
         )

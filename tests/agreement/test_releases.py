@@ -7,13 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.dynamics
-import fe_reference.mechanism
-import fe_reference.modes
-import spline_model.dynamics
-import spline_model.mechanism
-import spline_model.modes
-import spline_model.pivot
+import fe_reference
+import spline_model
 from studies.answers.adapters import answer_release
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
@@ -75,11 +70,11 @@ def apart(one, other, records=slice(None)):
 def released(scene, start, elements):
     """The pivot of Table 1 let go with the effects of a scene, by both models."""
     effects = scene_of(scene, STARTS[start])
-    curve = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, **effects, control_points=7)
-    beam = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, **effects, elements=elements)
+    curve = spline_model.cross_axis_pivot(**TABLE_ONE, **effects, control_points=7)
+    beam = fe_reference.cross_axis_pivot(**TABLE_ONE, **effects, elements=elements)
     run = {"start": STARTS[start], "duration": DURATION, "check": False}
-    one = spline_model.dynamics.solve_release(curve, **run, step=1e-5, records=RECORDS)
-    other = fe_reference.dynamics.solve_release(beam, **run, step=5e-7, samples=RECORDS)
+    one = spline_model.solve_release(curve, **run, step=1e-5, records=RECORDS)
+    other = fe_reference.solve_release(beam, **run, step=5e-7, samples=RECORDS)
     return one, other
 
 
@@ -122,10 +117,10 @@ def led_mode_difference(control_points):
     """Relative difference of the first modes about rest with the centre led aside, which is let go."""
     led = {LED: {"displacement": (0.5e-3, -0.5e-3)}}
     effects = {"effects": (*BASE, *led), "parameters": led}
-    curve = spline_model.pivot.cross_axis_pivot(**TABLE_ONE, **effects, control_points=control_points)
-    beam = fe_reference.mechanism.cross_axis_pivot(**TABLE_ONE, **effects, elements=40)
-    ours = spline_model.modes.natural_frequencies(curve, rotation=0.0, count=1).frequency[0]
-    theirs = fe_reference.modes.natural_frequencies(beam, rotation=0.0, count=1).frequency[0]
+    curve = spline_model.cross_axis_pivot(**TABLE_ONE, **effects, control_points=control_points)
+    beam = fe_reference.cross_axis_pivot(**TABLE_ONE, **effects, elements=40)
+    ours = spline_model.natural_frequencies(curve, rotation=0.0, count=1).frequency[0]
+    theirs = fe_reference.natural_frequencies(beam, rotation=0.0, count=1).frequency[0]
     assert theirs < 0.0
     return abs(ours / theirs - 1.0)
 
@@ -198,7 +193,7 @@ def test_force_at_a_free_tip_acts_at_the_start_as_its_history_says(start, histor
     force = {"strip": "arm", "force": (0.3, 0.1)} | ({} if history is None else {"history": history})
     ends = []
     for package, more in ((spline_model, {"control_points": 8}), (fe_reference, {"elements": 16})):
-        design = package.mechanism.mechanism(
+        design = package.compliant_mechanism(
             strips=[
                 package.mechanism.StripDesign(**strip, **FREE_TIP["section"]) for strip in FREE_TIP["strips"]
             ],

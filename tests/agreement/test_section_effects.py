@@ -7,7 +7,7 @@ import pytest
 
 import fe_reference
 import spline_model
-from spline_model.pivot import swinging_slide_stiffness
+from spline_model import swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
 

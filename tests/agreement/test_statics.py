@@ -6,10 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-import fe_reference.mechanism
-import fe_reference.statics
-import spline_model.pivot
-import spline_model.statics
+import fe_reference
+import spline_model
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -28,15 +26,15 @@ DESIGNS = {
 @cache
 def spline(design="Table 1", rotation=QUARTER, **settings):
     """Spline solution of a design."""
-    pivot = spline_model.pivot.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
-    return spline_model.statics.solve_statics(pivot, rotation=rotation)
+    pivot = spline_model.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
+    return spline_model.solve_statics(pivot, rotation=rotation)
 
 
 @cache
 def finite_elements(design="Table 1", rotation=QUARTER, **settings):
     """Finite-element solution of a design."""
-    pivot = fe_reference.mechanism.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
-    return fe_reference.statics.solve_statics(pivot, rotation=rotation)
+    pivot = fe_reference.cross_axis_pivot(**(TABLE_ONE | DESIGNS[design] | settings))
+    return fe_reference.solve_statics(pivot, rotation=rotation)
 
 
 def refined(design, name, rotation=QUARTER):
@@ -179,8 +177,8 @@ def test_derived_data_agree():
     """Requirement: both models derive EI, EA, clamps, directions and masses alike, to round-off."""
     for change in DESIGNS.values():
         design = TABLE_ONE | change
-        ours = spline_model.pivot.cross_axis_pivot(**design)
-        theirs = derived(fe_reference.mechanism.cross_axis_pivot(**design))
+        ours = spline_model.cross_axis_pivot(**design)
+        theirs = derived(fe_reference.cross_axis_pivot(**design))
         assert len(theirs) == 9
         for name in theirs:
             value = getattr(ours, name)

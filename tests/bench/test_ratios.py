@@ -5,9 +5,7 @@ import subprocess
 import sys
 from time import perf_counter
 
-from spline_model.batch import solve_many
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
+from spline_model import cross_axis_pivot, solve_many, solve_statics
 from studies.record.source import ROOT
 from tests.bench.test_counted import FIRST_SOLVE
 from tests.bench.test_speed import DESIGNS, INCREMENTS, QUARTER_TURN, designs

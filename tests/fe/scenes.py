@@ -5,9 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_reference.effects import DEFAULT_EFFECTS
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
-from fe_reference.model import Model
+from fe_reference import DEFAULT_EFFECTS, BodyDesign, Model, StripDesign, compliant_mechanism
 from tests.fe.cases import TABLE_1
 
 Parameters = Mapping[str, Mapping[str, Any]]
@@ -58,7 +56,7 @@ def free_cantilever(
     """Return a horizontal strip, clamped on the left, with a free tip."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
     given = parameters or {}
-    return mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
+    return compliant_mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
 
 
 def guide(
@@ -71,7 +69,7 @@ def guide(
     ]
     stage = BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
     given = parameters or {}
-    return mechanism(
+    return compliant_mechanism(
         strips=strips,
         bodies=[stage],
         effects=(*DEFAULT_EFFECTS, *given),
@@ -114,7 +112,7 @@ def four_bar(
         for name, centre in centres.items()
     ]
     given = parameters or {}
-    return mechanism(
+    return compliant_mechanism(
         strips=strips, bodies=bodies, effects=(*effects, *given), parameters=given, **discretisation
     )
 

@@ -5,22 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fe_reference.model import ELEMENTS
-from fe_reference.statics import solve_loads, solve_statics
+from fe_reference import ELEMENTS, solve_loads, solve_statics
 from tests import gates
-from tests.fe.cases import (
-    EI,
-    FORCE,
-    LENGTH,
-    MOMENT,
-    QUICK_ELEMENTS,
-    SECTION,
-    cantilever,
-    extrapolated,
-    hold,
-    pivot,
-)
-from tests.fe.elastica import by_elliptic_integrals, by_quadrature
+from tests.closed_forms import by_quadrature, elastica_tip
+from tests.fe.cases import EI, FORCE, LENGTH, MOMENT, QUICK_ELEMENTS, SECTION, cantilever, extrapolated, pivot
+from tests.gates import hold
 
 LOADS = (0.5, 1.0, 2.0, 5.0, 7.5, 10.0)
 
@@ -57,7 +46,7 @@ def test_reference_elastica_tends_to_elliptic_integrals() -> None:
     """Without stretch and shear the quadrature used below is the elastica in elliptic integrals."""
 
     def error(stretch: float = 0.0) -> float:
-        pairs = [(by_quadrature(p, stretch=stretch, shear=0.0), by_elliptic_integrals(p)) for p in LOADS]
+        pairs = [(by_quadrature(p, stretch=stretch, shear=0.0), elastica_tip(p)) for p in LOADS]
         return max(float(np.abs(np.subtract(*pair)).max()) for pair in pairs)
 
     hold("fe_elastica_reference", error)

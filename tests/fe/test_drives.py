@@ -1,13 +1,13 @@
-"""Drives of a motion: a body that is caught off its mass, and the books of what leads it."""
+"""Mass and drives of a body: about the common centre, caught off it, and the books of what leads it."""
 
 import numpy as np
 
-from fe_reference.dynamics import solve_motion
-from fe_reference.loads import DrivenRotation, drive_spans
+from fe_reference import DrivenRotation, Model, solve_motion
+from fe_reference.loads import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
-from fe_reference.model import Model
-from fe_reference.structure import structure_of
-from tests.fe.cases import hold, pivot
+from fe_reference.structure import Structure, structure_of
+from tests.fe.cases import LENGTH, pivot
+from tests.gates import hold
 
 
 def led_off_its_mass(elements: int = 3) -> Model:
@@ -31,6 +31,21 @@ def test_a_catch_gives_momentum_to_what_is_led_alone() -> None:
     held = span.held(structure)
     assert np.abs(momentum[held]).min() > 1e-3 * np.abs(momentum).max()
     assert np.abs(momentum[~held]).max() < 1e-13 * np.abs(momentum).max()
+
+
+def test_lumped_mass_is_diagonal_about_the_common_centre() -> None:
+    """Requirement: body and attached nodes have a constant diagonal mass about their common centre."""
+    model = pivot(crossing_ratio=0.3, centre_offset=(0.01, 0.02))
+    structure, body = about_mass_centre(structure_of(model))
+    diagonal = np.diag(body.diagonal(structure))
+
+    def error(shift: float = 0.0) -> float:
+        about = Structure(model, body.centre + shift * LENGTH)
+        y = np.random.default_rng(7).standard_normal(about.size)
+        gap = mass_matrix(about, y, "lumped").sparse().toarray() - diagonal
+        return float(np.abs(gap).max() / diagonal.max())
+
+    hold("fe_lumped_mass_diagonal", error)
 
 
 def test_books_of_a_driven_motion() -> None:

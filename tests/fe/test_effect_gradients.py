@@ -1,17 +1,35 @@
 """Every effect's force against its energy, tangent against force, damping against velocity, far from rest."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
+from fe_reference import ELEMENTS
 from fe_reference.arrays import Array
 from fe_reference.mass import about_mass_centre
-from fe_reference.model import ELEMENTS
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, hold
+from tests.fe.cases import LENGTH
 from tests.fe.scenes import PARAMETERS, SIDED_SCENE, WIDE, four_bar
-from tests.fe.test_gradients import derivative
+from tests.gates import hold
+
+#: Sixth-order central difference of a first derivative, offsets 1 to 3.
+WEIGHTS = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
+
+
+def derivative(function: Callable[[np.ndarray], np.ndarray], y: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Return d f / d y of shape (..., size) by sixth-order differences with a step for every coordinate."""
+    columns = []
+    for j, h in enumerate(step):
+        unit = np.eye(len(y))[j] * h
+        columns.append(
+            sum(
+                w / h * (function(y + k * unit) - function(y - k * unit))
+                for k, w in enumerate(WEIGHTS, start=1)
+            )
+        )
+    return np.stack(columns, axis=-1)
 
 
 def scene(element: str, about_mass: bool, wide: bool) -> Structure:

@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_reference.effects import DEFAULT_EFFECTS
-from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import BodyDesign, StripDesign, mechanism
-from fe_reference.modes import natural_frequencies
-from tests.fe.cases import EI, MOMENT, TABLE_1, hold, pivot
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    natural_frequencies,
+)
+from tests.fe.cases import EI, MOMENT, TABLE_1, pivot
 from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
+from tests.gates import hold
 
 #: A thick section, so that its rotary inertia is felt; stretching is put out of the way at the same rho A.
 THICK = SECTION | {"second_moment_of_area": SECTION["area"] * (0.02 * GUIDE) ** 2}
@@ -94,7 +99,7 @@ def test_hanging_body() -> None:
         strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, -GUIDE), tip="bob", **section)
         seen = []
         for n in elements:
-            model = mechanism(
+            model = compliant_mechanism(
                 strips=[strip],
                 bodies=[BodyDesign(name="bob", centre=(0.0, -GUIDE), mass=0.5)],
                 effects=(*MASSLESS, "gravity"),

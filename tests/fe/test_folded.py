@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_reference.model import ELEMENTS
-from fe_reference.solution import Status
-from fe_reference.statics import solve_loads
+from fe_reference import ELEMENTS, Status, solve_loads
 from tests.fe.cases import MOMENT, cantilever
 
 

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from skfem import Basis, BilinearForm, DiscreteField, Functional, LinearForm
 
+from fe_reference import ELEMENTS
 from fe_reference.actions import Actions
 from fe_reference.law import FORCES, TANGENT, elements
 from fe_reference.mass import about_mass_centre
-from fe_reference.model import ELEMENTS, rotation_matrix
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, hold
+from tests.fe.cases import LENGTH, rotation_matrix
 from tests.fe.scenes import PARAMETERS, four_bar
+from tests.gates import hold
 
 NATURAL = PARAMETERS["pre_strain"]
 #: Points that integrate an element's energy exactly: one by definition, and two of a parabola.

@@ -5,11 +5,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.model import ELEMENTS, rotation_matrix
-from fe_reference.statics import solve_loads, solve_mechanism, solve_statics
+from fe_reference import ELEMENTS, solve_loads, solve_mechanism, solve_statics
 from studies.published.case import published
-from tests.fe.cases import EI, LENGTH, QUICK_ELEMENTS, cantilever, extrapolated, hold, pivot, rotated
+from tests.fe.cases import (
+    EI,
+    LENGTH,
+    QUICK_ELEMENTS,
+    cantilever,
+    extrapolated,
+    pivot,
+    rotated,
+    rotation_matrix,
+)
 from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, four_bar, free_cantilever, guide
+from tests.gates import hold
 
 SOFT = {
     "area": 1e-3,

@@ -4,42 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-from fe_reference.errors import InvalidParameter
-from fe_reference.model import ELEMENTS, FREE, Body
-from fe_reference.modes import natural_frequencies
-from tests.fe.cases import (
-    LENGTH,
-    MOMENT,
-    SECTION,
-    TABLE_1,
-    cantilever,
-    extrapolated,
-    hold,
-    observed_order,
-    pivot,
-)
+from fe_reference import ELEMENTS, FREE, Body, InvalidParameter, natural_frequencies
+from tests.closed_forms import CANTILEVER_ROOTS, end_body_roots
+from tests.fe.cases import LENGTH, MOMENT, SECTION, TABLE_1, cantilever, extrapolated, observed_order, pivot
+from tests.gates import hold
 
 #: The paper's section with stretching put out of the way of bending, at the same EI and mass per length.
 STIFF = replace(SECTION, area=100.0 * SECTION.area, density=SECTION.density / 100.0)
 #: Frequency of z = 1 in z^2 sqrt(EI / (mu L^4)) / (2 pi) [Hz].
 UNIT = np.sqrt(STIFF.flexural_rigidity / (STIFF.linear_density * LENGTH**4)) / (2.0 * np.pi)
-CANTILEVER_ROOTS = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349, 14.1371683910])
-
-
-def end_body_roots(eta: float, zeta: float, wanted: int) -> np.ndarray:
-    """Return the first roots z = beta L with an end body of mass eta mu L and inertia zeta mu L^3."""
-
-    def equation(z: float) -> float:
-        c, s, ch, sh = np.cos(z), np.sin(z), np.cosh(z), np.sinh(z)
-        mass, inertia = eta * z * (c * sh - s * ch), -zeta * z**3 * (c * sh + s * ch)
-        return float((1.0 + c * ch + mass + inertia + eta * zeta * z**4 * (1.0 - c * ch)) / ch)
-
-    grid = np.linspace(0.1, 12.0, 2000)
-    values = [equation(z) for z in grid]
-    brackets = [(a, b) for a, b, p, q in zip(grid, grid[1:], values, values[1:], strict=False) if p * q < 0.0]
-    return np.array([brentq(equation, *bracket, xtol=1e-14) for bracket in brackets[:wanted]])
 
 
 def relative(value: np.ndarray, exact: np.ndarray) -> float:

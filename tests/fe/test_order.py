@@ -5,10 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fe_reference.model import ELEMENTS
-from fe_reference.solution import StaticSolution
-from fe_reference.statics import solve_statics
-from tests.fe.cases import SECTION, extrapolated, hold, observed_order, pivot, with_shear_factor
+from fe_reference import ELEMENTS, StaticSolution, solve_statics
+from tests.fe.cases import SECTION, extrapolated, observed_order, pivot, with_shear_factor
+from tests.gates import hold
 
 QUANTITIES = {
     "torque": lambda path: path.torque,

@@ -2,10 +2,8 @@
 
 import pytest
 
-from fe_reference import plate
-from fe_reference.errors import InvalidParameter
-from fe_reference.plate import plate_factors
-from tests.fe.cases import hold
+from fe_reference import InvalidParameter, plate, plate_factors
+from tests.gates import hold
 
 #: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
 KNOWN = [

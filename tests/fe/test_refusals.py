@@ -7,11 +7,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference.errors import ConvergenceError, InvalidParameter
-from fe_reference.mechanism import cross_axis_pivot
-from fe_reference.model import FREE, Body, Model, Section, Strip
-from fe_reference.solution import Status
-from fe_reference.statics import solve_loads, solve_statics
+from fe_reference import (
+    FREE,
+    Body,
+    ConvergenceError,
+    InvalidParameter,
+    Model,
+    Section,
+    Status,
+    Strip,
+    cross_axis_pivot,
+    solve_loads,
+    solve_statics,
+)
 from tests.fe.cases import SECTION, TABLE_1, cantilever, flat_strip, pivot
 
 BAD = [

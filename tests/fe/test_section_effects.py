@@ -3,23 +3,28 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import mpmath as mp
 import numpy as np
 import pytest
 
-from fe_reference.bending import CURL, section
-from fe_reference.effects import DEFAULT_EFFECTS
-from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
-from fe_reference.model import ELEMENTS, Model
-from fe_reference.modes import natural_frequencies
-from fe_reference.plate import plate_factors
-from fe_reference.section_forces import strip_fields
-from fe_reference.statics import solve_loads, solve_statics
-from fe_reference.structure import structure_of
-from tests.fe.cases import LENGTH, TABLE_1, extrapolated, hold, with_shear_factor
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    ELEMENTS,
+    BodyDesign,
+    InvalidParameter,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    natural_frequencies,
+    plate_factors,
+    solve_loads,
+    solve_statics,
+    strip_fields,
+)
+from tests.fe.cases import LENGTH, TABLE_1, extrapolated, with_shear_factor
 from tests.fe.scenes import BARE as BARE_SECTION
 from tests.fe.scenes import GUIDE, SIDED, WIDE, four_bar, free_cantilever, guide
+from tests.gates import hold
 
 BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
 
@@ -39,7 +44,7 @@ def to_body(
     **discretisation: Any,
 ) -> Model:
     """Return a horizontal strip from ground to a body of a mass and a moment of inertia."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), tip="body", **strip)],
         bodies=[BodyDesign(name="body", centre=(length, 0.0), mass=mass[0], moment_of_inertia=mass[1])],
         effects=(*effects, *parameters),
@@ -123,29 +128,6 @@ def test_pure_bending_flattens_a_wide_strip(element: str) -> None:
         return float(np.abs(gaps).max())
 
     hold("fe_anticlastic_table", error)
-
-
-def test_the_table_of_flattening_sections_is_its_closed_form() -> None:
-    """Energy, moment and tangent of a section are Ashwell's, from almost straight to a tight roll."""
-
-    def law(curvature: mp.mpf) -> mp.mpf:
-        x = mp.sqrt(abs(curvature))
-        left = 2 / x * (mp.cosh(x) - mp.cos(x)) / (mp.sinh(x) + mp.sin(x))
-        return curvature**2 / 2 * (1 - mp.mpf(0.09) * left)
-
-    with mp.workdps(40):
-        for curvature in np.geomspace(1e-4, 1e4, 200):
-            known = [float(mp.diff(law, mp.mpf(curvature), n)) for n in range(3)]
-            np.testing.assert_allclose(section(CURL, 1.0, 0.09, 1.0, curvature), known, rtol=2e-15)
-
-
-def test_no_section_is_stiffer_than_one_that_is_held_flat() -> None:
-    """Clamp and curvature together leave a moment between those of EI and of EI / (1 - nu^2)."""
-    for g in (0.0, 0.4, 1.0):
-        for curvature in (1e-6, 0.3, 1.0, 30.0, 1e4):
-            _, moment, tangent = section(CURL, 1.0, 0.09 * g, 1.0, curvature)
-            assert 0.91 * curvature <= moment <= (1.0 + 1e-15) * curvature
-            assert 0.91 <= tangent <= 1.0 + 0.09 * 0.1  # the tangent overshoots while the section flattens
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
@@ -267,7 +249,7 @@ def test_frequencies_are_those_of_the_flexibility(element: str) -> None:
             "root_compliance: got {}, expected a value of root [name]",
         ),
         (
-            lambda: structure_of(guide({"clamped_width": {}}, section=WIDE | {"width": 10.0})),
+            lambda: solve_loads(guide({"clamped_width": {}}, section=WIDE | {"width": 10.0})),
             "clamped_width: got 100.0, expected a width over length up to 30 [1]",
         ),
     ],

@@ -1,8 +1,8 @@
 """The shear-deformable element against Timoshenko's cantilever, whose shear rigidity is written out here."""
 
-from fe_reference.mechanism import StripDesign, mechanism
-from fe_reference.statics import solve_mechanism
-from tests.fe.cases import extrapolated, hold
+from fe_reference import StripDesign, compliant_mechanism, solve_mechanism
+from tests.fe.cases import extrapolated
+from tests.gates import hold
 
 LENGTH, DEPTH, WIDTH, YOUNGS_MODULUS, POISSON_RATIO, FORCE = 0.05, 0.01, 0.008, 2e9, 0.3, 1e-3
 
@@ -20,7 +20,7 @@ def deflection(elements: int) -> float:
         poisson_ratio=POISSON_RATIO,
         density=1.0,
     )
-    model = mechanism(
+    model = compliant_mechanism(
         strips=[strip],
         effects=("bending", "stretching", "tip_force"),
         parameters={"tip_force": {"strip": "strip", "force": (0.0, FORCE)}},

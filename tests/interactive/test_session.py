@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
+from spline_model import cross_axis_pivot, solve_statics
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, total, turned

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.pivot import cross_axis_pivot
+from spline_model import cross_axis_pivot, sensitivities, solve_statics
 from spline_model.sensitivity.parameters import Section
-from spline_model.sensitivity.solve import Sensitivities, sensitivities
-from spline_model.statics import solve_statics
+from spline_model.sensitivity.solve import Sensitivities
 from tests.table_one import TABLE_ONE
 
 QUANTITIES = (

@@ -1,8 +1,6 @@
 """Table 1 with any of the registered effects, and a free strip where one needs it."""
 
-from spline_model.effects.registry import DEFAULT_EFFECTS, REGISTRY
-from spline_model.mechanism import StripDesign, mechanism
-from spline_model.pivot import cross_axis_pivot
+from spline_model import DEFAULT_EFFECTS, REGISTRY, StripDesign, compliant_mechanism, cross_axis_pivot
 from tests.table_one import SIX
 
 #: Parameters with which each registered effect is tried; a new effect without its own is tried without.
@@ -43,7 +41,7 @@ def scene_with(*names, parameters=None, **settings):
         )
     given = PARAMETERS if parameters is None else parameters
     effects = tuple(n for n in DEFAULT_EFFECTS if not (n == "stretching" and "inextensible" in names))
-    return mechanism(
+    return compliant_mechanism(
         strips=strips,
         bodies=pivot.bodies,
         effects=effects + names,

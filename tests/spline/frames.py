@@ -3,8 +3,7 @@
 import itertools
 import math
 
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.pivot import Pivot
+from spline_model import BodyDesign, Pivot, StripDesign, compliant_mechanism
 from tests.table_one import TABLE_ONE
 
 STATIC = ("bending", "stretching")
@@ -17,7 +16,7 @@ def toggle(*, rise=0.386, load=60.0, **discretisation):
     """
     half = math.sqrt(12.943**2 - rise**2)
     section = {"area": 1.885e6, "second_moment_of_area": 9.27e3, "youngs_modulus": 1.0, "density": 1.0}
-    return mechanism(
+    return compliant_mechanism(
         strips=[
             StripDesign(name="left", start=(-half, 0.0), end=(0.0, rise), tip="apex", **section),
             StripDesign(name="right", start=(half, 0.0), end=(0.0, rise), tip="apex", **section),
@@ -42,7 +41,7 @@ def lees_frame(*, load=3.0, area=6.0, **discretisation):
         StripDesign(name=f"{a}_{b}", start=joints[a], end=joints[b], root=a, tip=b, **section)
         for a, b in itertools.pairwise(names)
     ]
-    frame = mechanism(
+    frame = compliant_mechanism(
         strips=strips,
         bodies=[BodyDesign(name=name, centre=place) for name, place in joints.items()],
         effects=(*STATIC, "applied_force"),
@@ -58,7 +57,7 @@ def column(*, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation)
     slenderness: L sqrt(EA / EI); side: part of the load that acts across, the imperfection.
     """
     section = {"area": slenderness**2, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
-    return mechanism(
+    return compliant_mechanism(
         strips=[StripDesign(name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", **section)],
         bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
         effects=(*effects, "applied_force"),
@@ -82,5 +81,7 @@ def opposed(*, offset=0.01, **discretisation):
         for i, (start, end) in enumerate(ends, start=1)
     ]
     body = BodyDesign(name="body", centre=(0.0, 0.0))
-    made = mechanism(strips=strips, bodies=[body], effects=STATIC, **({"control_points": 6} | discretisation))
+    made = compliant_mechanism(
+        strips=strips, bodies=[body], effects=STATIC, **({"control_points": 6} | discretisation)
+    )
     return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)

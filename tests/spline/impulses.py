@@ -2,7 +2,7 @@
 
 import math
 
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
+from spline_model import cross_axis_pivot, swinging_slide_stiffness
 from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2

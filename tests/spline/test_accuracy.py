@@ -1,18 +1,21 @@
 """Accuracy on request: control points until the estimated error is below it."""
 
 import math
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    Status,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+)
 from spline_model import accuracy as accuracies
 from spline_model.accuracy import distances
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.pivot import cross_axis_pivot
-from spline_model.solution import Status
-from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -138,16 +141,6 @@ def test_answer_is_that_of_the_chosen_control_points(settings):
     assert plain.estimate is None
 
 
-def test_both_methods_choose_alike():
-    """Requirement: the compiled path and the multiplier path give the same estimate, to a tenth."""
-    condensed, multipliers = (
-        solve_statics(pivot(), rotation=QUARTER, increments=8, accuracy=1e-5, method=method).estimate
-        for method in ("condensed", "multipliers")
-    )
-    assert condensed.trials == multipliers.trials
-    assert condensed.largest == pytest.approx(multipliers.largest, rel=0.1)
-
-
 @pytest.mark.parametrize(
     ("settings", "more"),
     [
@@ -221,16 +214,3 @@ def test_choices_that_contradict_are_refused(choice):
     (name,) = choice
     with pytest.raises(InvalidParameter, match=f"{name}: got {choice[name]}, expected none beside accuracy"):
         solve_statics(pivot(control_points=6, **choice), rotation=QUARTER, accuracy=1e-3)
-
-
-def test_other_discretisation_keeps_the_scene():
-    """Requirement: a mechanism with more control points has the same effects with the same parameters."""
-    scene = {
-        "effects": ("bending", "stretching", "gravity", "body_inertia"),
-        "parameters": {"gravity": {"acceleration": (0.0, -3.0)}},
-    }
-    given = pivot(**scene)
-    other = given.with_discretisation(control_points=7)
-    assert other.design.discretisation == replace(given.design.discretisation, control_points=7)
-    assert (other.effects, other.parameters) == (given.effects, given.parameters)
-    assert len(other.scene.strips[0].control_points) == 7

@@ -3,13 +3,18 @@
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
-from spline_model.dynamics import solve_motion
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.sequential_impulse import impulse_solver
-from spline_model.statics import solve_mechanism, solve_statics
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    impulse_solver,
+    solve_many,
+    solve_mechanism,
+    solve_motion,
+    solve_statics,
+)
 from spline_model.strip import two_states
 from spline_model.strip.laws import curl_factors
 from spline_model.strip.two_states import mean_moment
@@ -35,7 +40,7 @@ def rolled(flatness, effects=(*DEFAULT_EFFECTS, "anticlastic"), **settings):
         name="strip", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", youngs_modulus=2e11, density=1.0, **sides
     )
     tip = BodyDesign(name="tip", centre=(1.0, 0.0))
-    made = mechanism(strips=[strip], bodies=[tip], effects=effects, **settings)
+    made = compliant_mechanism(strips=[strip], bodies=[tip], effects=effects, **settings)
     return made, solve_mechanism(made, rotation=0.5, increments=4)
 
 

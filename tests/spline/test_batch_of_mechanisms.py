@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import Mechanism, mechanism
-from spline_model.statics import solve_mechanism
+from spline_model import InvalidParameter, Mechanism, compliant_mechanism, solve_many, solve_mechanism
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
@@ -46,7 +43,7 @@ def rebuilt(given: Mechanism, i: int) -> Mechanism:
         replace(b, centre=(VALUES["coupler.centre_x"][i], b.centre[1])) if b.name == "coupler" else b
         for b in given.design.bodies
     ]
-    return mechanism(
+    return compliant_mechanism(
         strips=strips, bodies=bodies, effects=given.effects, parameters=given.parameters, control_points=6
     )
 

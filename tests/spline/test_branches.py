@@ -5,10 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_mechanism, solve_statics
+from spline_model import (
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+)
 from tests import gates
 from tests.spline.frames import column, toggle
 from tests.table_one import TABLE_ONE
@@ -28,7 +33,7 @@ HEAVY_TIPS = {3.0: -71.307634279, 5.0: -124.497920896}  # deg, by weight in EI/L
 
 def one_strip(effects, parameters, *, end=(LENGTH, 0.0), centre=None, mass=0.0, **settings):
     """A straight strip of 0.1 m x 0.5 mm, clamped, with a body at its tip."""
-    return mechanism(
+    return compliant_mechanism(
         strips=[StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **SECTION)],
         bodies=[BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=1e-6)],
         effects=("bending", "stretching", *effects),
@@ -155,7 +160,7 @@ def test_a_mirrored_column_sinks_to_the_other_side():
 def test_weight_beyond_a_limit_point_is_refused_there(control_points):
     """Requirement: a toggle of twice the weight that it bears is refused where it snaps, at 56.5 % of it."""
     made = toggle(control_points=control_points)
-    heavy_apex = mechanism(
+    heavy_apex = compliant_mechanism(
         strips=[replace_density(strip) for strip in made.design.strips],
         bodies=[BodyDesign(name="apex", centre=made.design.bodies[0].centre, mass=60.0)],
         effects=("bending", "stretching", "gravity"),

@@ -3,13 +3,19 @@
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
-from spline_model.effects.plate import plate_factors, profile_of
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_mechanism, solve_statics
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    plate_factors,
+    solve_many,
+    solve_mechanism,
+    solve_statics,
+)
+from spline_model.effects.plate import profile_of
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -41,7 +47,9 @@ def guide(width, thickness=1e-5, **settings):
         StripDesign(name=f"strip_{i}", start=(0.0, y), end=(1.0, y), tip="stage", **section)
         for i, y in enumerate((-0.5, 0.5))
     ]
-    return mechanism(strips=strips, bodies=[BodyDesign(name="stage", centre=(1.0, 0.0))], **settings)
+    return compliant_mechanism(
+        strips=strips, bodies=[BodyDesign(name="stage", centre=(1.0, 0.0))], **settings
+    )
 
 
 def test_width_and_thickness_stand_for_area_and_second_moment():
@@ -170,7 +178,7 @@ def test_strips_without_a_clamped_width_are_refused(changed, effects, message):
     given = {"name": "strip_0", "start": (0.0, 0.0), "end": (1.0, 0.0), "tip": "stage"}
     given |= {"width": 0.4, "thickness": 1e-3, "youngs_modulus": 2e11, "density": 7800.0}
     with pytest.raises(InvalidParameter) as caught:
-        mechanism(
+        compliant_mechanism(
             strips=[StripDesign(**given | changed)],
             bodies=[BodyDesign(name="stage", centre=(1.0, 0.0))],
             effects=effects,

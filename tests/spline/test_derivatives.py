@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
+from spline_model import DEFAULT_EFFECTS, cross_axis_pivot
 from spline_model.bordered import evaluate
 from spline_model.compile import compile_scene
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.pivot import cross_axis_pivot
 from spline_model.quadrature import CURVATURE, STRAIN
 from tests import gates
 from tests.table_one import SIX

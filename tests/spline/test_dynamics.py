@@ -7,18 +7,23 @@ from functools import cache
 import numpy as np
 import pytest
 
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_release,
+    swinging_slide_stiffness,
+)
 from spline_model.compile import compile_scene
-from spline_model.dynamics import INTEGRATORS, solve_release
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.modes import natural_frequencies, static_state
-from spline_model.motion import bordered, energy_consistent, generalised_alpha
+from spline_model.dynamics import INTEGRATORS
+from spline_model.modes import static_state
+from spline_model.motion import bordered, generalised_alpha
 from spline_model.motion.moves import Steps, carry
-from spline_model.motion.records import KINETIC, STRAIN
+from spline_model.motion.records import KINETIC
 from spline_model.motion.start import Start, set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.solution import Later
 from tests import gates
-from tests.spline.scenes import LENGTH, swinging
 from tests.table_one import TABLE_ONE
 
 
@@ -159,67 +164,6 @@ def test_small_swing_gate_has_teeth():
     """Requirement: a swing of some degrees differs from the linear mode."""
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("spline_small_swing", small_swing(**gates.teeth("spline_small_swing")))
-
-
-def momenta(scene, states, velocities):
-    """Linear and angular momentum about the origin at each record, shape (R, 3)."""
-    system = compile_scene(scene)
-    mass, layout = set_in_motion(system).mass, system.layout
-    p = velocities @ mass
-    q = states[:, : layout.coordinate_count]
-    body = layout.bodies["tip"]
-    points = np.r_[0:body, body : body + 2]
-    x, y, px, py = q[:, points[::2]], q[:, points[1::2]], p[:, points[::2]], p[:, points[1::2]]
-    spin = (x * py - y * px).sum(axis=1) + p[:, body + 2]
-    return np.column_stack((px.sum(axis=1), py.sum(axis=1), spin))
-
-
-def free_flight(step, steps=400):
-    """Largest change of momentum and energy in free flight, over their scale."""
-    scene = swinging(control_points=6, tip_mass=0.5, tip_inertia=0.1, clamped=False, compliance=1e-3)
-    system = compile_scene(scene)
-    motion = set_in_motion(system)
-    count = system.layout.coordinate_count
-    v = np.zeros(count)
-    body = system.layout.bodies["tip"]
-    spin = 3.0  # rad/s, about the body's centre, and a bending velocity that grows towards the free end
-    points = system.rest[:body].reshape(-1, 2) - system.rest[body : body + 2]
-    v[:body] = (np.column_stack((-points[:, 1], points[:, 0])) * spin + (0.4, -0.2)).ravel()
-    v[1:body:2] += 40.0 * (points[:, 0] / LENGTH) ** 2 * (np.arange(len(points)) < len(points) - 2)
-    v[body : body + 3] = (0.4, -0.2, spin)
-    start = Start(motion, Later(system.rest[None].copy), v)
-    run = carry(energy_consistent.Stepper(start), Steps(step, steps, 1))
-    assert not run.message
-    momentum = momenta(scene, *run.whole.both)
-    energy = run.rows[:, KINETIC] + run.rows[:, STRAIN]
-    assert run.rows[:, STRAIN].max() > 0.05 * energy[0]  # the strip does bend on its way
-    drift = np.abs(momentum - momentum[0]).max() / np.abs(momentum[0]).max()
-    return max(drift, np.abs(energy / energy[0] - 1).max())
-
-
-def test_free_flight_conserves_momentum_and_energy():
-    """Requirement: an unclamped strip with a body keeps linear and angular momentum and energy."""
-    gates.check("spline_free_flight", free_flight(step=1e-3))
-
-
-def test_free_flight_gate_has_teeth(monkeypatch):
-    """Requirement: a Newton that stops early shows in the conserved quantities."""
-    monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("spline_free_flight")["tolerance"])
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_free_flight", free_flight(step=1e-3))
-
-
-def test_initial_acceleration_is_consistent():
-    """Requirement: the first step's mean acceleration tends to the consistent one."""
-    pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=swinging_slide_stiffness(6))
-    system = compile_scene(pivot.released())
-    start = solve_release(pivot, duration=1e-6, step=1e-7)
-    motion = set_in_motion(system)
-    v = np.zeros(system.layout.coordinate_count)
-    acceleration, _ = motion.accelerated(start.states[0], v)
-    turn = motion.turns[0]
-    mean = start.velocities[1][turn] / 1e-7
-    assert abs(mean / acceleration[turn] - 1) < 1e-5  # (axial frequency x step)^2 / 12
 
 
 def test_generalised_alpha_is_that_with_multipliers():

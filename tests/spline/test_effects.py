@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_motion
-from spline_model.effects import DrivenRotation
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.motion.start import set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
-from spline_model.statics import solve_mechanism
+from spline_model import (
+    DEFAULT_EFFECTS,
+    DrivenRotation,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_motion,
+    swinging_slide_stiffness,
+)
 from tests import gates
-from tests.spline.effect_scenes import EXTRA, PARAMETERS, scene_with
-from tests.spline.steps import Step
+from tests.spline.effect_scenes import PARAMETERS, scene_with
 from tests.table_one import TABLE_ONE
 
 #: The same effects at zero: legal, and the same answer as without them.
@@ -74,25 +74,24 @@ def test_work_in_motion_is_the_change_of_energy_and_the_loss():
 
 def test_motion_balance_has_teeth(monkeypatch):
     """Requirement: a Newton that stops early shows in the balance."""
-    from spline_model.motion import energy_consistent
-
-    monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("spline_motion_balance")["tolerance"])
+    coarse = gates.teeth("spline_motion_balance")["tolerance"]
+    monkeypatch.setattr("spline_model.motion.energy_consistent.TOLERANCE", coarse)
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("spline_motion_balance", motion_balance())
 
 
-@pytest.mark.parametrize("name", EXTRA)
-def test_each_effect_has_a_consistent_step(name):
-    """Requirement: for every member of the registry Newton's correction is by the residual's derivative."""
-    scene = scene_with(name).scene
-    step = Step(scene, seed=5, size=0.02)
-    for _ in range(3):
-        gates.check("spline_step_tangent", step.tangent_error(2e-4))
-    motion = set_in_motion(compile_scene(scene))
-    eigenvalues = np.linalg.eigvalsh(motion.mass)
-    assert eigenvalues[0] > -1e-12 * eigenvalues[-1]  # inertia is never negative
-    if motion.drag.size:
-        assert np.linalg.eigvalsh(motion.drag)[0] > -1e-12 * np.abs(motion.drag).max()
+def test_pre_strained_strips_keep_their_energy():
+    """Requirement: strips whose natural strain is in the law of a point move without losing energy."""
+    pivot = cross_axis_pivot(
+        **TABLE_ONE,
+        control_points=5,
+        stretch="consistent",
+        effects=(*DEFAULT_EFFECTS, "pre_strain"),
+        parameters={"pre_strain": {"curvature": 1.0, "strain": 1e-3}},
+    )
+    run = solve_motion(pivot, start=0.5, duration=2e-3, step=5e-5, check=False)
+    energy = run.kinetic_energy + run.strain_energy
+    gates.check("spline_motion_balance", np.abs(energy / energy[0] - 1).max())
 
 
 @pytest.mark.parametrize("name", ZERO)

@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
-from spline_model.errors import InvalidParameter
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_statics
+from spline_model import InvalidParameter, cross_axis_pivot, solve_many, solve_statics
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 

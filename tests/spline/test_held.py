@@ -5,11 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.errors import InvalidParameter
-from spline_model.held import HeldPivot
-from spline_model.pivot import BODY, cross_axis_pivot
-from spline_model.statics import solve_loads, solve_statics
+from spline_model import (
+    DrivenDisplacement,
+    DrivenRotation,
+    HeldPivot,
+    InvalidParameter,
+    cross_axis_pivot,
+    solve_loads,
+    solve_statics,
+)
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 
@@ -42,8 +46,8 @@ def disagreement(pose, increments=8, slide=None, **settings):
     pivot = cross_axis_pivot(**(SIX | settings | other))
     reference, displacement = pivot, state.pose[:2] - pivot.centre
     drives = (
-        DrivenRotation(body=BODY, angle=rotation),
-        DrivenDisplacement(body=BODY, displacement=tuple(displacement)),
+        DrivenRotation(body="body", angle=rotation),
+        DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
     system, path = solve_loads(reference.with_effects(*drives), increments=increments)
     z = path.states[-1]

@@ -5,12 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.dynamics import solve_motion
-from spline_model.effects import DrivenRotation
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.pivot import BODY, swinging_slide_stiffness
-from spline_model.sequential_impulse import impulse_solver, solve_impulses
+from spline_model import (
+    BodyDesign,
+    ConvergenceError,
+    DrivenRotation,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    impulse_solver,
+    solve_impulses,
+    solve_motion,
+    swinging_slide_stiffness,
+)
 from tests import gates
 from tests.spline.impulses import POLYMER, QUARTER, pivot, total
 from tests.table_one import TABLE_ONE
@@ -36,7 +42,7 @@ DAMPED = {
 
 def pose_of(solver, state):
     """x, y and rotation of the body."""
-    place = solver.system.layout.body(BODY)
+    place = solver.system.layout.body("body")
     return state.z[place].copy()
 
 
@@ -91,7 +97,7 @@ def test_catch_reaches_a_pose_that_is_20_degrees_away(design, turn):
 def caught_swing(step):
     """Largest difference of a swing, caught and let go by a drive, to the energy-consistent integrator's."""
     chosen = pivot(control_points=4)
-    drive = DrivenRotation(body=BODY, angle=0.0, held=(1e-3, 2e-3))
+    drive = DrivenRotation(body="body", angle=0.0, held=(1e-3, 2e-3))
     options = {"start": 0.5, "drive": drive, "duration": 2.5e-3, "records": 25}
     exact = solve_motion(chosen, step=1e-6, **options)
     run = solve_impulses(chosen, step=step, **options)
@@ -126,7 +132,7 @@ def chain():
         BodyDesign(name="middle", centre=(0.09, 0.0), mass=5e-3, moment_of_inertia=2e-6),
         BodyDesign(name="end", centre=(0.19, 0.0), mass=5e-3, moment_of_inertia=2e-6),
     ]
-    return mechanism(
+    return compliant_mechanism(
         strips=strips,
         bodies=bodies,
         effects=(

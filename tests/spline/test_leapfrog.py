@@ -6,14 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from spline_model import InvalidParameter, Status, cross_axis_pivot, solve_release, swinging_slide_stiffness
 from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_release
-from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
 from spline_model.motion.explicit import Stepper
 from spline_model.motion.start import Start, set_in_motion
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
-from spline_model.solution import Later, Status
+from spline_model.solution import Later
 from tests import gates
 from tests.table_one import TABLE_ONE
 

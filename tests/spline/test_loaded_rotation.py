@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_from, solve_mechanism, solve_statics
+from spline_model import ConvergenceError, InvalidParameter, cross_axis_pivot, solve_mechanism, solve_statics
+from spline_model.statics import solve_from
 from tests import gates
 from tests.table_one import TABLE_ONE
 

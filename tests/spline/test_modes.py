@@ -4,71 +4,33 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-from spline_model.compile import compile_scene
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.modes import linear_modes, natural_frequencies
-from spline_model.pivot import cross_axis_pivot
+from spline_model import InvalidParameter, cross_axis_pivot, natural_frequencies
 from tests import gates
-from tests.spline.scenes import LENGTH, RIGIDITY, swinging
+from tests.closed_forms import CANTILEVER_ROOTS, end_body_roots
+from tests.spline.scenes import LENGTH, RIGIDITY, cantilever
 from tests.table_one import SIX, TABLE_ONE
 
 
-def roots(equation, count):
-    """First positive roots of an equation in z = beta L."""
-    grid = np.linspace(0.05, 3.2 * count, 400 * count)
-    values = [equation(z) for z in grid]
-    found = [
-        brentq(equation, a, b, xtol=1e-14)
-        for a, b, fa, fb in zip(grid, grid[1:], values, values[1:], strict=False)
-        if fa * fb < 0
-    ]
-    return np.array(found[:count])
-
-
-def cantilever_equation(z):
-    """Clamped-free beam, over cosh: 1/cosh + cos."""
-    return 1 / math.cosh(z) + math.cos(z)
-
-
-def end_body_equation(mass, inertia):
-    """Cantilever with a tip mass [mu L] and a tip inertia [mu L^3]."""
-
-    def equation(z):
-        c, s, ch, sh = math.cos(z), math.sin(z), math.cosh(z), math.sinh(z)
-        return (
-            1
-            + c * ch
-            + mass * z * (c * sh - s * ch)
-            - inertia * z**3 * (c * sh + s * ch)
-            + mass * inertia * z**4 * (1 - c * ch)
-        ) / ch
-
-    return equation
-
-
-def frequencies(scene, count):
+def frequencies(count, *effects, **made):
     """First circular frequencies in sqrt(EI/mu)/L^2."""
-    system = compile_scene(scene)
-    squares = linear_modes(system, system.rest, system.mass)[0]
-    return np.sqrt(squares[:count] / RIGIDITY) * LENGTH**2
+    modes = natural_frequencies(cantilever("strip_inertia", *effects, **made), count=count)
+    return 2 * math.pi * modes.frequency / np.sqrt(RIGIDITY) * LENGTH**2
 
 
 def cantilever_error(control_points):
     """Largest relative error of the first four cantilever frequencies."""
-    exact = roots(cantilever_equation, 4) ** 2
-    return np.abs(frequencies(swinging(control_points=control_points), 4) / exact - 1).max()
+    exact = CANTILEVER_ROOTS[:4] ** 2
+    return np.abs(frequencies(4, control_points=control_points) / exact - 1).max()
 
 
 def end_body_error(control_points):
     """Largest relative error of the first three frequencies with a heavy and with an extended end body."""
     errors = []
-    for mass, inertia in ((1.0, 1e-9), (1.0, 0.1), (0.2, 0.5)):
-        scene = swinging(control_points=control_points, tip_mass=mass, tip_inertia=inertia)
-        exact = roots(end_body_equation(mass, inertia), 3) ** 2
-        errors.append(np.abs(frequencies(scene, 3) / exact - 1).max())
+    for tip in ((1.0, 1e-9), (1.0, 0.1), (0.2, 0.5)):
+        exact = end_body_roots(*tip, 3) ** 2
+        found = frequencies(3, "body_inertia", tip=tip, control_points=control_points)
+        errors.append(np.abs(found / exact - 1).max())
     return max(errors)
 
 
@@ -88,13 +50,6 @@ def test_frequency_gates_have_teeth(gate):
         gates.check(gate, CHECKS[gate](**gates.teeth(gate)))
 
 
-def test_published_roots():
-    """Requirement: the equations themselves have the published roots."""
-    assert np.abs(roots(cantilever_equation, 2) - (1.8751040687, 4.6940911330)).max() < 1e-10
-    assert abs(roots(end_body_equation(1.0, 1e-12), 1)[0] - 1.24792) < 5e-6
-    assert abs(roots(end_body_equation(1.0, 0.1), 1)[0] - 1.19567) < 5e-6
-
-
 def test_modes_about_a_bent_state():
     """Requirement: held or released, about rest and about 90 deg, modes come sorted and with shapes."""
     pivot = cross_axis_pivot(**SIX)
@@ -107,27 +62,6 @@ def test_modes_about_a_bent_state():
     assert 70 < rest.frequency[0] < 80
     assert held.frequency[0] > 5 * bent.frequency[0]  # without the swing only the strips vibrate
     assert np.abs(held.body_shapes[:, 2]).max() < 1e-9 * np.abs(bent.body_shapes[:, 2]).max()
-
-
-@pytest.mark.parametrize(
-    "keywords",
-    [
-        {},
-        {"stretch": "inextensible"},
-        {"measure": "spatial", "effects": (*DEFAULT_EFFECTS, "gravity", "section_rotary_inertia")},
-        {"basis": "bspline", "control_points": 7, "stretch": "consistent"},
-    ],
-)
-def test_modes_of_elements_are_those_under_constraints(keywords, monkeypatch):
-    """Requirement: clamps that hold by construction or as constraints give the same modes to 1e-9."""
-    pivot = cross_axis_pivot(**SIX | keywords)
-    found = natural_frequencies(pivot, rotation=0.7, count=6)
-    monkeypatch.setattr("spline_model.modes.reduced", lambda *_, **__: None)
-    other = natural_frequencies(pivot, rotation=0.7, count=6)
-    np.testing.assert_allclose(found.frequency, other.frequency, rtol=1e-9)
-    np.testing.assert_allclose(found.slide_frequency, other.slide_frequency, rtol=1e-9)
-    scale = np.abs(other.shapes).max()
-    assert np.abs(np.abs(found.shapes) - np.abs(other.shapes)).max() < 1e-6 * scale
 
 
 def test_slide_modes_are_named_not_counted():

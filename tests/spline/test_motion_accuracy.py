@@ -6,10 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model.dynamics import solve_release
-from spline_model.errors import InvalidParameter
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
-from spline_model.solution import Status
+from spline_model import InvalidParameter, Status, cross_axis_pivot, solve_release, swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
 

@@ -5,16 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from spline_model import (
+    DEFAULT_EFFECTS,
+    InvalidParameter,
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_mechanism,
+    solve_motion,
+)
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
-from spline_model.dynamics import solve_motion
 from spline_model.effects import registry
 from spline_model.effects.base import OpenPotential
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.modes import natural_frequencies
-from spline_model.pivot import cross_axis_pivot
-from spline_model.statics import solve_mechanism
 from tests.spline.effect_scenes import scene_with
 from tests.table_one import SIX, TABLE_ONE
 

@@ -6,19 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_impulses,
+    solve_many,
+    solve_mechanism,
+    solve_motion,
+    solve_statics,
+)
 from spline_model.compile import compile_scene
 from spline_model.design import NOT_GIVEN
-from spline_model.dynamics import INTEGRATORS, solve_motion
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.modes import natural_frequencies
-from spline_model.pivot import cross_axis_pivot
+from spline_model.dynamics import INTEGRATORS
 from spline_model.reduced.model import at_rest, reduced
 from spline_model.reduced.states import whole_tangents
-from spline_model.sequential_impulse import solve_impulses
-from spline_model.statics import solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 
@@ -55,7 +61,7 @@ def test_roots_turn_by_their_moment_at_any_angle():
         width=0.1, thickness=0.05,
     )  # fmt: skip
     tip, root = BodyDesign(name="tip", centre=(1.0, 0.0)), {"root_compliance": {"root": 0.416}}
-    made = mechanism(strips=[strip], bodies=[tip], effects=ROOTS, parameters=root)
+    made = compliant_mechanism(strips=[strip], bodies=[tip], effects=ROOTS, parameters=root)
     path = solve_mechanism(made, rotation=2.0, increments=4)
     moment = strip.flexural_rigidity * 2.0 / (1.0 + 2.0 * 0.416 * 0.05)
     assert path.torque[-1] == pytest.approx(moment, rel=1e-8)
@@ -134,7 +140,7 @@ def test_a_batch_scales_the_roots():
         found = solve_many(rooted(root, **sides), given, rotation=1.2, increments=4, section_depth=0.004)
         one, other = rooted(**sides | changed).design.strips
         strips = [replace(one, end=(one.end[0], 0.061)), other]
-        made = mechanism(
+        made = compliant_mechanism(
             strips=strips, bodies=rooted().design.bodies, effects=ROOTS, parameters=GIVEN, control_points=6
         )
         path = solve_mechanism(made, rotation=1.2, increments=4)

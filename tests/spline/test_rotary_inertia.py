@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from spline_model import StripDesign, compliant_mechanism
 from spline_model.compile import compile_scene
-from spline_model.mechanism import StripDesign, mechanism
 
 SECTION = {"area": 5e-5, "second_moment_of_area": 1e-10, "youngs_modulus": 2e9, "density": 1200.0}
 
@@ -12,7 +12,9 @@ SECTION = {"area": 5e-5, "second_moment_of_area": 1e-10, "youngs_modulus": 2e9, 
 def kinetic_energy(rise, *effects, chord=0.1):
     """Twice the kinetic energy of a strip that turns rigidly with 1 rad/s about its root [kg m^2]."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(chord, 0.0), rise=rise, tip=None, **SECTION)
-    scene = mechanism(strips=[strip], effects=("bending", "stretching", *effects), control_points=12).scene
+    scene = compliant_mechanism(
+        strips=[strip], effects=("bending", "stretching", *effects), control_points=12
+    ).scene
     system = compile_scene(scene)
     points = system.rest[system.layout.strip("strip")].reshape(-1, 2)
     velocity = np.zeros(system.layout.coordinate_count)

@@ -6,11 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from spline_model.errors import InvalidParameter
-from spline_model.pivot import cross_axis_pivot
+from spline_model import InvalidParameter, cross_axis_pivot, sensitivities, solve_statics
 from spline_model.sensitivity.parameters import KEYWORDS, PARAMETERS
-from spline_model.sensitivity.solve import sensitivities
-from spline_model.statics import solve_statics
 from tests import gates
 from tests.spline.differences import (
     QUANTITIES,

@@ -6,9 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.sensitivity.solve import sensitivities
-from spline_model.statics import solve_mechanism
+from spline_model import BodyDesign, StripDesign, compliant_mechanism, sensitivities, solve_mechanism
 from tests import gates
 
 STEEL = {
@@ -39,7 +37,7 @@ STATIONS = np.linspace(0.0, 1.0, 5)
 
 def solved(strips, bodies, rotation, grid, parameters=("area",)):
     """Sensitivities of the chain of three strips with a whisker."""
-    made = mechanism(
+    made = compliant_mechanism(
         strips=strips, bodies=bodies, effects=("bending", "stretching", *LOADS), parameters=LOADS, **grid
     )
     path = solve_mechanism(made, body="b", rotation=rotation, increments=3)

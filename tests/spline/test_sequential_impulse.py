@@ -5,18 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from spline_model.compile import compile_scene
-from spline_model.dynamics import solve_release
-from spline_model.impulses.stepper import contraction, sweep_errors
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
-from spline_model.motion.start import set_in_motion
-from spline_model.pivot import swinging_slide_stiffness
-from spline_model.sequential_impulse import (
-    ImpulseSolver,
+from spline_model import (
+    BodyDesign,
+    StripDesign,
+    compliant_mechanism,
     impulse_solver,
     solve_impulses,
-    stability_limit,
+    solve_release,
+    swinging_slide_stiffness,
 )
+from spline_model.compile import compile_scene
+from spline_model.impulses.stepper import contraction, sweep_errors
+from spline_model.motion.start import set_in_motion
+from spline_model.sequential_impulse import ImpulseSolver, stability_limit
 from tests import gates
 from tests.spline.impulses import POLYMER, QUARTER, pivot, total
 from tests.table_one import TABLE_ONE
@@ -233,7 +234,7 @@ def tumbling(form, step):
         youngs_modulus=2e9,
         density=1100.0,
     )
-    free = mechanism(
+    free = compliant_mechanism(
         strips=[strip], bodies=bodies, control_points=5, slide_stiffness=swinging_slide_stiffness(5)
     )
     system = compile_scene(free.released())

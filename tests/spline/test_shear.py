@@ -6,15 +6,21 @@ import numpy as np
 import pytest
 
 import spline_model
-from spline_model.batch import solve_many
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    HeldPivot,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    solve_loads,
+    solve_many,
+    solve_mechanism,
+    solve_statics,
+)
 from spline_model.compile import compile_scene
-from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter
-from spline_model.held import HeldPivot
-from spline_model.mechanism import BodyDesign, StripDesign, mechanism
 from spline_model.reduced.model import at_rest, reduced
 from spline_model.reduced.states import whole_tangents
-from spline_model.statics import solve_loads, solve_mechanism, solve_statics
 from tests import gates
 from tests.table_one import SIX
 
@@ -37,7 +43,7 @@ def cantilever(force, *, control_points=8, tip=None, effects=("bending", "stretc
         if tip is None
         else {"applied_force": {"force": force}}
     )
-    return mechanism(
+    return compliant_mechanism(
         strips=[strip],
         bodies=[] if tip is None else [BodyDesign(name=tip, centre=(LENGTH, 0.0))],
         effects=(*effects, *given),

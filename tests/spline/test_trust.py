@@ -1,25 +1,24 @@
 """What a static solve refuses: wrong branches, unresolved and under-integrated strips, bad starts."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from spline_model.batch import solve_many
+from spline_model import (
+    ConvergenceError,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_many,
+    solve_mechanism,
+    solve_statics,
+)
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
-from spline_model.continuation.point import jumped, stand
-from spline_model.continuation.resolution import LARGEST_DEFECT
-from spline_model.design import Discretisation, StripDesign
-from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.mechanism import mechanism
 from spline_model.newton import solve
-from spline_model.path import follow
-from spline_model.pivot import cross_axis_pivot
-from spline_model.reduced.path import is_work, work_of
-from spline_model.statics import solve_from, solve_mechanism, solve_statics
-from tests import gates
+from spline_model.statics import solve_from
 from tests.spline.frames import opposed
 from tests.table_one import SIX, TABLE_ONE
 
@@ -45,7 +44,7 @@ def test_the_wrong_branch_of_four_control_points_is_refused(sense, method):
     answer = to(sense * 180, method=method, control_points=4)
     assert answer.status.value == "not_converged"
     assert "do not resolve the strips" in answer.message
-    assert answer.moment_defect.max() <= LARGEST_DEFECT
+    assert answer.moment_defect.max() <= 0.155
     right = to(sense * 180, control_points=12)
     torque = np.interp(sense * answer.rotation, sense * right.rotation, right.torque)
     assert np.abs(answer.torque - torque).max() < 0.05 * np.abs(torque).max()
@@ -74,46 +73,6 @@ def test_half_a_turn_either_way(control_points, degrees):
     assert answer.status.value == "converged"
     assert answer.inertia.max() == 0
     assert answer.critical_points == ()
-
-
-def hysteresis(increments=(1, 2, 5, 20, 200), **back):
-    """Largest difference between the way there and back, in torque and place, relative."""
-    worst = 0.0
-    for count in increments:
-        path = to(90, increments=count)
-        pivot = cross_axis_pivot(**(SIX | back))
-        both = solve_statics(pivot, rotation=[math.pi / 2, 0.0], increments=count)
-        there, returned = slice(0, count + 1), slice(count, None)
-        torque = np.abs(both.torque[returned][::-1] - path.torque[there]).max() / path.torque.max()
-        place = np.abs(both.centre[returned][::-1] - path.centre[there]).max() / TABLE_ONE["length"]
-        worst = max(worst, torque, place)
-    return worst
-
-
-def test_there_and_back_leaves_nothing_behind():
-    """Requirement: driven to 90 deg and back in any number of increments, it comes back the same way."""
-    gates.check("spline_hysteresis", hysteresis())
-
-
-def test_hysteresis_gate_has_teeth():
-    """Requirement: the check notices another discretisation on the way back."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_hysteresis", hysteresis((20,), **gates.teeth("spline_hysteresis")))
-
-
-def test_energy_tells_branches_apart():
-    """Requirement: two states of one path are continuous in energy, two of different branches are not."""
-    pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, gauss_points=12)
-    system = compile_scene(pivot.driven(1.0))
-    work = Followed.of(system)
-    path = follow(system, [0.9, 1.0])
-    points = [
-        stand(work, z, t, work.evaluate(z, t)) for z, t in zip(path.states, path.load_factor, strict=True)
-    ]
-    assert jumped(points[1], points[2], 0.1, system.scales.energy) == ""
-    # another equilibrium in the place of the next one
-    other = replace(points[2], potential=points[2].potential + 0.1 * system.scales.energy)
-    assert "another branch" in jumped(points[1], other, 0.1, system.scales.energy)
 
 
 GUESSES = {
@@ -229,14 +188,6 @@ def test_singular_discretisations_are_refused(settings, line):
         cross_axis_pivot(**TABLE_ONE, **settings)
 
 
-@pytest.mark.parametrize("stretch", ["mixed", "consistent", "inextensible"])
-@pytest.mark.parametrize("basis", ["bezier", "bspline"])
-def test_defaults_are_never_singular(basis, stretch):
-    """Requirement: whatever the number of control points, the defaults are regular."""
-    for control_points in (*range(4, 13), 16, 20, 24):
-        Discretisation(control_points=control_points, basis=basis, stretch=stretch)
-
-
 @pytest.mark.parametrize("axial_modes", [1, 2, 3, 4, 5])
 def test_few_and_many_axial_modes_are_followed_or_refused(axial_modes):
     """Requirement: any number of axial modes that is not refused reaches 90 deg and is nearly right."""
@@ -249,7 +200,7 @@ def weighed(control_points):
     """Moment defect of a cantilever that hangs far down under its own weight."""
     names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
     strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **{n: TABLE_ONE[n] for n in names})
-    made = mechanism(
+    made = compliant_mechanism(
         strips=[strip],
         effects=("bending", "stretching", "gravity"),
         parameters={"gravity": {"acceleration": (0.0, -3e5)}},
@@ -264,18 +215,6 @@ def test_weight_is_in_the_balance_of_moments():
     assert defects[0] < 0.1
     assert defects[1] < 0.3 * defects[0]
     assert defects[2] < 0.3 * defects[1]
-
-
-def test_the_condensed_path_checks_the_energy():
-    """Requirement: the path's check takes an energy that is the work done, and no other."""
-    answer = to(90, increments=20)
-    step, energy = answer.rotation[1], answer.bending_energy + answer.axial_energy
-    unit = TABLE_ONE["youngs_modulus"] * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["length"]
-    torque, stiffness, gained = answer.torque[9:11] / unit, answer.stiffness[9:11] / unit, np.diff(energy)[9]
-    work_of_step, counts_as_work = (getattr(each, "py_func", each) for each in (work_of, is_work))
-    work = work_of_step(step, *torque, *stiffness)
-    assert counts_as_work(gained / unit, work, step, *torque, energy[9] / unit)
-    assert not counts_as_work(1.05 * gained / unit, work, step, *torque, energy[9] / unit)
 
 
 def test_a_batch_says_what_is_stable():

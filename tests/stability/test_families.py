@@ -150,8 +150,7 @@ def test_long_run_keeps_energy():
 
 def test_long_run_gate_has_teeth(monkeypatch):
     """Requirement: a Newton that stops early drifts."""
-    from spline_model.motion import energy_consistent
-
-    monkeypatch.setattr(energy_consistent, "TOLERANCE", gates.teeth("stability_long_run")["tolerance"])
+    coarse = gates.teeth("stability_long_run")["tolerance"]
+    monkeypatch.setattr("spline_model.motion.energy_consistent.TOLERANCE", coarse)
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("stability_long_run", drift(pieces=1)[0][-1]["energy_change"])

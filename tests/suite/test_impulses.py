@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from spline_model.modes import natural_frequencies
-from spline_model.sequential_impulse import solve_impulses, stability_limit
+from spline_model import natural_frequencies, solve_impulses
+from spline_model.sequential_impulse import stability_limit
 from studies.answers.models import put
 from studies.answers.motion import Motion
 from studies.cases.problem import named_case

@@ -6,13 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from fe_reference import trajectory as of_elements
-from fe_reference.dynamics import solve_release as release_elements
-from fe_reference.errors import InvalidParameter
-from fe_reference.mechanism import cross_axis_pivot as elements_pivot
-from spline_model import content, dynamics
-from spline_model.dynamics import solve_motion, solve_release
-from spline_model.pivot import cross_axis_pivot
+from fe_reference import InvalidParameter
+from fe_reference import cross_axis_pivot as elements_pivot
+from fe_reference import solve_release as release_elements
+from spline_model import cross_axis_pivot, solve_motion, solve_release
 from studies.answers.adapters import answer_release
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -33,7 +30,7 @@ def test_motion_that_tumbles_says_that_it_is_not_resolved():
     assert motion.converged
     assert "with 8 control points the rotation differs" in motion.resolution
     assert "the motion is not resolved" in motion.resolution
-    assert motion.rotation_error > content.UNRESOLVED * np.abs(motion.rotation).max()
+    assert motion.rotation_error > 0.05 * np.abs(motion.rotation).max()
 
 
 def test_swing_of_a_light_body_says_that_it_is_not_resolved():
@@ -69,7 +66,7 @@ def test_resolved_motion_has_an_error_and_no_remark():
 
 def test_check_can_be_left_out(monkeypatch):
     """With ``check=False`` no companion runs, and there is no estimate."""
-    monkeypatch.setattr(dynamics, "with_companion", None)
+    monkeypatch.setattr("spline_model.dynamics.with_companion", None)
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3, check=False)
     assert math.isnan(motion.rotation_error)
 
@@ -102,7 +99,8 @@ def test_motion_without_explicit_steps_is_checked_too(effects):
 
 def test_companion_that_fails_is_told(monkeypatch):
     """A companion without an answer leaves the motion as it is and says that it was not checked."""
-    monkeypatch.setattr(content, "_scheme", lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
+    unstable = "spline_model.content._scheme"
+    monkeypatch.setattr(unstable, lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3)
     assert motion.status.value == "converged"
     assert motion.resolution.startswith("not checked with 8 control points: ")
@@ -125,13 +123,6 @@ def test_elements_estimate_their_error_by_a_coarser_mesh():
     assert ten.rotation_error == pytest.approx(exact, rel=0.5)
     assert ten.resolution == ""
     assert math.isnan(forty.rotation_error)
-
-
-def test_mesh_of_a_prime_number_of_elements_has_no_companion():
-    """Seven elements have no coarser mesh on their nodes: no estimate, and no remark."""
-    model, every = of_elements.coarser(elements_pivot(**TABLE_ONE, elements=7))
-    assert every == 1
-    assert len(model.strips[0].nodes) == 8
 
 
 def test_explicit_run_of_too_many_steps_is_refused_before_it_starts():

@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fe_reference import cross_axis_pivot as element_pivot
 from fe_reference import law
-from fe_reference.mechanism import cross_axis_pivot as element_pivot
 from fe_reference.structure import structure_of
+from spline_model import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.compile import compile_scene
 from spline_model.continuation.followed import Followed
 from spline_model.motion import forces
@@ -16,7 +17,6 @@ from spline_model.motion.mechanism import Moving
 from spline_model.motion.start import set_in_motion
 from spline_model.path import follow
 from spline_model.pattern import LEAST_SIZE
-from spline_model.pivot import cross_axis_pivot, swinging_slide_stiffness
 from spline_model.reduced import beside
 from spline_model.reduced.model import reduced
 from spline_model.strip import condense as strip_condense

@@ -1,15 +1,33 @@
-"""Closed forms of a cantilever under a tip force normal to its undeformed axis."""
+"""Closed forms of a cantilever, of one continuum theory for both models: its elastica and its frequencies."""
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
+#: First roots z = beta L of a clamped-free beam.
+CANTILEVER_ROOTS = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349, 14.1371683910])
 
-def by_elliptic_integrals(load: float) -> tuple[float, float, float]:
-    """Return tip rotation [rad] and tip position x/L, y/L of the inextensible elastica at P L^2/EI = `load`.
 
-    With k^2 = (1 + sin theta_L)/2, sin phi = 1/(k sqrt 2): sqrt(load) = K(k) - F(phi, k),
-    x/L = sqrt(2 sin theta_L / load), y/L = 1 - 2 (E(k) - E(phi, k)) / sqrt(load).
+def end_body_roots(eta: float, zeta: float, wanted: int) -> np.ndarray:
+    """Return the first roots z = beta L with an end body of mass eta mu L and inertia zeta mu L^3."""
+
+    def equation(z: float) -> float:
+        c, s, ch, sh = np.cos(z), np.sin(z), np.cosh(z), np.sinh(z)
+        mass, inertia = eta * z * (c * sh - s * ch), -zeta * z**3 * (c * sh + s * ch)
+        return float((1.0 + c * ch + mass + inertia + eta * zeta * z**4 * (1.0 - c * ch)) / ch)
+
+    grid = np.linspace(0.1, 12.0, 2000)
+    values = [equation(z) for z in grid]
+    brackets = [(a, b) for a, b, p, q in zip(grid, grid[1:], values, values[1:], strict=False) if p * q < 0.0]
+    return np.array([brentq(equation, *bracket, xtol=1e-14) for bracket in brackets[:wanted]])
+
+
+def elastica_tip(load: float) -> tuple[float, float, float]:
+    """Return rotation [rad] and place x/L, y/L of the tip of an inextensible cantilever under `load` EI/L^2.
+
+    The force is normal to the undeformed axis. With k^2 = (1 + sin theta_L)/2, sin phi = 1/(k sqrt 2):
+    sqrt(load) = K(k) - F(phi, k), x/L = sqrt(2 sin theta_L / load),
+    y/L = 1 - 2 (E(k) - E(phi, k)) / sqrt(load).
     Source: K. E. Bisshopp, D. C. Drucker, Q. Appl. Math. 3 (1945) 272-275.
     """
 
@@ -28,7 +46,9 @@ def by_elliptic_integrals(load: float) -> tuple[float, float, float]:
 
 
 def by_quadrature(load: float, *, stretch: float, shear: float) -> tuple[float, float, float]:
-    """Return the same for a strip that stretches and shears, EI/(EA L^2) = `stretch`, EI/(kGA L^2) = `shear`.
+    """Return rotation and place where the strip stretches and shears too.
+
+    EI/(EA L^2) = `stretch`, EI/(kGA L^2) = `shear`.
 
     Lengths in L, forces in EI/L^2. With N = P sin(theta), V = P cos(theta) the quantity
     theta'^2/2 + N + stretch N^2/2 + shear V^2/2 is constant along the strip and known at the tip, where
