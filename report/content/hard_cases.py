@@ -24,7 +24,6 @@ CRITERIA = {
     "long_run": "energy within 10⁻⁶ over 100\u202f000 steps",
     "ratios": "rotation within 5 % of the amplitude over the first swing",
     "axial_modes": "torque within 5 % of a refined spline",
-    "bad_starts": "the state of the path from rest, to 10⁻⁷",
     "fuzz": "path within 5 % of seventeen points; balance of energy to 10⁻⁸",
     "events": "rotation and energy within 5 %; balance of energy",
     "environment": "the same answer, to 10⁻¹² (frequencies 10⁻⁹)",
