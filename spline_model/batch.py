@@ -161,8 +161,6 @@ def _model(mechanism: Mechanism, body: str | None) -> Reduced:
     model = reduced(compile_scene(mechanism.driven(1.0, body)))
     if model is None:
         raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
-    if model.shears:
-        raise InvalidParameter("effects", "shear", "none in a batch: solve_mechanism has it")
     return model
 
 

@@ -62,9 +62,7 @@ class HeldPivot:
     def __init__(self, mechanism: Mechanism) -> None:
         model = _held_model(mechanism)
         if model is None:
-            expected = (
-                "one body on strips that bend and stretch, mixed form, material measure, no loads, no shear"
-            )
+            expected = "one body on strips that bend and stretch, mixed form, material measure, no loads"
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
         self._arrays = model.arrays()
@@ -182,7 +180,7 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)
-    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any() or model.shears:
+    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None

@@ -23,12 +23,11 @@ from spline_model.strip.element import (
     MODES,
     POINTS,
     PULL_AT,
-    SHEAR,
     SPRING,
 )
-from spline_model.strip.ends import by_roots, by_tip, place_points, to_ends
+from spline_model.strip.ends import by_roots, place_points, to_ends
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four, spring_of, springs_of
+from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
 
 COVECTOR, ALONG = 0, 1
 """Rows of ``Local.nodal`` that are free once the Hessian is condensed: H v, and the rates of the points."""
@@ -50,8 +49,6 @@ def to_coordinates(s, v, last, strips, local):
     to_ends(v, first, local.map[s], strips.tips[s] >= 0, strips.roots[s] >= 0, g, first, last)
     if strips.numbers[s, SPRING] > 0.0:
         by_roots(v, first, local.nodal[s, POINTS], g)
-    if strips.numbers[s, SHEAR] > 0.0:
-        by_tip(v, first, 2 * (strips.numbers[s, SPRING] > 0.0), g)
 
 
 @part()
@@ -155,8 +152,8 @@ def _add_product(s, a, points, shape, strips, local, covector):
     _product_at(*(four(lanes, 0) + h + more + (lanes[PULL_AT + 1], force) + slopes + (strain,)))
     for i in range(covector.size):
         covector[i] = 0.0
-    for i in range(springs_of(strips.numbers[s])):
-        covector[i] = spring_of(i, strips.numbers[s]) * points[i]
+    for i in range(2 * (strips.numbers[s, SPRING] > 0.0)):
+        covector[i] = strips.numbers[s, SPRING + i] * points[i]
     add_slopes(d1.shape[0], d1, d2, slopes, covector)
     for k in range(a.size):
         total = -strips.compliance[s, k] * a[k]
@@ -168,15 +165,12 @@ def _add_product(s, a, points, shape, strips, local, covector):
 @part()
 def _rates_of_end(s, e, at, rate, strips):
     """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift, turn of its body, turn of its root."""
-    body, yields = strips.tips[s] if e else strips.roots[s], strips.numbers[s, SPRING] > 0.0
+    body = strips.tips[s] if e else strips.roots[s]
     x = y = turn = bend = 0.0
     if body >= 0:
         x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
-    if yields:
+    if strips.numbers[s, SPRING] > 0.0:
         bend = rate[at + e]
-    if e and strips.numbers[s, SHEAR] > 0.0:
-        x += rate[at + 2 * yields]
-        y += rate[at + 2 * yields + 1]
     return x, y, turn, bend
 
 

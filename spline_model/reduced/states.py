@@ -15,7 +15,7 @@ from spline_model.reduced.assembly import place_of
 from spline_model.reduced.model import Reduced
 from spline_model.solution import Later
 from spline_model.strip.compiled import called, kernel
-from spline_model.strip.element import GRADIENT, LAST, POINTS, SHEAR
+from spline_model.strip.element import GRADIENT, LAST, POINTS
 from spline_model.strip.ends import place_points, to_element
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points, evaluate_residual
@@ -62,7 +62,7 @@ def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
         "reactions": answer.reaction * (model.energy / model.drive_length),
         "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
         "stiffness": answer.stiffness * model.energy,
-        "energies": _energies(model, answer) * model.energy,
+        "energies": answer.energies * model.energy,
         "done": answer.done * model.energy,
         "inertia": answer.inertia,
         "moment_defect": answer.defect,
@@ -105,21 +105,6 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
-
-
-def _energies(model: Reduced, answer: Answer) -> Array:
-    """Bending and axial energy (S, 2) of states [EI/L], where strips shear (S, 3) apart from the axial one
-    what the springs of their tips hold less the part of N: ``effects.Shear``."""
-    if not model.shears:
-        return answer.energies
-    strips, states = model.strips, len(answer.y)
-    own = answer.y[:, len(model.bodies.rest) :].reshape(states, len(strips.roots), -1)
-    spring, length = strips.numbers[:, SHEAR], strips.speed @ model.shape.weight
-    at, first = 2 * model.yields, 2 * len(model.shape.order) - 6
-    apart, force = own[..., at : at + 2], own[..., first : first + strips.split]
-    held = spring * (apart**2).sum(axis=-1) - (force**2).sum(axis=-1) / (spring * length)
-    shear, (bending, axial) = 0.5 * held.sum(axis=1), answer.energies.T
-    return np.stack((bending, axial - shear, shear), axis=1)
 
 
 def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:

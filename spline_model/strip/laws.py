@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.element import SHEAR, SPRING
 
 MATERIAL, SPATIAL = range(2)
 
@@ -166,15 +165,3 @@ def by_curve(weight, a1, b1, r, ex, ey, phi, p0, p1, p2, p3, m, m_phi, m_v, side
         bend * p2 * p3,
         bend * p3 * p3,
     )
-
-
-@part()
-def springs_of(numbers):
-    """Number of a strip's coordinates on no curve, which springs hold: turns of roots, offset of shear."""
-    return 2 * (numbers[SPRING] > 0.0) + 2 * (numbers[SHEAR] > 0.0)
-
-
-@part()
-def spring_of(i, numbers):
-    """Stiffness of the i-th of these springs."""
-    return numbers[SPRING + i] if i < 2 * (numbers[SPRING] > 0.0) else numbers[SHEAR]

@@ -39,8 +39,6 @@ from spline_model.strip.laws import (
     bending_law,
     by_curve,
     curl_law,
-    spring_of,
-    springs_of,
 )
 
 
@@ -255,14 +253,10 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
-    turns = 2 * (numbers[SPRING] > 0.0)
-    for i in range(springs_of(numbers)):
-        push = spring_of(i, numbers) * points[i]
+    for i in range(2 * (numbers[SPRING] > 0.0)):
+        push = numbers[SPRING + i] * points[i]
         gradient[i] += push
-        if i < turns:
-            bending += 0.5 * push * points[i]
-        else:
-            axial += 0.5 * push * points[i]
+        bending += 0.5 * push * points[i]
     out[0] += bending
     out[1] += axial + _add_gaps(s, a, shape, strips, local)
     out[3] = min(out[3], slowest)
@@ -274,6 +268,6 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
     evaluate_residual(s, a, moving, shape, strips, local, out)
     numbers, hessian = strips.numbers[s], local.nodal[s]
     _add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
-    for i in range(springs_of(numbers)):
-        hessian[i, i] = spring_of(i, numbers)
+    for i in range(2 * (numbers[SPRING] > 0.0)):
+        hessian[i, i] = numbers[SPRING + i]
     _add_axial(s, a.size, moving, shape, strips, local)

@@ -105,8 +105,6 @@ ROOTED = {"parameters": {"root_compliance": {"root": "monolithic"}}}
         (("clamped_width", "anticlastic"), {"basis": "bspline", "control_points": 7}),
         (("root_compliance",), ROOTED | {"stretch": "consistent"}),
         (("clamped_width", "anticlastic", "root_compliance"), ROOTED),
-        (("shear",), {}),
-        (("clamped_width", "anticlastic", "root_compliance", "shear"), ROOTED),
     ],
 )
 def test_agrees_with_differences_of_wide_strips_and_roots(effects, grid):

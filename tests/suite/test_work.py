@@ -50,7 +50,7 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
             if hasattr(called, "py_func"):
                 monkeypatch.setattr(module, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
-    for name in ("add_slopes", "curve_at", "four", "spring_of", "springs_of"):
+    for name in ("add_slopes", "curve_at", "four"):
         monkeypatch.setattr(beside, name, getattr(points, name))
     monkeypatch.setattr(beside, "_product_at", beside._product_at.py_func)
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
