@@ -163,9 +163,8 @@ def _(r: Results) -> Any:
 
 @holds("hard.environment.order")
 def _(r: Results) -> Any:
-    """the paper's choices alone depend on the order of strips, and on nothing else"""
-    wrong = r.table(GROUP + "environment", "outcomes").query("outcome == 'wrong'")
-    return wrong["case"].str.contains("reversed|first").all() and set(wrong["model"]) == {PAPER}
+    """no answer depends on threads, the compiler or the order of strips"""
+    return r.table(GROUP + "environment", "outcomes").query("outcome == 'wrong'").empty
 
 
 @holds("hard.long_run.bounded")

@@ -106,7 +106,7 @@ class StrainEnergy(Potential):
     measure: str = "material"
     gauss_points: int
 
-    def require_sum(self, measures: tuple[str, ...]) -> None:
+    def require_sum(self, *measures: str) -> None:
         """Refuse another measure, and no Gauss points."""
         require_choice("measure", self.measure, measures)
         require_count("gauss_points", self.gauss_points, 1)
@@ -146,7 +146,7 @@ class Bending(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
-        self.require_sum(MEASURES)
+        self.require_sum(*MEASURES)
 
     def rigidity_at(self, basis: SplineBasis, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that basis [N m^2]."""
@@ -210,7 +210,7 @@ class Stretching(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("axial_rigidity", self.axial_rigidity, "N")
-        self.require_sum(MEASURES)
+        self.require_sum(*MEASURES)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -221,7 +221,7 @@ class MixedStretching(StrainEnergy):
 
         V = int (N eps - 1/2 c N^2) W du,    c = 1 / EA                            [J]
 
-    is made stationary in it (W = J0, or |C'| in the spatial measure). The axial strain
+    is made stationary in it (W = J0, the material measure). The axial strain
     is thereby projected on the modes P_k, which removes the locking; c = 0 is the
     inextensible strip, with N the reaction that keeps its length.
 
@@ -242,4 +242,4 @@ class MixedStretching(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("axial_compliance", self.axial_compliance, "1/N")
-        self.require_sum(MEASURES[:2])
+        self.require_sum(MEASURES[0])

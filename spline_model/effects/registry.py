@@ -76,7 +76,6 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
             axial_compliance=part,
             modes=modes,
             natural_strain=design.pre_strain.get("strain", 0.0),
-            measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Stretching
 from spline_model.reduced.arrays import Arrays, Bodies, Space
-from spline_model.reduced.numbers import GAIN, Ends, ends_of, shape_of, strips_of
+from spline_model.reduced.numbers import GAIN, ends_of, shape_of, strips_of
 from spline_model.scene import Scene
 from spline_model.strip.element import SPRING, Local, Shape, Strips
 from spline_model.tables import steady_loads
@@ -76,10 +76,10 @@ class Reduced:
 
     def as_slender(self, *, slender: bool) -> Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
-        strips, modes = self.strips, int(self.strips.compliance.shape[1])
-        bodies = _bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
+        strips = self.strips
+        bodies = _bodies_of(self.system, slender * len(strips.roots))
         assert bodies is not None, "the mechanism is known already"
-        coupled = modes if strips.measure else slender * strips.split
+        coupled = slender * strips.split
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
 
@@ -114,7 +114,7 @@ def _reduced(system: System) -> Reduced | None:
     shape = shape_of(basis, points, bool(scene.of(RootCompliance)))
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
-    bodies = _bodies_of(system, ends, strips.outer * len(scene.strips))
+    bodies = _bodies_of(system, strips.outer * len(scene.strips))
     if bodies is None:
         return None
     return Reduced(
@@ -144,7 +144,7 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
     )
 
 
-def _bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
+def _bodies_of(system: System, outer: int) -> Bodies | None:
     """The bodies and what acts on them; None where a load acts on a clamped end."""
     scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
     length, force = system.scales.length, system.scales.energy / system.scales.length

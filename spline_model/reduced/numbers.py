@@ -134,7 +134,7 @@ def strips_of(
         roots=np.array(roots, dtype=np.int64),
         tips=np.array(tips, dtype=np.int64),
         split=split,
-        coupled=c.shape[1] if measure else outer * split,
+        coupled=outer * split,
         outer=outer,
         measure=measure,
     )

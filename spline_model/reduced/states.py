@@ -17,7 +17,6 @@ from spline_model.solution import Later
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import GRADIENT, LAST, POINTS
 from spline_model.strip.ends import place_points, to_element
-from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points, evaluate_residual
 
 Array = NDArray[np.float64]
@@ -134,15 +133,15 @@ def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
 def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
     """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
 
-    The axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    The axial energy is int (N eps - 1/2 c N^2) J0 du, whose derivatives these are.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
     a = y[at + own : at + own + modes]
     place_points(s, y[at : at + own], y, strips, local)
     evaluate_points(s, a, n, shape, strips, local, out)
-    size, h, gram = to_element(s, n, 0, strips, local), local.reduced[s], local.axial[s]
-    g, gap, width = h[LAST], gram[LAST], h.shape[1]
+    size, h, gap = to_element(s, n, 0, strips, local), local.reduced[s], local.gap[s]
+    g, width = h[LAST], h.shape[1]
     for i in range(size):
         row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
         gradient[row] += g[i]
@@ -156,12 +155,8 @@ def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessi
             hessian[axial + k, row] += h[width + k, i]
     for k in range(modes):
         gradient[axial + k] = gap[k]
-        if strips.measure == MATERIAL:
-            out[AXIAL] += a[k] * gap[k]
-            hessian[axial + k, axial + k] = -strips.compliance[s, k]
-        else:
-            for j in range(modes):
-                hessian[axial + k, axial + j] = -gram[k, j]
+        out[AXIAL] += a[k] * gap[k]
+        hessian[axial + k, axial + k] = -strips.compliance[s, k]
 
 
 def coordinates_by(model: Reduced, y: Array) -> Array:

@@ -135,14 +135,15 @@ class Elements:
 
     @cached_property
     def _stretching(self) -> tuple[Array, ...]:
-        """Axial energy, its derivatives in v, v v, N and N v."""
+        """Axial energy, its derivatives in v, v v and N."""
         strips, varied, v = self.model.strips, self.varied, self.curve.speed
         strain = strips.strain[:, None, None]
-        found = [np.zeros(())] * 5
+        found: list[Any] = [np.zeros(())] * 4
         if len(self.axial):
             parts = self._forces(self.axial)
+            force, by_n = sum(parts), mixed_law(v, varied.speed, strain)
             loss = varied.compliance[0] * parts[0] ** 2 + varied.compliance[1] * parts[1] ** 2
-            found = [*mixed_law(v, varied.speed, strain, sum(parts), loss, strips.measure)]
+            found = [force * by_n - 0.5 * loss * varied.speed, force, np.zeros(()), by_n]
         if strips.stretching.any():
             law = stretching_law(v, varied.speed, strain, varied.stretching, strips.measure)
             found[:3] = [a + b for a, b in zip(found, law, strict=False)]
@@ -191,11 +192,10 @@ class Elements:
     def _gap(self) -> Array:
         """What the axial forces do not agree with the stretch by, (K, ...)."""
         strips, by_n = self.model.strips, self._stretching[3]
-        length = self.curve.speed if strips.measure else self.varied.speed
         parts = []
         for k, force in enumerate(self._forces(self.axial)):
             modes = strips.modes[..., (slice(strips.split), slice(strips.split, None))[k]]
-            left = by_n - self.varied.compliance[k] * force * length
+            left = by_n - self.varied.compliance[k] * force * self.varied.speed
             parts.append(times_each((self.model.shape.weight[:, None] * modes).swapaxes(1, 2), left))
         return np.concatenate(parts)
 
@@ -219,14 +219,11 @@ class Elements:
         phi1, v1 = (cross1 - phi * square1) / curve.square, 0.5 * square1 / v
         cross2 = cross2 + 2.0 * _cross(by.first, by.second) - 2.0 * phi1 * square1
         phi2, v2 = (cross2 - phi * square2) / curve.square, (0.5 * square2 - v1**2) / v
-        (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _, by_nv) = self._bending, self._stretching
+        (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _) = self._bending, self._stretching
         density = m * phi2 + m_phi * phi1**2 + 2.0 * m_v * phi1 * v1 + (f + g) * v2 + (f_v + g_v) * v1**2
         if len(pull):
-            length, longer = (v, v1) if self.model.strips.measure else (varied.speed, 0.0)
-            parts = zip(varied.compliance, self._forces(self.axial), self._forces(pull), strict=True)
-            for c, force, by_force in parts:
-                density = density + by_force * (2.0 * by_nv * v1 - c * by_force * length)
-                density = density - 2.0 * c * by_force * force * longer
+            for c, by_force in zip(varied.compliance, self._forces(pull), strict=True):
+                density = density + by_force * (2.0 * v1 - c * by_force * varied.speed)
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
         return np.asarray(total.sum(axis=0) + 2.0 * self._of_roots(free))
 

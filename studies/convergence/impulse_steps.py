@@ -26,13 +26,13 @@ GROUPS: dict[str, SplineSettings] = {
     "bending": SplineSettings(control_points=5, axial_modes=4, stretch="inextensible", slide_stiffness=0.0),
     "swing": SplineSettings(control_points=4, axial_modes=3, stretch="inextensible", slide_stiffness=0.0),
 }
-#: Looks of the groups of modes.
+#: Looks of designs and groups of modes, and of few sweeps.
 LOOKS = {
-    name: Look(label=name, colour=colour, line="", hollow=True)
-    for name, colour in zip(GROUPS, (ORANGE, GREEN, GREY), strict=True)
+    (design, group): Look(label=f"{design}, {group}", colour=colour, line="", marker=marker, hollow=True)
+    for design, marker in (("Table 1", "o"), ("polymer", "s"))
+    for group, colour in zip(GROUPS, (ORANGE, GREEN, GREY), strict=True)
 }
 FEW = Look(label="with 1, 2, 3 sweeps only", colour=RED, line="", marker="x")
-MARKERS = {"Table 1": "o", "polymer": "s"}
 
 #: The paper's step [s].
 PAPER_STEP = 0.01
@@ -111,23 +111,17 @@ def _measured_limit(pivot: Pivot, predicted: float, sweeps: int | None) -> float
 def _figure(tables: Tables) -> Figure:
     """Draw measured over predicted limits."""
     rows, ends = tables["limits"], (1e-7, 1.0)
-    looks = {
-        (design, group): replace(look, label=f"{design}, {group}", marker=marker)
-        for design, marker in MARKERS.items()
-        for group, look in LOOKS.items()
-    }
-    direct = Curves(rows[rows["sweeps"] == 0], looks, by=("design", "group"), more={"markersize": 6})
     panel = Panel(
         Axis("predicted_s", "2/ω of the spectrum [s]", log=True, limits=ends),
         Axis("measured_s", "measured limit as printed [s]", log=True, limits=ends),
         (
-            direct,
+            Curves(rows[rows["sweeps"] == 0], LOOKS, by=("design", "group"), more={"markersize": 6}),
             Curves(rows[(rows["sweeps"] > 0) & (rows["ratio"] < 0.99)], FEW),
             Slope(through=ends[:1] * 2, power=1, span=ends, label="_", line="-"),
             Level(PAPER_STEP, words="the paper's 1/100 s", line=":"),
         ),
     )
-    return sheet(5.5, 4.2, [[panel]], legend=3)
+    return sheet(6.3, 4.4, [[panel]], legend=3)
 
 
 STUDY = Study(

@@ -143,7 +143,7 @@ def test_both_methods_choose_alike():
     ("settings", "more"),
     [
         ({"basis": "bspline"}, {"control_points": 35}),
-        ({"measure": "spatial"}, {"control_points": 12}),
+        ({"measure": "spatial", "stretch": "consistent"}, {"control_points": 12}),
         ({"stretch": "inextensible"}, {"control_points": 12}),
         ({"effects": ("bending", "stretching", "gravity")}, {"control_points": 12}),
     ],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from spline_model.pivot import cross_axis_pivot
-from spline_model.strip.laws import MATERIAL, SPATIAL, stretching_law
+from spline_model.strip.laws import MATERIAL, stretching_law
 from spline_model.strip.two_states import stretching_between
 from tests import gates
 from tests.spline.steps import Step
@@ -22,7 +22,6 @@ FORMS = {
         "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "root_compliance"),
         "parameters": {"root_compliance": {"root": "monolithic"}},
     },
-    "spatial consistent": {"stretch": "consistent", "measure": "spatial", "control_points": 5},
 }
 
 
@@ -70,11 +69,10 @@ def test_discrete_gradient_gate_has_teeth():
         gates.check("spline_discrete_gradient", energy_identity("mixed", at_the_end=True))
 
 
-@pytest.mark.parametrize("measure", [MATERIAL, SPATIAL])
-def test_force_of_stretching_does_the_work_of_its_energy(measure):
+def test_force_of_stretching_does_the_work_of_its_energy():
     """Between two states the force does the change of energy, natural strain among it."""
     force_of, law = (getattr(each, "py_func", each) for each in (stretching_between, stretching_law))
     v0, v1, given = 1.03, 0.98, (1.01, 0.02, 7.0)
-    force = force_of(v0, v1, *given, 0.0, measure)[0]
-    energies = [law(v, *given, measure)[0] for v in (v0, v1)]
+    force = force_of(v0, v1, *given, 0.0)[0]
+    energies = [law(v, *given, MATERIAL)[0] for v in (v0, v1)]
     assert force * (v1 - v0) == pytest.approx(energies[1] - energies[0], rel=1e-13)

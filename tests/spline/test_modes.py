@@ -109,12 +109,15 @@ def test_modes_about_a_bent_state():
     assert np.abs(held.body_shapes[:, 2]).max() < 1e-9 * np.abs(bent.body_shapes[:, 2]).max()
 
 
+SPATIAL = {"measure": "spatial", "stretch": "consistent"}
+
+
 @pytest.mark.parametrize(
     "keywords",
     [
         {},
         {"stretch": "inextensible"},
-        {"measure": "spatial", "effects": (*DEFAULT_EFFECTS, "gravity", "section_rotary_inertia")},
+        SPATIAL | {"effects": (*DEFAULT_EFFECTS, "gravity", "section_rotary_inertia")},
         {"basis": "bspline", "control_points": 7, "stretch": "consistent"},
     ],
 )

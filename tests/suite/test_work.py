@@ -58,7 +58,7 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
     counted = {name: counting(getattr(strips, name)) for name in ("along", "compliance", "numbers")}
     tables = {name: counting(getattr(shape, name)) for name in ("tables", "rule", "curve", "products")}
-    room = {name: counting(getattr(local, name)) for name in ("nodal", "axial", "lanes", "pairs")}
+    room = {name: counting(getattr(local, name)) for name in ("nodal", "gap", "lanes", "pairs")}
     shape, local = shape._replace(**tables), local._replace(**room)
     local.nodal[0, POINTS] = counting(curve.ravel())
     ones, out = counting(np.ones(modes)), counting(np.zeros(5))
