@@ -124,6 +124,7 @@ def test_energy_tells_branches_apart():
         ({"control_points": 6, "slide_stiffness": 0.0}, "4 axial modes leave 1 of 5 strains free"),
         ({"control_points": 8, "axial_modes": 2, "slide_stiffness": 0.0}, "2 axial modes leave 5 of 7"),
         ({"control_points": 8, "basis": "bspline", "gauss_points": 1}, "5 Gauss points see 5 of 6 shapes"),
+        ({"measure": "spatial"}, "stretch: got 'mixed', expected consistent, .* measure = spatial"),
     ],
     ids=str,
 )  # fmt: skip
