@@ -75,18 +75,15 @@ class _Search(Generic[Found]):
         )
 
 
-def wanted(accuracy: float | None, design: Design, start: object = None) -> float | None:
+def wanted(accuracy: float | None, design: Design) -> float | None:
     """The accuracy that control points are raised for: as asked, or DEFAULT where a design leaves them open.
 
-    None: a path goes on from a ``start`` with its control points, or has those of the design. Refused are
-    one that is no positive number, and what it chooses itself.
+    None: it has those of the design. Refused are one that is no positive number, and what it chooses itself.
     """
     grid = design.discretisation
     if accuracy is None:
-        return DEFAULT if grid.control_points is None and start is None else None
+        return DEFAULT if grid.control_points is None else None
     require_positive("accuracy", accuracy, "1")
-    if start is not None:
-        raise InvalidParameter("accuracy", accuracy, "no start beside it")
     for name in ("axial_modes", "gauss_points"):
         if getattr(grid, name) is not None:
             raise InvalidParameter(name, getattr(grid, name), "none beside accuracy, which goes with its own")
@@ -147,19 +144,17 @@ def answered(
     design: Design,
     accuracy: float | None,
     solve: Callable[[int | None, Progress | None, bool], StaticSolution],
-    start: StaticSolution | None,
     progress: Progress | None,
     increments: int,
 ) -> StaticSolution:
-    """A path with the control points that an accuracy takes, or else the design's or those of its ``start``.
+    """A path with the control points that an accuracy takes, or else the design's.
 
     solve: the answer with a number of control points, what is told of its increments, and whether sections
     are by balance, as they are where paths with several numbers are compared.
     """
-    chosen = wanted(accuracy, design, start)
+    chosen = wanted(accuracy, design)
     if chosen is None:
-        given = design.discretisation.control_points
-        return solve(start.control_points if given is None and start is not None else given, progress, False)
+        return solve(design.discretisation.control_points, progress, False)
     least = DOUBTFUL if accuracy is None else None
     solution = _solve_accurately(design, chosen, lambda points: solve(points, None, True), least)
     if progress is not None:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.design import Described, Discretisation
-from spline_model.effects import Bending, MixedStretching
+from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_count
 from spline_model.mechanism import Mechanism
@@ -132,9 +132,8 @@ def _depth(base: Mechanism, given: Given, section_depth: ArrayLike | None) -> Ar
     """Depth of each design's sections over its length (D,); (0,) where none is asked for."""
     if section_depth is None:
         return np.zeros(0)
-    plain = {"material"} == {e.measure for e in base.scene.of(Bending)} and base.scene.of(MixedStretching)
-    if not plain or any(strip.rise for strip in base.design.strips):
-        expected = "none without straight strips, the material measure and mixed stretching"
+    if not base.scene.of(MixedStretching) or any(strip.rise for strip in base.design.strips):
+        expected = "none without straight strips and mixed stretching"
         raise InvalidParameter("section_depth", section_depth, expected)
     each = one_each("section_depth", section_depth, len(given.ends), above=0.0)
     return np.asarray(each / np.abs(given.chord).max(axis=1))
@@ -161,8 +160,6 @@ def _model(mechanism: Mechanism, body: str | None) -> Reduced:
     model = reduced(compile_scene(mechanism.driven(1.0, body)))
     if model is None:
         raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
-    if model.shears:
-        raise InvalidParameter("effects", "shear", "none in a batch: solve_mechanism has it")
     return model
 
 

@@ -29,7 +29,7 @@ from spline_model.quadrature import (
     WIDTH,
 )
 from spline_model.strip.compiled import kernel, part
-from spline_model.strip.laws import MATERIAL, SPATIAL, bending_law, mixed_law, stretching_law
+from spline_model.strip.laws import SPATIAL, bending_law, mixed_law, stretching_law
 from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN, YIELDING
 
 Array = NDArray[np.float64]
@@ -115,7 +115,7 @@ def _add_point(p, z, points, gradient, hessian, work):
     for k in range(count):
         force += modes[k] * z[mode + k]
     bent, m, m_phi, m_v, f, f_phi, f_v = bend(phi, v, numbers, place[MEASURE])
-    stretched, by_v, by_vv, by_n, by_nv, by_nn = stretch(v, force, count, numbers, place[MEASURE])
+    stretched, by_v, by_vv, by_n, by_nn = stretch(v, force, count, numbers, place[MEASURE])
     _turn_curve(curve, phi, v, weight, (m, m_phi, m_v, f + by_v, f_phi, f_v + by_vv), work)
     _add_to_points(first, width, d1, d2, work, gradient, hessian)
     for k in range(count):
@@ -124,8 +124,8 @@ def _add_point(p, z, points, gradient, hessian, work):
         for j in range(count):
             hessian[row, mode + j] += share * by_nn * modes[j]
         for a in range(width):
-            _add_pair(hessian, row, first + 2 * a, share * by_nv * d1[a] * x1 / v)
-            _add_pair(hessian, row, first + 2 * a + 1, share * by_nv * d1[a] * y1 / v)
+            _add_pair(hessian, row, first + 2 * a, share * d1[a] * x1 / v)
+            _add_pair(hessian, row, first + 2 * a + 1, share * d1[a] * y1 / v)
     return weight * bent, weight * stretched, v
 
 
@@ -146,25 +146,22 @@ def bend(phi, v, numbers, measure):
 
 @part()
 def stretch(v, force, count, numbers, measure):
-    """Stretching: energy, its derivatives in v, v v and N, that one's in v and N; N: the axial force."""
+    """Stretching: energy, its derivatives in v, v v, N and N N; N: the axial force, and that in N v is 1."""
     speed, strain, stretching = numbers[SPEED], numbers[STRAIN], numbers[STRETCHING]
-    law = min(measure, SPATIAL)
-    energy = by_v = by_vv = by_n = by_nv = by_nn = 0.0
+    energy = by_v = by_vv = by_n = by_nn = 0.0
     if stretching > 0.0:
-        energy, by_v, by_vv = stretching_law(v, speed, strain, stretching, law)
+        energy, by_v, by_vv = stretching_law(v, speed, strain, stretching, min(measure, SPATIAL))
         if measure == PRINTED:  # Eq 15 without d|C'|/dq
             eps = v / speed - 1.0 - strain
             by_v -= 0.5 * stretching * eps * eps
             by_vv -= stretching * eps / speed
     if count > 0:
-        compliance, w = numbers[COMPLIANCE], speed if measure == MATERIAL else v
-        value, pull, slope, by_n, by_nv = mixed_law(v, speed, strain, force, compliance * force * force, law)
-        energy, by_v, by_vv = energy + value, by_v + pull, by_vv + slope
-        by_n -= compliance * force * w
-        by_nn = -compliance * w
-        if measure != MATERIAL:
-            by_nv -= compliance * force
-    return energy, by_v, by_vv, by_n, by_nv, by_nn
+        compliance = numbers[COMPLIANCE]
+        by_n = mixed_law(v, speed, strain)
+        energy, by_v = energy + force * by_n - 0.5 * compliance * force * force * speed, by_v + force
+        by_n -= compliance * force * speed
+        by_nn = -compliance * speed
+    return energy, by_v, by_vv, by_n, by_nn
 
 
 @part()

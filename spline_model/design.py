@@ -68,9 +68,9 @@ class Discretisation:
 
     control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
     FIRST_POINTS where nothing estimates its error); axial_modes m in 1 ... n - 1, default n - 2;
-    basis "bezier" (degree n - 1) or "bspline" (cubic); measure "material", "spatial" (Eqs 10, 13)
-    or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by quadrature) or
-    "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
+    basis "bezier" (degree n - 1) or "bspline" (cubic); measure "material", or with consistent stretch
+    "spatial" (Eqs 10, 13) or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by
+    quadrature) or "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
     primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
     that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
     and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
@@ -100,8 +100,9 @@ class Discretisation:
             require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
         if self.gauss_points is not None:
             require_count("gauss_points", self.gauss_points, 1)
-        if self.measure == "printed" and self.stretch != "consistent":
-            raise InvalidParameter("stretch", self.stretch, "consistent, the only form with printed forces")
+        if self.measure != "material" and self.stretch != "consistent":
+            only = f"consistent, the only form with measure = {self.measure}"
+            raise InvalidParameter("stretch", self.stretch, only)
         if self.axial_modes is not None:
             if self.stretch == "consistent":
                 raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")

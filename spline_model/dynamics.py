@@ -139,6 +139,8 @@ def _run(
 ) -> Trajectory:
     """The motion from its start on; scene: without drives; asked: duration, step and records."""
     (duration, step, records), layout = asked, begun.motion.system.layout
+    if integrator not in EXPLICIT_STEPS:
+        begun.motion.require_material()
     if step is None:
         step = _default_step(integrator, begun, duration)
     steps = Steps.of(duration, step, records, layout.size + layout.coordinate_count + 7)

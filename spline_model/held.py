@@ -18,7 +18,6 @@ from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, be
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.path import SMALLEST_STEP
 from spline_model.reduced.states import unknowns_of
-from spline_model.strip.laws import MATERIAL
 
 Array = NDArray[np.float64]
 
@@ -62,9 +61,7 @@ class HeldPivot:
     def __init__(self, mechanism: Mechanism) -> None:
         model = _held_model(mechanism)
         if model is None:
-            expected = (
-                "one body on strips that bend and stretch, mixed form, material measure, no loads, no shear"
-            )
+            expected = "one body on strips that bend and stretch, mixed form, no loads"
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
         self._arrays = model.arrays()
@@ -182,7 +179,7 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)
-    if model is None or model.strips.measure != MATERIAL or model.strips.stretching.any() or model.shears:
+    if model is None or model.strips.stretching.any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None

@@ -17,7 +17,7 @@ from spline_model.design import (
     StripDesign,
     swinging_slide_stiffness,
 )
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, Shear
+from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
@@ -100,9 +100,6 @@ class Mechanism:
         """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
-        if self.scene.of(Shear):
-            has_it = "none in motions and modes of splines: elements have it, with --model fe-shear"
-            raise InvalidParameter("effects", "shear", has_it)
         scene = self.in_motion().scene
         kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
         return replace(scene, effects=tuple(kept))

@@ -31,7 +31,7 @@ def follow(
     load_factors: Sequence[float],
     progress: Progress | None = None,
     *,
-    start: tuple[float, Array] | None = None,
+    start: Array | None = None,
     branch: str = "primary",
     method: str = "condensed",
 ) -> Path:
@@ -41,14 +41,14 @@ def follow(
     bordered system of the paper. Both agree to 1e-10.
     An increment whose Newton fails, or whose solution does not pass the checks, is taken
     in halves; when a part below SMALLEST_STEP still fails, the path ends with its last
-    good state and the reason. start: load factor and unknowns (N,) of an equilibrium to go
+    good state and the reason. start: unknowns (N,) of an equilibrium at load factor 0 to go
     on from instead of rest. branch: "primary" stays on the branch it is on where another one
     crosses; "follow" leaves it there, along the critical mode.
     """
     require_choice("branch", branch, BRANCHES)
     work = followed(system, method)
     watch = Watch(work, leaves=branch == "follow", by_load=True)
-    track = _Track(watch, np.array([0.0 if start is None else start[0], *load_factors]), progress)
+    track = _Track(watch, np.array([0.0, *load_factors]), progress)
     track.begin(start)
     message = ""
     while track.states < len(track.factors) and not message:
@@ -74,12 +74,12 @@ class _Track:
         self.given: Array | None = None
         self.last: tuple[Reduced, Array] | None = None
 
-    def begin(self, start: tuple[float, Array] | None) -> None:
+    def begin(self, start: Array | None) -> None:
         """The first state, and on the elements all those up to where something happens."""
         if isinstance(self.work, Elements):
             if start is not None:
-                newton = equilibrium(self.work, *start)
-                self.given = start[1] if len(newton.norms) == 1 else None
+                newton = equilibrium(self.work, start)
+                self.given = start if len(newton.norms) == 1 else None
                 self._run(self.work, self.work.y(newton.z))
             elif not self.work.system.is_preloaded:
                 self.given = self.work.system.rest  # reactions at rest are none, not their round-off

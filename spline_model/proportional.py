@@ -37,8 +37,8 @@ class Turn:
     """Rotations (R,) [rad] that a body is turned through, under the loads of its scene.
 
     driven: the scene that is driven to a rotation; increments: those of the loads where they come on first;
-    laps: told when the scene is compiled and when the path is solved; start: rotation, load factor and
-    unknowns (N,) to go on from instead of rest; branch and method as in ``path.follow``.
+    laps: told when the scene is compiled and when the path is solved; branch and method as in
+    ``path.follow``.
     """
 
     driven: Callable[[float], Scene]
@@ -46,7 +46,6 @@ class Turn:
     increments: int
     laps: Laps
     progress: Progress | None = None
-    start: tuple[float, float, Array] | None = None
     branch: str = "primary"
     method: str = "condensed"
 
@@ -55,22 +54,18 @@ class Turn:
 
         The path's load factors are those of the loads, in critical points too.
         """
-        start, branch, total = self.start, self.branch, self.increments + len(self.rotations)
+        branch, total = self.branch, self.increments + len(self.rotations)
         whole = compile_scene(self.driven(0.0))
         turned = compile_scene(_steady(self.driven(self._largest)))
         self.laps.lap("compile")
-        before = None
-        if start is None or (start[0] == 0.0 and start[1] < 1.0):
-            begin = None if start is None else start[1:]
-            factors = np.linspace(0.0 if begin is None else begin[0], 1.0, self.increments + 1)[1:]
-            before = self._part(whole, list(factors), begin, branch, 0, total)
-            branch = "primary" if before.critical_points else branch
-            if before.status is not Status.CONVERGED:
-                self.laps.lap("solve")
-                return whole, before
-            start = 0.0, 1.0, before.states[-1]
-        at, aims = (start[0] / self._largest, start[2]), list(self.rotations / self._largest)
-        after = self._part(turned, aims, at, branch, self.increments if before else 0, total)
+        factors = np.linspace(0.0, 1.0, self.increments + 1)[1:]
+        before = self._part(whole, list(factors), None, branch, 0, total)
+        branch = "primary" if before.critical_points else branch
+        if before.status is not Status.CONVERGED:
+            self.laps.lap("solve")
+            return whole, before
+        aims = list(self.rotations / self._largest)
+        after = self._part(turned, aims, before.states[-1], branch, self.increments, total)
         self.laps.lap("solve")
         loads = whole.loads
         moved = (after.states - after.states[0])[:, loads.coordinate] @ loads.value
@@ -80,7 +75,7 @@ class Turn:
             work=after.work + moved,
             critical_points=tuple(replace(point, load_factor=1.0) for point in after.critical_points),
         )
-        return whole, after if before is None else _joined(before, after, back=False)
+        return whole, _joined(before, after, back=False)
 
     def together(self) -> tuple[System, Path]:
         """The scene driven to the largest of the rotations, and its path through them, loads together.
@@ -90,19 +85,15 @@ class Turn:
         other one has come back to rest. All rotations zero: loads grow from 0 to 1. The path's load factors
         are signed, critical points' are not.
         """
-        start, branch, largest, begun = self.start, self.branch, self._largest, None
-        count = len(self.rotations)
+        branch, largest, count = self.branch, self._largest, len(self.rotations)
         factors = self.rotations / largest if largest else np.linspace(0.0, 1.0, count + 1)[1:]
-        if start is not None:
-            begun = start[0] / largest if largest else start[1], start[2]
         path, done, back = None, 0, False
         whole = compile_scene(self.driven(largest))
         self.laps.lap("compile")
-        for sign, part_factors, returns in _sides(whole, factors, 0.0 if begun is None else begun[0]):
+        for sign, part_factors, returns in _sides(whole, factors):
             system = whole if sign > 0.0 else compile_scene(self.driven(-largest))
-            begun = begun if path is None else (0.0, path.states[-1])
+            begin = None if path is None else path.states[-1]
             aims = [sign * factor for factor in part_factors] + [0.0] * returns
-            begin = None if begun is None else (sign * begun[0], begun[1])
             part = self._part(system, aims, begin, branch, done, count)
             if part.critical_points:
                 branch = "primary"  # the branch was left, or there was none to follow
@@ -120,13 +111,13 @@ class Turn:
     @property
     def _largest(self) -> float:
         """The rotation of largest size [rad], with its sign: there the loads act in full."""
-        return float(max(*self.rotations.tolist(), 0.0 if self.start is None else self.start[0], key=abs))
+        return float(max(self.rotations.tolist(), key=abs))
 
     def _part(
         self,
         system: System,
         factors: list[float],
-        start: tuple[float, Array] | None,
+        start: Array | None,
         branch: str,
         done: int,
         total: int,
@@ -143,27 +134,24 @@ def _steady(scene: Scene) -> Scene:
     return replace(scene, effects=tuple(effects))
 
 
-def _sides(system: System, factors: Array, begin: float) -> list[tuple[float, list[float], bool]]:
+def _sides(system: System, factors: Array) -> list[tuple[float, list[float], bool]]:
     """Sign of a side of rest, factors there, and whether they come back to rest; all at once without loads.
 
-    Zero is on the side of the start.
+    Zero is on the side before it.
     """
     if not system.loads.value.any() and np.count_nonzero(system.drives.target) < 2:
         return [(1.0, factors.tolist(), False)]
-    signs = np.sign(np.append(begin, factors))
+    signs = np.sign(factors)
     for i in range(1, len(signs)):
         signs[i] = signs[i] or signs[i - 1]
     first = signs[signs != 0.0][:1]
     signs[signs == 0.0] = first[0] if first.size else 1.0
-    cuts = np.flatnonzero(np.diff(signs[1:])) + 1
+    cuts = np.flatnonzero(np.diff(signs)) + 1
     parts = np.split(factors, cuts)
-    sides = [
-        (float(signs[1 + at]), part.tolist(), bool(i < len(cuts) and part[-1] != 0.0))
+    return [
+        (float(signs[at]), part.tolist(), bool(i < len(cuts) and part[-1] != 0.0))
         for i, (at, part) in enumerate(zip(np.append(0, cuts), parts, strict=True))
     ]
-    if signs[0] != signs[1]:  # begun on the other side
-        sides.insert(0, (float(signs[0]), [], True))
-    return sides
 
 
 def _later(progress: Progress, done: int, total: int) -> Progress:

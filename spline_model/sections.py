@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
-from spline_model.effects import Bending, MixedStretching, Shear, Stretching, StripGravity
+from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
@@ -71,11 +71,6 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     rest_speed, rest_turning = speed[:, count:], turning[:, count:]
     x1, y1, speed, turning = x1[:, :count], y1[:, :count], speed[:, :count], turning[:, :count]
 
-    if scene.of(Shear):
-        shown = centre_lines(system, states)
-        for g, strip in enumerate(strips):
-            own = shown[:, layout.strip(strip.name)].reshape(count, -1, 2)
-            curve[0, :, :, :count, g] = np.tensordot(values[: len(stations)], own, (1, 1)).swapaxes(1, 2)
     pull = _pulls(system, states, strips, stations)
     shear = (pull[1] * x1 - pull[0] * y1) / speed
     if balanced:
@@ -166,19 +161,6 @@ def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
 def _modes_at(modes: AxialModes, stations: bytes) -> Array:
     """All axial modes at stations (K, P); kept."""
     return np.ascontiguousarray(all_modes(modes, np.frombuffer(stations)).T)
-
-
-def centre_lines(system: System, states: Array) -> Array:
-    """States (S, N) with the control points of the strips' centre lines: what shear adds goes along them."""
-    if not system.scene.of(Shear):
-        return states
-    shown = states.copy()
-    for shear in system.scene.of(Shear):
-        strip = system.scene.strip(shear.strip)
-        force = -clamp_reactions(system, states, strip.name, "start")[:, None, :2]
-        arc = float(strip.share_of_length().sum()) * strip.basis.greville[:, None]
-        shown[:, system.layout.strip(strip.name)] += (shear.compliance * arc * force).reshape(len(states), -1)
-    return shown
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

@@ -12,8 +12,7 @@ the constraints hold, at a fixed step h.
            gains energy while the ground holds the mechanism and no drive acts: where the
            differences would, the velocity is reduced.
 
-Impulses are found at once ("direct", Eq 30 as it stands), by sweeps over the strips, each solved
-with its axial forces and both clamps ("strips"), or over single constraints ("constraints").
+Impulses are found at once (Eq 30), or, as printed, by sweeps over single constraints (Eqs 24 to 26).
 Misprints of the paper are corrected: Eqs 22 and 23 begin from the state before, Eq 26 has the
 transposed Jacobian, Eq 30 its minus sign.
 """
@@ -32,7 +31,7 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.effects import DrivenDisplacement, DrivenRotation, RootCompliance
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
-from spline_model.impulses.arrays import IMPULSES, Problem, Space
+from spline_model.impulses.arrays import Problem, Space
 from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
@@ -48,8 +47,6 @@ Array = NDArray[np.float64]
 
 STEP = 0.01
 """The paper's step: a quarter of the time between two pictures at 25 Hz [s]."""
-SWEEPS = 30
-"""Default of the most sweeps for one linear system."""
 TOLERANCE = 1e-9
 """Residual of a stable step, and gap that sweeps close, in EI/L^2, EI/L, L and rad."""
 STABILITY_LIMIT = 2.0
@@ -69,14 +66,15 @@ class ImpulseSolver:
         system: System,
         *,
         form: str,
-        impulses: str,
-        sweeps: int,
+        sweeps: int | None,
         tolerance: float,
     ) -> None:
         require_choice("form", form, tuple(REASONS))
-        require_choice("impulses", impulses, IMPULSES)
         require_positive("tolerance", tolerance, "1")
-        require_count("sweeps", sweeps, 1)
+        if sweeps is not None:
+            require_count("sweeps", sweeps, 1)
+            if form == "stable":
+                raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
         self.motion, soft = set_in_motion(system), form == "stable"
         self.motion.require_compiled("sequential impulses")
         held = "another one for sequential impulses"
@@ -85,9 +83,7 @@ class ImpulseSolver:
         if system.scene.of(RootCompliance):
             raise InvalidParameter("effects", "root_compliance", held)
         self.mechanism, self.system, self.form = mechanism, system, form
-        self.problem = Problem.of(
-            self.motion, soft=soft, impulses=impulses, sweeps=sweeps, tolerance=tolerance
-        )
+        self.problem = Problem.of(self.motion, soft=soft, sweeps=sweeps, tolerance=tolerance)
         sizes = {"N": len(self.problem.unit), "Q": len(self.problem.mass), "R": len(self.problem.rows)}
         self.space = zeros(Space, sizes | {"M": len(self.problem.rigidity)})
 
@@ -162,8 +158,7 @@ def impulse_solver(
     *,
     body: str | None = None,
     form: str = "stable",
-    impulses: str = "direct",
-    sweeps: int = SWEEPS,
+    sweeps: int | None = None,
     tolerance: float = TOLERANCE,
 ) -> ImpulseSolver:
     """A solver for steps one at a time, of which the named body, or the only one, can be given a pose.
@@ -171,9 +166,8 @@ def impulse_solver(
     Parameters
     ----------
     form : "printed" or "stable", see above.
-    impulses, sweeps : how they are found, see above, and the most sweeps for one linear system. Sweeps
-        over strips converge at any step, the slower the longer it is; those over constraints
-        diverge in the stable form where the step is long against the strips' bending.
+    sweeps : the most sweeps over single constraints for one linear system of the printed form; None solves
+        it at once. Sweeps converge slowly where strips cannot stretch.
     tolerance : residual of a stable step and gap that ends the sweeps, in EI/L^2, EI/L, L, rad.
 
     Raises InvalidParameter.
@@ -185,9 +179,7 @@ def impulse_solver(
         name = mechanism.design.body_named(body)
         drives = DrivenDisplacement(body=name, displacement=(0.0, 0.0)), DrivenRotation(body=name, angle=0.0)
         scene = mechanism.with_effects(*drives)
-    return ImpulseSolver(
-        mechanism, compile_scene(scene), form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
-    )
+    return ImpulseSolver(mechanism, compile_scene(scene), form=form, sweeps=sweeps, tolerance=tolerance)
 
 
 def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
@@ -211,14 +203,13 @@ def solve_impulses(
     duration: float = 0.05,
     step: float = STEP,
     form: str = "stable",
-    impulses: str = "direct",
-    sweeps: int = SWEEPS,
+    sweeps: int | None = None,
     tolerance: float = TOLERANCE,
     records: int | None = None,
 ) -> Trajectory:
     """Motion from the static state at the rotation ``start`` [rad] of a body, at rest, as ``solve_motion``.
 
-    body, drive, duration, records: as there; form, impulses, sweeps, tolerance: as of
+    body, drive, duration, records: as there; form, sweeps, tolerance: as of
     ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the
     records. A body that a drive
     catches loses the velocity that the drive does not have, and with it energy, which counts as
@@ -234,9 +225,7 @@ def solve_impulses(
     laps, body = Laps(), mechanism.design.body_named(body)
     released = mechanism.released()
     system = compile_scene(released if drive is None else released.with_effects(drive))
-    solver = ImpulseSolver(
-        mechanism, system, form=form, impulses=impulses, sweeps=sweeps, tolerance=tolerance
-    )
+    solver = ImpulseSolver(mechanism, system, form=form, sweeps=sweeps, tolerance=tolerance)
     steps = Steps.of(duration, step, records, 2 * system.layout.size)
     laps.lap("compile")
     stepper = Stepper(solver, solver.start(start, body))
@@ -244,7 +233,7 @@ def solve_impulses(
     run = carry(stepper, steps)
     laps.lap("solve")
     settings = {"integrator": f"sequential impulses, {form}", "step_s": steps.step}
-    settings |= {"impulses": impulses} | ({} if impulses == "direct" else {"sweeps": sweeps})
+    settings |= {} if sweeps is None else {"sweeps": sweeps}
     return Trajectory.of(
         system,
         run,

@@ -82,8 +82,8 @@ class Path:
 
     load_factor (S,); poses (S, 3 B): x, y, theta of the bodies [m, rad]; reactions (S, D) of the drives, as
     multipliers; unknowns: z (S, N) of all states; stiffness (S,) d(torque)/d(rotation) of a driven rotation
-    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial, (S, 3) where strips shear
-    [J]; work (S,) of loads and drives since the first state [J]; history: residual norms by increment.
+    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
+    drives since the first state [J]; history: residual norms by increment.
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
     stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
     strips' moments differ from balance by, relative (``continuation.resolution``);

@@ -20,7 +20,7 @@ from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
 from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.states import whole_tangents
-from spline_model.sections import ENDS, STATIONS, Sections, centre_lines, clamp_reactions, sections
+from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,
     ErrorEstimate,
@@ -110,8 +110,8 @@ class StaticSolution(Tabulated, Path):
 
     @property
     def shear_energy(self) -> Array:
-        """Of strips that shear (S,) [J], zero without."""
-        return np.asarray(self.energies[:, 2:].sum(axis=1))
+        """Of the strips (S,) [J], zero: they are rigid in shear."""
+        return np.zeros(len(self.work))
 
     @cached_property
     def gravity_energy(self) -> Array:
@@ -119,8 +119,7 @@ class StaticSolution(Tabulated, Path):
         system, weight = self.system, self.system.weight
         if not weight.size:
             return np.zeros(len(self.work))
-        states = centre_lines(system, self.states)
-        return np.asarray(-(states[:, : weight.size] - system.rest[: weight.size]) @ weight)
+        return np.asarray(-(self.states[:, : weight.size] - system.rest[: weight.size]) @ weight)
 
     @property
     def rotation(self) -> Array:

@@ -76,7 +76,6 @@ STUDIES: dict[str, str] = {
     "stability/long_run": "studies.stability.machine:LONG_RUN",
     "stability/ratios": "studies.stability.swings:RATIOS",
     "stability/axial_modes": "studies.stability.choices:AXIAL_MODES",
-    "stability/bad_starts": "studies.stability.choices:BAD_STARTS",
     "stability/fuzz": "studies.stability.fuzz",
     "stability/events": "studies.stability.events",
     "stability/environment": "studies.stability.machine:ENVIRONMENT",

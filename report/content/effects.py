@@ -4,14 +4,14 @@ from collections.abc import Callable
 from typing import Any
 
 from report.content.basis import TORQUE
-from report.facts import FACTS, LISTINGS, Cell, Fact, Results, Shown, Stored, Table, columns, holds, listing
+from report.facts import FACTS, LISTINGS, Cell, Results, Shown, Stored, Table, columns, holds, listing
 from report.forms import Form, count, dash, percent, power, seconds, signed_percent, times, unit
 
 WORTH, CHEAPEST = (Stored("effects/worth", name) for name in ("worth", "cheapest"))
 REFERENCE = WORTH.where(design="Table 1")
 IMPULSES = "impulses/step_size"
 READINGS, QUADRATURE = (Stored("paper/readings", name) for name in ("readings", "quadrature"))
-LIMITS, STEPS = Stored(IMPULSES, "limits"), Stored(IMPULSES, "steps")
+LIMITS = Stored(IMPULSES, "limits")
 OVER = Stored(IMPULSES, "findings", claim="Section 4.1: h = 1/100 s")
 #: Groups of modes in the order of their frequencies.
 GROUPS = ("axial", "bending", "swing")
@@ -76,11 +76,6 @@ LISTINGS["quadrature"] = QUADRATURE.table(
 )
 
 
-def _lost(design: str) -> Fact:
-    step = STEPS.where(design=design, form="stable", step_s=0.01)
-    return step.at("energy_change", lambda value: percent(abs(value)))
-
-
 FACTS |= {
     f"impulses.limit.{group}": LIMITS.at("measured_s", seconds, design="Table 1", group=group, sweeps=0)
     for group in GROUPS
@@ -100,14 +95,6 @@ FACTS |= {
     "impulses.over": OVER.at("value", times, formulation="Table 1, axial modes, as printed"),
     "impulses.one-sweep": LIMITS.at("ratio", percent, design="Table 1", group="axial", sweeps=1),
     "impulses.agreement": LIMITS.fact(lambda rows: (rows["ratio"] - 1.0).abs().max(), power, sweeps=0),
-    "impulses.drift": STEPS.largest("drift", power, form="printed", status="converged"),
-    "impulses.drift.stable": STEPS.largest("drift", power, form="stable", status="converged"),
-    "impulses.lost": _lost("Table 1"),
-    "impulses.lost.polymer": _lost("polymer"),
-    "impulses.polymer.time": STEPS.at(
-        "steps", lambda steps: seconds(0.01 * steps), design="polymer", form="stable", step_s=0.01
-    ),
-    "impulses.picture": Stored(IMPULSES, "timings_of_pictures").largest("cpu_95_ms", unit("ms")),
 }
 
 
@@ -129,18 +116,6 @@ def _(r: Results) -> Any:
     """the paper's step is beyond every limit of Table 1 in the form as printed"""
     rows = OVER.rows(r)
     return rows.loc[rows["formulation"].str.startswith("Table 1"), "value"].gt(1.0).all()
-
-
-@holds("impulses.no-gain")
-def _(r: Results) -> Any:
-    """the stable form gains no energy at any step"""
-    return STEPS.rows(r, form="stable")["energy_gain"].max() <= 0.0
-
-
-@holds("impulses.in-time", timed=True)
-def _(r: Results) -> Any:
-    """four steps of the stable form take at most 1 ms at the 95th percentile"""
-    return (r.table(IMPULSES, "findings_of_time")["holds"] == "yes").all()
 
 
 @holds("quadrature.none")

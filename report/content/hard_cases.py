@@ -24,7 +24,6 @@ CRITERIA = {
     "long_run": "energy within 10⁻⁶ over 100\u202f000 steps",
     "ratios": "rotation within 5 % of the amplitude over the first swing",
     "axial_modes": "torque within 5 % of a refined spline",
-    "bad_starts": "the state of the path from rest, to 10⁻⁷",
     "fuzz": "path within 5 % of seventeen points; balance of energy to 10⁻⁸",
     "events": "rotation and energy within 5 %; balance of energy",
     "environment": "the same answer, to 10⁻¹² (frequencies 10⁻⁹)",
@@ -164,9 +163,8 @@ def _(r: Results) -> Any:
 
 @holds("hard.environment.order")
 def _(r: Results) -> Any:
-    """the paper's choices alone depend on the order of strips, and on nothing else"""
-    wrong = r.table(GROUP + "environment", "outcomes").query("outcome == 'wrong'")
-    return wrong["case"].str.contains("reversed|first").all() and set(wrong["model"]) == {PAPER}
+    """no answer depends on threads, the compiler or the order of strips"""
+    return r.table(GROUP + "environment", "outcomes").query("outcome == 'wrong'").empty
 
 
 @holds("hard.long_run.bounded")

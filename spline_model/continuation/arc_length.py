@@ -36,12 +36,11 @@ def follow_arc(
     end: float = 1.0,
     *,
     increments: int = 20,
-    start: tuple[float, Array] | None = None,
     branch: str = "primary",
     progress: Callable[[int, int], None] | None = None,
     method: str = "condensed",
 ) -> Path:
-    """The path from rest, or from load factor and unknowns ``start``, until its load factor is ``end``.
+    """The path from rest until its load factor is ``end``.
 
     The first step changes the load factor by 1 / increments of the way; later ones follow
     the ease of the path. Every accepted state is in the result. The load factor may go down
@@ -49,7 +48,7 @@ def follow_arc(
     Source: Riks, J Appl Mech 39 (1972) 1060, with Newton on planes normal to the tangent.
     """
     require_choice("branch", branch, BRANCHES)
-    follower = _ArcFollower(followed(system, method), start, end, increments, branch)
+    follower = _ArcFollower(followed(system, method), end, increments, branch)
     message = ""
     for taken in range(MOST_STEPS):
         if follower.here.load_factor == end or message:
@@ -65,11 +64,9 @@ def follow_arc(
 class _ArcFollower(Follower):
     """The same in the arc length, whose states are all asked for."""
 
-    def __init__(
-        self, work: Followed, start: tuple[float, Array] | None, end: float, increments: int, branch: str
-    ) -> None:
+    def __init__(self, work: Followed, end: float, increments: int, branch: str) -> None:
         watch = Watch(work, leaves=branch == "follow", by_load=False)
-        point, norms = first_point(watch, start)
+        point, norms = first_point(watch)
         onward = math.copysign(1.0, end - point.load_factor)
         super().__init__(watch, directed(work, point, onward * point.rate / work.unit, onward), norms)
         self.end = end

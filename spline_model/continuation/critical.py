@@ -199,15 +199,10 @@ def _zero(value: Callable[[float], float]) -> float | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedTangent:
-    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L).
-
-    below: eigenvalues that are negative in any case, one for each force of a negative compliance
-    (``effects.Shear``), which the spring of the tip outweighs.
-    """
+    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L)."""
 
     stiffness: Array
     free: Array
-    below: int
 
     @classmethod
     def of(cls, work: Followed) -> ReducedTangent:
@@ -226,8 +221,7 @@ class ReducedTangent:
         constraints = rows[~soft]
         norms = np.linalg.norm(constraints, axis=1, keepdims=True)
         free = null_space(constraints / norms) if len(constraints) else np.eye(count)
-        below = int((np.diag(between) > 0.0).sum())
-        return cls(stiffness=free.T @ stiffness @ free, free=free, below=below)
+        return cls(stiffness=free.T @ stiffness @ free, free=free)
 
     @property
     def grain(self) -> float:
@@ -236,6 +230,5 @@ class ReducedTangent:
 
     def eigenpair(self, number: int) -> tuple[float, Array]:
         """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
-        number += self.below
         values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])

@@ -150,28 +150,25 @@ def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float
     return np.asarray(result)
 
 
-def equilibrium(work: Followed, load_factor: float, unknowns: Array) -> Newton:
-    """The equilibrium that Newton finds from the scene's unknowns, if an accepted state's checks pass.
+def equilibrium(work: Followed, unknowns: Array) -> Newton:
+    """The equilibrium at load factor 0 that Newton finds from the scene's unknowns, if its checks pass.
 
-    Raises InvalidParameter if these have another size, are not finite, or lead to no such state.
+    Raises InvalidParameter if they lead to no such state.
     """
-    size = work.system.layout.size
-    if np.shape(unknowns) != (size,) or not np.isfinite(unknowns).all():
-        raise InvalidParameter("start", np.shape(unknowns), f"finite unknowns of shape ({size},)")
-    newton = solve(work, work.state(np.asarray(unknowns, dtype=float)), load_factor)
-    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, load_factor)
+    newton = solve(work, work.state(unknowns), 0.0)
+    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, 0.0)
     if reason:
         raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
     return newton
 
 
-def first_point(watch: Watch, start: tuple[float, Array] | None) -> tuple[Point, tuple[float, ...]]:
-    """The point where a path begins, and the residual norms: rest, or load factor and unknowns given.
+def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...]]:
+    """The point where a path begins, and the residual norms: rest, or the unknowns that are given.
 
     Raises InvalidParameter where there is none, or where nothing holds the scene.
     """
     work = watch.work
-    newton = _settle(watch) if start is None else equilibrium(work, *start)
+    newton = _settle(watch) if start is None else equilibrium(work, start)
     return _held(work, newton), newton.norms
 
 

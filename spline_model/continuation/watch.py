@@ -18,7 +18,6 @@ from spline_model.continuation.point import directed, done_by_load_factor, jumpe
 from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
 from spline_model.effects.base import Constraint, Load
 from spline_model.newton import correct
-from spline_model.sections import centre_lines
 from spline_model.solution import CriticalPoint, Path, Status
 
 Array = NDArray[np.float64]
@@ -155,7 +154,7 @@ class Watch:
         [J]; why it ended early, if it did."""
         system, work = self.work.system, rows.pop("done")
         if (loads := system.loads).value.size:
-            moved = (centre_lines(system, rows["unknowns"].array) - system.rest)[:, loads.coordinate]
+            moved = (rows["unknowns"].array - system.rest)[:, loads.coordinate]
             work = rows["load_factor"] * (moved @ loads.value) + work
         return Path(
             status=Status.NOT_CONVERGED if message else Status.CONVERGED,

@@ -76,7 +76,7 @@ class StrainEnergy(Potential):
     measure: str = "material"
     gauss_points: int
 
-    def require_sum(self, measures: tuple[str, ...]) -> None:
+    def require_sum(self, *measures: str) -> None:
         """Refuse another measure, and no Gauss points."""
         require_choice("measure", self.measure, measures)
         require_count("gauss_points", self.gauss_points, 1)
@@ -106,7 +106,7 @@ class Bending(StrainEnergy):
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
     spatial differs from it by the order of the axial strain.
-    Left out: cross-section warping, coupling with stretching over the depth; shear is an effect, ``Shear``.
+    Left out: shear, cross-section warping, coupling with stretching over the depth.
     Source: paper Eqs 10 to 12; Antman, Nonlinear Problems of Elasticity (2005), ch. 4.
     """
 
@@ -116,7 +116,7 @@ class Bending(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
-        self.require_sum(MEASURES)
+        self.require_sum(*MEASURES)
 
     def rigidity_at(self, basis: SplineBasis, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that basis [N m^2]."""
@@ -157,37 +157,6 @@ class RootCompliance(Potential):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Shear(Potential):
-    """Sections of a strip that turn against its normal, in statics: Reissner's beam, exactly.
-
-    A strip without loads between its ends carries one force F all along. With the section's direction t and
-    the compliances c_a = 1 / EA and c_s = 1 / (k G A) its centre line is
-
-        r' = t [1 + c_a F.t] + c_s [F - (F.t) t]   =>   r(s) = x(s) + c_s s F,   x' = t [1 + (c_a - c_s) F.t]
-
-    so that x is a strip that is rigid in shear, has the sections' direction and clamps as tangents, and the
-    axial compliance c_a - c_s, with a spring 1 / (c_s L), alike in all directions, between its tip and what
-    holds it. The control points of states are those of x; shapes that are shown are r. Of the energies
-
-        1/2 c_s L |F|^2 - 1/2 c_s int N^2 ds = 1/2 c_s int V^2 ds                    [J]
-
-    is that of shear.
-
-    Parameters: strip, compliance c_s > 0 [1/N].
-
-    Exact for: mixed stretching in the material measure, curved strips, rigidities that vary, any rotation.
-    Left out: loads along a strip, as its weight, and inertia: F varies then (``fe_reference`` has both).
-    Source: Reissner, J Appl Math Phys 23 (1972) 795; Haringx, Philips Res Rep 3 (1948) 401 of a column.
-    """
-
-    strip: str
-    compliance: float
-
-    def __post_init__(self) -> None:
-        require_positive("compliance", self.compliance, "1/N")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Stretching(StrainEnergy):
     """Stretching energy of one strip by quadrature of the strain: the paper's form, which locks.
 
@@ -211,7 +180,7 @@ class Stretching(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("axial_rigidity", self.axial_rigidity, "N")
-        self.require_sum(MEASURES)
+        self.require_sum(*MEASURES)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -222,7 +191,7 @@ class MixedStretching(StrainEnergy):
 
         V = int (N eps - 1/2 c N^2) W du,    c = 1 / EA                            [J]
 
-    is made stationary in it (W = J0, or |C'| in the spatial measure). The axial strain
+    is made stationary in it (W = J0, the material measure). The axial strain
     is thereby projected on the modes P_k, which removes the locking; c = 0 is the
     inextensible strip, with N the reaction that keeps its length.
 
@@ -243,4 +212,4 @@ class MixedStretching(StrainEnergy):
 
     def __post_init__(self) -> None:
         require_not_negative("axial_compliance", self.axial_compliance, "1/N")
-        self.require_sum(MEASURES[:2])
+        self.require_sum(MEASURES[0])

@@ -27,8 +27,6 @@ Vector = tuple[float, float]
 
 MONOLITHIC = 0.416
 """Length of a root over the thickness: half-plane in plane stress, sharp corner, of any Poisson ratio."""
-SHEAR_FACTOR = 5.0 / 6.0
-"""k of a rectangle in energy equivalence (Reissner), of any Poisson ratio."""
 
 
 def _bending(design: Design) -> Iterator[Effect]:
@@ -104,7 +102,6 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
             axial_compliance=part,
             modes=modes,
             natural_strain=design.pre_strain.get("strain", 0.0),
-            measure=grid.measure,
             gauss_points=grid.points_a_span,
         )
 
@@ -220,19 +217,6 @@ def _root_compliance(design: Design, root: float | str) -> Iterator[Effect]:
                 yield elastic.RootCompliance(strip=strip.name, end="end", compliance=compliance)
 
 
-def _shear(design: Design) -> Iterator[Effect]:
-    """Shear of every strip, c_s = 2 (1 + nu) / (k E A), in statics."""
-    grid = design.discretisation
-    if grid.measure != "material":
-        raise InvalidParameter("measure", grid.measure, "material, of strips with shear")
-    if grid.stretch == "consistent":
-        raise InvalidParameter("stretch", grid.stretch, "mixed or inextensible, of strips with shear")
-    for strip in design.strips:
-        area = SHEAR_FACTOR * strip.area
-        modulus = strip.youngs_modulus / (2.0 * (1.0 + strip.poisson_ratio))
-        yield elastic.Shear(strip=strip.name, compliance=1.0 / (modulus * area))
-
-
 REGISTRY: dict[str, Builder] = {
     "bending": _bending,
     "stretching": _stretching,
@@ -252,12 +236,9 @@ REGISTRY: dict[str, Builder] = {
     "clamped_width": _taken_up,
     "anticlastic": _taken_up,
     "root_compliance": _root_compliance,
-    "shear": _shear,
 }
 
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-CONTRADICTIONS = (("stretching", "inextensible"), ("shear", "gravity"))
-"""Pairs of which a scene has one: with weight the force along a strip varies, see ``elastic.Shear``."""
 INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
 MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 """Effects that statics never asks for."""
@@ -266,15 +247,17 @@ MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
     """Refuse unknown, doubled, contradictory and missing effects, and parameters of absent ones."""
     for name in (*names, *parameters):
+        if name == "shear":
+            raise InvalidParameter("effects", name, "splines without shear (use --model fe-shear)")
         if name not in REGISTRY:
             near = difflib.get_close_matches(name, REGISTRY, n=1)
             hint = f" (nearest: {near[0]})" if near else ""
             raise InvalidParameter("effects", name, f"one of {', '.join(REGISTRY)}{hint}")
     if len(set(names)) != len(names):
         raise InvalidParameter("effects", list(names), "each name once")
-    for pair in CONTRADICTIONS:
-        if set(pair) <= set(names):
-            raise InvalidParameter("effects", " and ".join(pair), f"one of {', '.join(pair)}, not both")
+    if {"stretching", "inextensible"} <= set(names):
+        wanted = "one of stretching, inextensible, not both"
+        raise InvalidParameter("effects", "stretching and inextensible", wanted)
     if "bending" not in names:
         raise InvalidParameter("effects", list(names), "bending, without which a strip has no stiffness")
     if not {"stretching", "inextensible"} & set(names):

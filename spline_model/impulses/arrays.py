@@ -18,12 +18,6 @@ from spline_model.tables import ClampTable, DriveTable, LoadTable
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-IMPULSES = ("direct", "strips", "constraints")
-"""What is solved as one: everything (Eq 30), a strip with its axial forces and both clamps, or a
-single constraint."""
-ITERATIONS = 12
-"""Most Newton iterations of a stable step before it is halved."""
-
 STEPS, SOLVES, SWEEPS, HALVED, LIMITED = range(5)
 """Places of the counters: steps, linear systems, sweeps over the blocks, steps that were halved, and
 steps whose velocity was reduced so that no energy is gained."""
@@ -41,7 +35,7 @@ class Problem(NamedTuple):
     each body's pose; no inertia couples one group with another. rows (R, 3): place in z of each row's
     multiplier, in the order of the sweep, and the two groups that it acts on, -1 for none; first (B + 1,):
     where each block begins in them, blocks being solved as one. grounded: 1 if the ground holds anything.
-    sweeps of a linear system, iterations of a step: the most; tolerance [1].
+    sweeps: of a linear system, at most; tolerance [1].
     """
 
     points: PointTable
@@ -63,15 +57,15 @@ class Problem(NamedTuple):
     first: Indices
     grounded: int
     sweeps: int
-    iterations: int
     tolerance: float
 
     @classmethod
-    def of(cls, motion: Motion, *, soft: bool, impulses: str, sweeps: int, tolerance: float) -> Problem:
+    def of(cls, motion: Motion, *, soft: bool, sweeps: int | None, tolerance: float) -> Problem:
         """The problem of a system: rows of the strips' axial forces and clamps, then those of the drives.
 
         soft: the axial forces of extensible strips are rows as well, with their compliance; else
-        only those of inextensible ones are. impulses: one of IMPULSES.
+        only those of inextensible ones are. sweeps: over single constraints, at most; None solves all as
+        one block.
         """
         system = motion.system
         layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
@@ -80,16 +74,9 @@ class Problem(NamedTuple):
         start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
         size = [2 * n for _, n in layout.strips.values()] + [3] * len(bodies)
         _require_mass(motion, start, size, [*strips, *bodies])
-        constraints = _constraints(system, soft, strips, bodies)
-        blocks = list(constraints.values())
-        if impulses == "strips":
-            owners = dict.fromkeys(owner for owner, _ in constraints)
-            blocks = [
-                [row for (owner, _), rows in constraints.items() if owner == one for row in rows]
-                for one in owners
-            ]
+        blocks = list(_constraints(system, soft, strips, bodies).values())
         rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
-        ends = [len(rows)] if impulses == "direct" else np.cumsum([len(block) for block in blocks])
+        ends = [len(rows)] if sweeps is None else np.cumsum([len(block) for block in blocks])
         places = {row: r for r, row in enumerate(rows[:, 0].tolist())}
         return cls(
             points=tables.points,
@@ -110,8 +97,7 @@ class Problem(NamedTuple):
             rows=rows,
             first=np.array([0, *ends], dtype=np.int64),
             grounded=int((tables.clamps.body < 0).any()),
-            sweeps=sweeps,
-            iterations=ITERATIONS,
+            sweeps=sweeps or 1,
             tolerance=float(tolerance),
         )
 

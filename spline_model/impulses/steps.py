@@ -45,6 +45,8 @@ MOST_ENERGY = 100.0
 symplectic Euler lets the energy swing by a factor 1 / (1 - omega h / 2)."""
 FROM_REST = 1e-6
 """Energy in EI/L that a run may reach from rest."""
+ITERATIONS = 12
+"""Most Newton iterations of a stable step before it is halved."""
 EULER, START, BACKWARD = range(3)
 """Rules of a step: implicit Euler (q1 = q0 + h v1); the start (q1 = q0 + h (v0 + v1) / 2), which
 loses less; backward differences of second order from the two states before."""
@@ -223,7 +225,7 @@ def solve_step(span, lag, time, problem, space, counters):
     tolerance, rows, turns = problem.tolerance, problem.rows, problem.turns
     before = norm = 1e300
     slowest = 0.0
-    for _ in range(problem.iterations):
+    for _ in range(ITERATIONS):
         for i in range(v.size):
             z[i] = space.base[i] + span * v[i]
         slowest = fill(z, problem, time, space)

@@ -23,7 +23,6 @@ from spline_model.reduced.beside import condense_again, take_residual
 from spline_model.reduced.equilibrium import entry
 from spline_model.strip.compiled import copy, part
 from spline_model.strip.element import LAST
-from spline_model.strip.laws import MATERIAL
 
 ROUND_OFF = 1e-14
 """Part of the energy below which the gap between its change and the mean gradient's work is round-off: the
@@ -43,12 +42,11 @@ def _stored(y, arrays):
     bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
     local, space = arrays.local, arrays.space
     total = space.out[BENDING] + space.out[AXIAL] + space.out[DEAD]
-    if strips.measure == MATERIAL:
-        own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
-        for s in range(strips.roots.size):
-            at = bodies.rest.size + s * (own + modes) + own
-            for k in range(modes):
-                total += y[at + k] * local.axial[s, LAST, k]
+    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = bodies.rest.size + s * (own + modes) + own
+        for k in range(modes):
+            total += y[at + k] * local.gap[s, k]
     return total
 
 
@@ -64,7 +62,7 @@ def _look_ahead(poses, arrays):
         for i in range(2 * shape.order.size - 6):
             poses.energy[1] -= 0.5 * local.reduced[s, LAST, i] ** 2 / local.reduced[s, i, i]
         for k in range(strips.compliance.shape[1]):
-            poses.energy[1] += 0.5 * strips.gain[s, k] * local.axial[s, LAST, k] ** 2
+            poses.energy[1] += 0.5 * strips.gain[s, k] * local.gap[s, k] ** 2
     force, move = space.vectors[FORCE], space.vectors[MOVE]
     for i in range(poses.next.size):
         change = 0.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.bordered import assemble, evaluate
 from spline_model.compile import System
-from spline_model.effects import MixedStretching, StripDamping
+from spline_model.effects import Bending, MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
@@ -205,6 +205,12 @@ class Motion:
             names = [type(potential).__name__ for potential in self.system.open_potentials]
             raise InvalidParameter("integrator", name, f"generalised-alpha for {', '.join(names)}")
 
+    def require_material(self) -> None:
+        """Refuse another measure than the material one, which only the leapfrog integrates."""
+        for bending in self.system.scene.of(Bending):
+            if bending.measure != "material":
+                raise InvalidParameter("measure", bending.measure, "material, or the integrator leapfrog")
+
     def require_conservative(self, name: str) -> None:
         """Refuse damping, drives and loads: only the energy-consistent scheme has them."""
         if self.drag.size or self.damped or self.drives.row.size or self.loads.coordinate.size:
@@ -238,8 +244,6 @@ def set_in_motion(system: System) -> Motion:
     """The motion of a system; refuses a scene whose coordinates have no inertia."""
     if not system.scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    if any(effect.measure != "material" for effect in system.scene.of(MixedStretching)):
-        raise InvalidParameter("measure", "spatial", "material for the motion of mixed strips")
     return Motion(system, system.drives, system.loads)
 
 

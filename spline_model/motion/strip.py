@@ -18,12 +18,11 @@ from __future__ import annotations
 import math
 
 from spline_model.strip.compiled import called, kernel, part
-from spline_model.strip.laws import MATERIAL, curl_law
+from spline_model.strip.laws import bending_law, stretching_law
 from spline_model.strip.two_states import (
     bending_between,
     bending_strain,
     stretching_between,
-    stretching_energy,
 )
 
 
@@ -192,7 +191,7 @@ def _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pul
 @part()
 def add_points(s, a, h, state, strips, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
-    n, measure, force, blocks = strips.mass.shape[1], strips.measure, work.force[s], work.blocks
+    n, force, blocks = strips.mass.shape[1], work.force[s], work.blocks
     rate, strain, stretching = strips.relaxation[s] / h, strips.strain[s], strips.stretching[s]
     points, gap, pull, along = work.points[s], work.gap[s], work.pull, work.along
     _clear_points(s, a, strips, work)
@@ -207,7 +206,7 @@ def add_points(s, a, h, state, strips, work):
         ) = bending_between(
             old[0], old[1], old[2], old[3], v0, x1, y1, new[2], new[3], v1,
             speed, strips.curvature[s, p], strips.rigidity[s, p], strips.curl[s, p, 0],
-            strips.curl[s, p, 1], rate, measure,
+            strips.curl[s, p, 1], rate,
         )  # fmt: skip
         inverse, w, tension, stiffness = 1.0 / v1, 2.0 / (v0 + v1), 0.0, 0.0
         dx, dy = 0.5 * (old[0] + x1) * w, 0.5 * (old[1] + y1) * w
@@ -216,7 +215,7 @@ def add_points(s, a, h, state, strips, work):
             mean, modes = 0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0), strips.modes[s, p]
             tension = _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along)
         if stretching > 0.0:
-            tension, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate, measure)
+            tension, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate)
         turn = 0.5 * tension * w
         grow = stiffness - turn
         g0, g1 = weight * (g0 + tension * dx), weight * (g1 + tension * dy)
@@ -237,25 +236,22 @@ def add_points(s, a, h, state, strips, work):
 def look_at(s, old, new, step, strips, out):
     """Energies of a strip at its Gauss points: out[0] += strain energy of the new state; out[1] += what
     bending and consistent stretching dissipate over the step (0: none)."""
-    measure = strips.measure
     for p in range(strips.weight.size):
         speed, weight, rigidity = strips.speed[s, p], strips.weight[p], strips.rigidity[s, p]
-        v, v0 = new[p, 4], old[p, 4]
+        curvature, stretching, v, v0 = strips.curvature[s, p], strips.stretching[s], new[p, 4], old[p, 4]
         c = new[p, 0] * new[p, 3] - new[p, 1] * new[p, 2]
-        b, w = bending_strain(c, v, speed, strips.curvature[s, p], measure)
-        energy = 0.5 * weight * rigidity * b * b * w
-        if strips.curl[s, p, 1] > 0.0:
-            energy *= curl_law(b, strips.curl[s, p, 0], strips.curl[s, p, 1])[0]
-        out[0] += energy
-        if strips.stretching[s] > 0.0:
-            out[0] += weight * stretching_energy(v, speed, strips.strain[s], strips.stretching[s], measure)
+        out[0] += weight * bending_law(
+            c / (v * v), v, speed, curvature, rigidity, strips.curl[s, p, 0], strips.curl[s, p, 1],
+            strips.measure,
+        )[0]  # fmt: skip
+        if stretching > 0.0:
+            out[0] += weight * stretching_law(v, speed, strips.strain[s], stretching, strips.measure)[0]
         if strips.relaxation[s] > 0.0 and step > 0.0:
             rate = strips.relaxation[s] / step * weight
-            c = old[p, 0] * old[p, 3] - old[p, 1] * old[p, 2]
-            b0, w0 = bending_strain(c, v0, speed, strips.curvature[s, p], measure)
-            out[1] += rate * rigidity * 0.5 * (w + w0) * (b - b0) ** 2
-            long = speed if measure == MATERIAL else 0.5 * (v + v0)
-            out[1] += rate * strips.stretching[s] * long * ((v - v0) / speed) ** 2
+            c0 = old[p, 0] * old[p, 3] - old[p, 1] * old[p, 2]
+            change = bending_strain(c, v, speed, curvature) - bending_strain(c0, v0, speed, curvature)
+            out[1] += rate * rigidity * speed * change**2
+            out[1] += rate * stretching * speed * ((v - v0) / speed) ** 2
     for k in range(strips.compliance.shape[1]):
         if strips.compliance[s, k] > 0.0:
             strain = change = 0.0

@@ -35,7 +35,6 @@ from spline_model.strip.element import (
     WHERE,
 )
 from spline_model.strip.ends import place_points, to_element
-from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points
 
 Array = NDArray[np.float64]
@@ -79,16 +78,13 @@ def element_of(s, at, y, strips, shape, local, out):
 @part()
 def condensed(s, own, size, strips, local):
     """Condense strip s to its ends; returns its negative pivots, or SINGULAR."""
-    h, gram, modes = local.reduced[s], local.axial[s], strips.compliance.shape[1]
-    width = h.shape[1]
-    g, b, gap = h[LAST], h[width : width + modes], gram[LAST]
+    h, gap, modes = local.reduced[s], local.gap[s], strips.compliance.shape[1]
+    g, b = h[LAST], h[h.shape[1] : h.shape[1] + modes]
     if strips.coupled == 0:
         return condense(own, size, strips.gain[s], g, h, b, gap)
-    e, by_state = h[width + modes : width + 2 * modes], strips.measure != MATERIAL
     return condense_coupled(
-        own, size, strips.coupled, strips.outer, by_state, strips.compliance[s], strips.gain[s],
-        g, h, b, e, gap, gram,
-    )  # fmt: skip
+        own, size, strips.coupled, strips.outer, strips.compliance[s], strips.gain[s], g, h, b, gap
+    )
 
 
 @part()
@@ -106,7 +102,7 @@ def begin(y, load, bodies, space):
 @part()
 def residual_of(s, own, last, strips, local, space):
     """Largest residual of strip s; what it does to its bodies is added to RAW."""
-    g, gap, tip, root = local.reduced[s, LAST], local.axial[s, LAST], strips.tips[s], strips.roots[s]
+    g, gap, tip, root = local.reduced[s, LAST], local.gap[s], strips.tips[s], strips.roots[s]
     norm = 0.0
     for i in range(own):
         norm = max(norm, abs(g[i]))
@@ -193,7 +189,7 @@ def recovered(s, own, share, strips, local, change, dw, da):
     size = own + strips.coupled + 3 * tip + 3 * root
     recover(
         own, size, share, strips.coupled, strips.outer, strips.gain[s], h[LAST], h, h[width : width + modes],
-        local.axial[s, LAST], change, dw, da,
+        local.gap[s], change, dw, da,
     )  # fmt: skip
 
 

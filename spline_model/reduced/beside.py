@@ -23,12 +23,11 @@ from spline_model.strip.element import (
     MODES,
     POINTS,
     PULL_AT,
-    SHEAR,
     SPRING,
 )
-from spline_model.strip.ends import by_roots, by_tip, place_points, to_ends
+from spline_model.strip.ends import by_roots, place_points, to_ends
 from spline_model.strip.laws import MATERIAL
-from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four, spring_of, springs_of
+from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
 
 COVECTOR, ALONG = 0, 1
 """Rows of ``Local.nodal`` that are free once the Hessian is condensed: H v, and the rates of the points."""
@@ -50,8 +49,6 @@ def to_coordinates(s, v, last, strips, local):
     to_ends(v, first, local.map[s], strips.tips[s] >= 0, strips.roots[s] >= 0, g, first, last)
     if strips.numbers[s, SPRING] > 0.0:
         by_roots(v, first, local.nodal[s, POINTS], g)
-    if strips.numbers[s, SHEAR] > 0.0:
-        by_tip(v, first, 2 * (strips.numbers[s, SPRING] > 0.0), g)
 
 
 @part()
@@ -80,7 +77,7 @@ def condense_again(arrays):
     for s in range(strips.roots.size):
         h, tip, root = local.reduced[s], strips.tips[s], strips.roots[s]
         g, b, end = h[LAST], h[h.shape[1] : h.shape[1] + modes], last + 3 * (tip >= 0) + 3 * (root >= 0)
-        _forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, local.axial[s, LAST], g)
+        _forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, local.gap[s], g)
         for i in range(last, end + strips.outer):
             force[place_of(i - last, tip, root, bodies.rest.size + s)] += g[i]
 
@@ -120,7 +117,7 @@ def take_residual(y, load, arrays):
 
 @lane()
 def _product_at(
-    x1, y1, x2, y2, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, mixed, force,
+    x1, y1, x2, y2, h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, force,
     g0, g1, g2, g3, strain,
 ):  # fmt: skip
     """What the derivatives of the energy change by, as those of the curve and the axial force do.
@@ -128,12 +125,12 @@ def _product_at(
     strain: the change of their derivative in the axial force but for its own compliance.
     """
     for p in range(x1.size):
-        a1, b1, a2, b2, pull = x1[p], y1[p], x2[p], y2[p], mixed[p] * force[p]
+        a1, b1, a2, b2, pull = x1[p], y1[p], x2[p], y2[p], force[p]
         g0[p] = h00[p] * a1 + h01[p] * b1 + h02[p] * a2 + h03[p] * b2 + pull * tx[p]
         g1[p] = h01[p] * a1 + h11[p] * b1 + h12[p] * a2 + h13[p] * b2 + pull * ty[p]
         g2[p] = h02[p] * a1 + h12[p] * b1 + h22[p] * a2 + h23[p] * b2
         g3[p] = h03[p] * a1 + h13[p] * b1 + h23[p] * a2 + h33[p] * b2
-        strain[p] = mixed[p] * (tx[p] * a1 + ty[p] * b1)
+        strain[p] = tx[p] * a1 + ty[p] * b1
 
 
 @part()
@@ -142,7 +139,7 @@ def _add_product(s, a, points, shape, strips, local, covector):
 
     Behind ``evaluate_residual``, in the material measure; all but moment and speed is overwritten.
     """
-    lanes, along, gap = local.lanes[s], strips.along[s], local.axial[s, LAST]
+    lanes, along, gap = local.lanes[s], strips.along[s], local.gap[s]
     d1, d2, force, strain = shape.curve[0], shape.curve[1], lanes[FORCE_AT], lanes[PULL_AT]
     curve_at(points, d1, d2, four(lanes, 0))
     for p in range(along.shape[0]):
@@ -152,11 +149,11 @@ def _add_product(s, a, points, shape, strips, local, covector):
         force[p] = total
     h, more = four(lanes, HESSIAN_AT) + four(lanes, HESSIAN_AT + 4), four(lanes, HESSIAN_AT + 8)
     slopes = four(lanes, 4)
-    _product_at(*(four(lanes, 0) + h + more + (lanes[PULL_AT + 1], force) + slopes + (strain,)))
+    _product_at(*(four(lanes, 0) + h + more + (force,) + slopes + (strain,)))
     for i in range(covector.size):
         covector[i] = 0.0
-    for i in range(springs_of(strips.numbers[s])):
-        covector[i] = spring_of(i, strips.numbers[s]) * points[i]
+    for i in range(2 * (strips.numbers[s, SPRING] > 0.0)):
+        covector[i] = strips.numbers[s, SPRING + i] * points[i]
     add_slopes(d1.shape[0], d1, d2, slopes, covector)
     for k in range(a.size):
         total = -strips.compliance[s, k] * a[k]
@@ -168,15 +165,12 @@ def _add_product(s, a, points, shape, strips, local, covector):
 @part()
 def _rates_of_end(s, e, at, rate, strips):
     """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift, turn of its body, turn of its root."""
-    body, yields = strips.tips[s] if e else strips.roots[s], strips.numbers[s, SPRING] > 0.0
+    body = strips.tips[s] if e else strips.roots[s]
     x = y = turn = bend = 0.0
     if body >= 0:
         x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
-    if yields:
+    if strips.numbers[s, SPRING] > 0.0:
         bend = rate[at + e]
-    if e and strips.numbers[s, SHEAR] > 0.0:
-        x += rate[at + 2 * yields]
-        y += rate[at + 2 * yields + 1]
     return x, y, turn, bend
 
 

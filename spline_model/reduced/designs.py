@@ -17,7 +17,7 @@ from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.many import Designs
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section, place_of
-from spline_model.strip.element import PER_U, REACH, ROOT, SHEAR, SPRING, STRETCHING, TIP
+from spline_model.strip.element import PER_U, REACH, ROOT, SPRING, STRETCHING, TIP
 
 Array = NDArray[np.float64]
 
@@ -118,7 +118,7 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
 
 
 def _numbers(model: Reduced, base: Given, given: Given, energy: Array, wide: Array) -> Array:
-    """The numbers of ``Strips`` of each design (D, S, 15 + 2 n), by its energy (D,) and length (D, 1)."""
+    """The numbers of ``Strips`` of each design (D, S, 14 + 2 n), by its energy (D,) and length (D, 1)."""
     strips, turn = model.strips, given.chord / base.chord
     force = energy[:, None] / wide * (model.length / model.energy)
     area, _, modulus = np.moveaxis(given.section / base.section, -1, 0)
@@ -127,7 +127,7 @@ def _numbers(model: Reduced, base: Given, given: Given, energy: Array, wide: Arr
     numbers[..., STRETCHING] *= area * modulus / force
     numbers[..., PER_U:] *= (area * np.abs(turn) / force)[..., None]
     numbers[..., REACH:SPRING] *= (np.abs(turn) * (model.length / wide))[..., None]
-    numbers[..., SPRING:SHEAR] *= (springs * (model.energy / energy)[:, None])[..., None]
+    numbers[..., SPRING:PER_U] *= (springs * (model.energy / energy)[:, None])[..., None]
     for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
         numbers[..., place + 2] += np.angle(turn)
         for s, body in enumerate(carriers):

@@ -14,8 +14,6 @@ from spline_model import checks
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
-from spline_model.effects import Shear
-from spline_model.errors import InvalidParameter
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
     AXIAL,
@@ -274,7 +272,4 @@ def _places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
 def followed(system: System, method: str = "condensed") -> Followed:
     """The system to follow a path on: the elements, where they know the scene and are asked for."""
     model = reduced(system) if method == "condensed" else None
-    if model is None and system.scene.of(Shear):
-        known = 'none beside method="multipliers", long B-splines or own effects'
-        raise InvalidParameter("effects", "shear", known)
     return Followed.of(system) if model is None else Elements.of(system)

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Shear, Stretching
+from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Stretching
 from spline_model.reduced.arrays import Arrays, Bodies, Space
-from spline_model.reduced.numbers import GAIN, Ends, ends_of, shape_of, strips_of
+from spline_model.reduced.numbers import GAIN, ends_of, shape_of, strips_of
 from spline_model.scene import Scene
-from spline_model.strip.element import SHEAR, SPRING, Local, Shape, Strips
+from spline_model.strip.element import SPRING, Local, Shape, Strips
 from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
@@ -57,16 +57,6 @@ class Reduced:
         """Whether roots turn, by the first two of w: see ``spline_model.strip.ends``."""
         return bool(self.strips.numbers[0, SPRING] > 0.0)
 
-    @property
-    def shears(self) -> bool:
-        """Whether strips shear, by the next two of w."""
-        return bool(self.strips.numbers[0, SHEAR] > 0.0)
-
-    @property
-    def beside(self) -> int:
-        """Number of a strip's points on no curve, which w begins with."""
-        return self.yields + self.shears
-
     @cached_property
     def drive_length(self) -> Array:
         """Unit of each driven coordinate (D,): 1 rad or the length."""
@@ -86,10 +76,10 @@ class Reduced:
 
     def as_slender(self, *, slender: bool) -> Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
-        strips, modes = self.strips, int(self.strips.compliance.shape[1])
-        bodies = _bodies_of(self.system, ends_of(self.system), slender * len(strips.roots))
+        strips = self.strips
+        bodies = _bodies_of(self.system, slender * len(strips.roots))
         assert bodies is not None, "the mechanism is known already"
-        coupled = modes if strips.measure else (slender or self.shears) * strips.split
+        coupled = slender * strips.split
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
 
@@ -121,10 +111,10 @@ def _reduced(system: System) -> Reduced | None:
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
-    shape = shape_of(basis, points, bool(scene.of(RootCompliance)) + bool(scene.of(Shear)))
+    shape = shape_of(basis, points, bool(scene.of(RootCompliance)))
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
-    bodies = _bodies_of(system, ends, strips.outer * len(scene.strips))
+    bodies = _bodies_of(system, strips.outer * len(scene.strips))
     if bodies is None:
         return None
     return Reduced(
@@ -154,7 +144,7 @@ def _known(scene: Scene, system: System, longest: float) -> bool:
     )
 
 
-def _bodies_of(system: System, ends: Ends, outer: int) -> Bodies | None:
+def _bodies_of(system: System, outer: int) -> Bodies | None:
     """The bodies and what acts on them; None where a load acts on a clamped end."""
     scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
     length, force = system.scales.length, system.scales.energy / system.scales.length
@@ -204,7 +194,7 @@ def at_rest(model: Reduced) -> Array:
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
         w, _ = model.places(s)
-        y[w] = [*([0.0] * (2 * model.beside)), *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
+        y[w] = [*([0.0] * (2 * model.yields)), *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
     return y
 
 
@@ -217,12 +207,6 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
     for s, strip in enumerate(scene.strips):
         (w, a), n = model.places(s), strip.basis.control_points
         points = z[..., layout.strip(strip.name)].reshape(*z.shape[:-1], n, 2) / model.length
-        apart = np.zeros((*z.shape[:-1], 2))
-        if model.shears:  # the force of the clamp at the root is minus that along the strip
-            unit = model.length / model.energy / strips.numbers[s, SHEAR]
-            apart = z[..., scene.clamps[strip.name, "start"]][..., :2] * unit
-            at = w.start + 2 * model.yields
-            y[..., at : at + 2] = apart
         y[..., w.stop + 6 - 2 * n : w.stop - 2] = points[..., 2:-2, :].reshape(*z.shape[:-1], -1)
         for end, (bodies, frames, outer, inner) in enumerate(
             ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
@@ -232,7 +216,7 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
             turn = np.arctan2(chord[..., 1], chord[..., 0]) - frames[s, 2]
             if bodies[s] >= len(scene.bodies):  # a free end is its own body
                 place = 3 * bodies[s]
-                y[..., place : place + 2] = points[..., outer, :] - (apart if end else 0.0)
+                y[..., place : place + 2] = points[..., outer, :]
                 y[..., place + 2] = np.arctan2(np.sin(turn), np.cos(turn))
             if model.yields:
                 turn = turn - (y[..., 3 * bodies[s] + 2] if bodies[s] >= 0 else 0.0)

@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Shear, Stretching
+from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.strip.element import (
@@ -28,7 +28,6 @@ from spline_model.strip.element import (
     RIGIDITY,
     ROOT,
     SECOND,
-    SHEAR,
     SPEED,
     SPRING,
     STRAIN,
@@ -86,23 +85,23 @@ def ends_of(system: System) -> Ends:
 
 
 def in_order(points: Array, shape: Shape) -> Array:
-    """Values at control points (..., n, k) in the order of elimination, zero at those on no curve."""
-    on_none = np.zeros((*points.shape[:-2], 2, points.shape[-1]))
+    """Values at control points (..., n, k) in the order of elimination, zero at one on no curve."""
+    on_none = np.zeros((*points.shape[:-2], 1, points.shape[-1]))
     return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
 
 
 @lru_cache(maxsize=64)
-def shape_of(basis: SplineBasis, points: int, beside: int) -> Shape:
-    """The basis at the Gauss points; beside: points more on no curve (``spline_model.strip.ends``)."""
+def shape_of(basis: SplineBasis, points: int, yields: bool) -> Shape:
+    """The basis at the Gauss points; yields: with a point on no curve (``spline_model.strip.ends``)."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
     whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
     values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
-    if beside:
-        order = np.concatenate((np.arange(n, n + beside), order))
-        tables = np.concatenate((np.zeros((*tables.shape[:2], beside)), tables), axis=2)
+    if yields:
+        order = np.concatenate(([n], order))
+        tables = np.concatenate((np.zeros((*tables.shape[:2], 1)), tables), axis=2)
     return Shape.of(order, tables, np.array((u, weight)))
 
 
@@ -126,10 +125,6 @@ def strips_of(
     c *= energy / length
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
-    for shear in scene.of(Shear):
-        c[list(mixed).index(shear.strip), :split] -= shear.compliance * energy / length
-    beside_w = bool(scene.of(Shear)) or outer
-    small |= c < 0.0
     roots, tips = ([ends[name, end].body for name in mixed] for end in ("start", "end"))
     strips = Strips(
         along=_along(system, bends, shape.rule[WHERE], speed, rest, modes),
@@ -139,7 +134,7 @@ def strips_of(
         roots=np.array(roots, dtype=np.int64),
         tips=np.array(tips, dtype=np.int64),
         split=split,
-        coupled=c.shape[1] if measure else beside_w * split,
+        coupled=outer * split,
         outer=outer,
         measure=measure,
     )
@@ -160,13 +155,12 @@ def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: A
 
 
 def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
-    """The numbers of ``Strips``, (S, 15 + 2 n)."""
+    """The numbers of ``Strips``, (S, 14 + 2 n)."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
     roots = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
     mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
     consistent = {e.strip: e for e in scene.of(Stretching)}
-    shears = {e.strip: e for e in scene.of(Shear)}
     for row, strip in zip(numbers, scene.strips, strict=True):
         name, points = strip.name, strip.control_points.tolist()
         if name in mixed:
@@ -180,10 +174,7 @@ def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
         row[REACH] = math.dist(points[1], points[0]) / length
         row[REACH + 1] = math.dist(points[-1], points[-2]) / length
         if roots:  # a free end has a frame of its own, against which it does not turn
-            row[SPRING:SHEAR] = [roots.get((name, end), energy) / energy for end in ("start", "end")]
-        if name in shears:
-            whole = float(strip.share_of_length().sum())
-            row[SHEAR] = length**2 / (energy * shears[name].compliance * whole)
+            row[SPRING:PER_U] = [roots.get((name, end), energy) / energy for end in ("start", "end")]
     if system.weight.size:
         _add_dead(system, shape, numbers)
     return numbers

@@ -96,7 +96,7 @@ def _correct(s, at, own, y, strips, shape, local, room, tolerance, counters):
         for i in range(own):
             norm = max(norm, abs(local.reduced[s, LAST, i]))
         for k in range(strips.compliance.shape[1]):
-            norm = max(norm, abs(local.axial[s, LAST, k]))
+            norm = max(norm, abs(local.gap[s, k]))
         if not norm < 1e12:
             return -1
         negative = condensed(s, own, size, strips, local)
@@ -118,7 +118,7 @@ def _energy_at(s, at, own, y, strips, shape, local, room):
     energy = room.out[BENDING]
     for k in range(strips.compliance.shape[1]):
         c = strips.compliance[s, k]
-        y[at + own + k] += local.axial[s, LAST, k] / c
+        y[at + own + k] += local.gap[s, k] / c
         energy += 0.5 * c * y[at + own + k] ** 2
     if not min(room.out[SLOWEST], min(y[at + own - 2], y[at + own - 1])) > FOLD:
         return np.inf

@@ -14,7 +14,6 @@ from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, STRAIN, Strips
-from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_residual
 
 Array = NDArray[np.float64]
@@ -100,9 +99,7 @@ def swell(y, share, preload, arrays):
             total = preload.change[s]
             for i in range(2 * n + modes):
                 total[i] *= side
-                total[i] += sign * (
-                    local.nodal[s, GRADIENT, i] if i < 2 * n else local.axial[s, LAST, i - 2 * n]
-                )
+                total[i] += sign * (local.nodal[s, GRADIENT, i] if i < 2 * n else local.gap[s, i - 2 * n])
         slope += sign * (out[0] + out[1] + out[2])
         bend += 4.0 * (out[0] + out[1])
     act(share, preload, bodies, strips)
@@ -113,7 +110,7 @@ def swell(y, share, preload, arrays):
         slope += push[i] * (y[i] - bodies.rest[i])
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
-        given, g, gap = preload.change[s], local.reduced[s, LAST], local.axial[s, LAST]
+        given, g, gap = preload.change[s], local.reduced[s, LAST], local.gap[s]
         to_coordinates(s, given[: 2 * n], last, strips, local)
         for i in range(own):
             push[at + i] = g[i]
@@ -121,8 +118,7 @@ def swell(y, share, preload, arrays):
             push[place_of(i - last, tip, root, 0)] += g[i]
         for k in range(modes):
             push[at + own + k] = gap[k] = given[2 * n + k]
-            if strips.measure == MATERIAL:
-                slope += y[at + own + k] * gap[k]
+            slope += y[at + own + k] * gap[k]
     respond(arrays, rate)
     for i in range(y.size):
         bend += push[i] * rate[i]

@@ -15,9 +15,8 @@ from spline_model.reduced.assembly import place_of
 from spline_model.reduced.model import Reduced
 from spline_model.solution import Later
 from spline_model.strip.compiled import called, kernel
-from spline_model.strip.element import GRADIENT, LAST, POINTS, SHEAR
+from spline_model.strip.element import GRADIENT, LAST, POINTS
 from spline_model.strip.ends import place_points, to_element
-from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import evaluate_points, evaluate_residual
 
 Array = NDArray[np.float64]
@@ -62,7 +61,7 @@ def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
         "reactions": answer.reaction * (model.energy / model.drive_length),
         "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
         "stiffness": answer.stiffness * model.energy,
-        "energies": _energies(model, answer) * model.energy,
+        "energies": answer.energies * model.energy,
         "done": answer.done * model.energy,
         "inertia": answer.inertia,
         "moment_defect": answer.defect,
@@ -107,21 +106,6 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     return z
 
 
-def _energies(model: Reduced, answer: Answer) -> Array:
-    """Bending and axial energy (S, 2) of states [EI/L], where strips shear (S, 3) apart from the axial one
-    what the springs of their tips hold less the part of N: ``effects.Shear``."""
-    if not model.shears:
-        return answer.energies
-    strips, states = model.strips, len(answer.y)
-    own = answer.y[:, len(model.bodies.rest) :].reshape(states, len(strips.roots), -1)
-    spring, length = strips.numbers[:, SHEAR], strips.speed @ model.shape.weight
-    at, first = 2 * model.yields, 2 * len(model.shape.order) - 6
-    apart, force = own[..., at : at + 2], own[..., first : first + strips.split]
-    held = spring * (apart**2).sum(axis=-1) - (force**2).sum(axis=-1) / (spring * length)
-    shear, (bending, axial) = 0.5 * held.sum(axis=1), answer.energies.T
-    return np.stack((bending, axial - shear, shear), axis=1)
-
-
 def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
     """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' energy in y (S, Y), in EI/L, axial forces among y.
 
@@ -149,15 +133,15 @@ def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
 def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
     """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
 
-    The axial energy is int (N eps - 1/2 c N^2) W du, whose derivatives these are.
+    The axial energy is int (N eps - 1/2 c N^2) J0 du, whose derivatives these are.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
     a = y[at + own : at + own + modes]
     place_points(s, y[at : at + own], y, strips, local)
     evaluate_points(s, a, n, shape, strips, local, out)
-    size, h, gram = to_element(s, n, 0, strips, local), local.reduced[s], local.axial[s]
-    g, gap, width = h[LAST], gram[LAST], h.shape[1]
+    size, h, gap = to_element(s, n, 0, strips, local), local.reduced[s], local.gap[s]
+    g, width = h[LAST], h.shape[1]
     for i in range(size):
         row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
         gradient[row] += g[i]
@@ -171,12 +155,8 @@ def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessi
             hessian[axial + k, row] += h[width + k, i]
     for k in range(modes):
         gradient[axial + k] = gap[k]
-        if strips.measure == MATERIAL:
-            out[AXIAL] += a[k] * gap[k]
-            hessian[axial + k, axial + k] = -strips.compliance[s, k]
-        else:
-            for j in range(modes):
-                hessian[axial + k, axial + j] = -gram[k, j]
+        out[AXIAL] += a[k] * gap[k]
+        hessian[axial + k, axial + k] = -strips.compliance[s, k]
 
 
 def coordinates_by(model: Reduced, y: Array) -> Array:

@@ -63,9 +63,9 @@ class Elements:
     y: Array
 
     def _own(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield and the offset
-        of the tip where it shears, shares of the ends' reach (2, 1, ...), axial forces (K, ...) and poses
-        (2, 3, ...) of what carries root and tip; the ground's is zero."""
+        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield, shares of the
+        ends' reach (2, 1, ...), axial forces (K, ...) and poses (2, 3, ...) of what carries root and tip; the
+        ground's is zero."""
         y = np.concatenate((np.moveaxis(y, -1, 0), np.zeros((3, *y.shape[:-1]))))
         w = y[self._places[0]]
         return (
@@ -103,19 +103,12 @@ class Elements:
         """Of the free control points those that are the turns of the roots, (2, ...)."""
         return free[0] if self.model.yields else 0.0
 
-    def _apart(self, free: Array) -> Array | float:
-        """Of the free control points the tip's offset by shear, zero at the root, (2, 2, ...)."""
-        if not self.model.shears:
-            return 0.0
-        apart = free[int(self.model.yields)]
-        return np.stack((0.0 * apart, apart))
-
     @cached_property
     def points(self) -> Array:
         """Control points (n, 2, ...) in the order of elimination."""
         arm, stick, share = self._ends
         free, _, _, pose = self._state
-        clamped = pose[:, :2] + arm + self._apart(free)
+        clamped = pose[:, :2] + arm
         return _ordered(free, clamped + share * stick, clamped)
 
     @cached_property
@@ -142,14 +135,15 @@ class Elements:
 
     @cached_property
     def _stretching(self) -> tuple[Array, ...]:
-        """Axial energy, its derivatives in v, v v, N and N v."""
+        """Axial energy, its derivatives in v, v v and N."""
         strips, varied, v = self.model.strips, self.varied, self.curve.speed
         strain = strips.strain[:, None, None]
-        found = [np.zeros(())] * 5
+        found: list[Any] = [np.zeros(())] * 4
         if len(self.axial):
             parts = self._forces(self.axial)
+            force, by_n = sum(parts), mixed_law(v, varied.speed, strain)
             loss = varied.compliance[0] * parts[0] ** 2 + varied.compliance[1] * parts[1] ** 2
-            found = [*mixed_law(v, varied.speed, strain, sum(parts), loss, strips.measure)]
+            found = [force * by_n - 0.5 * loss * varied.speed, force, np.zeros(()), by_n]
         if strips.stretching.any():
             law = stretching_law(v, varied.speed, strain, varied.stretching, strips.measure)
             found[:3] = [a + b for a, b in zip(found, law, strict=False)]
@@ -162,22 +156,14 @@ class Elements:
 
     @cached_property
     def energies(self) -> tuple[Array, Array]:
-        """Bending and axial energy (P, S) of all strips [EI/L], not that of shear: see ``effects.Shear``."""
+        """Bending and axial energy (P, S) of all strips [EI/L]."""
         weight = self.model.shape.weight
         bending, axial = (np.tensordot(weight, law[0], 1) for law in (self._bending, self._stretching))
-        if self.model.shears:
-            strips = self.model.strips
-            length = (strips.speed @ self.model.shape.weight)[:, None, None]
-            axial = axial + 0.5 * (self.axial[: strips.split] ** 2).sum(axis=0) / (self.varied.shear * length)
         return bending.sum(axis=0) + self._of_roots(self._state[0]), axial.sum(axis=0)
 
     def _of_roots(self, free: Array) -> Array:
         """1/2 k psi^2 (P, S) of the roots' turns psi, the first of ``free``."""
         return np.asarray(0.5 * (self.varied.springs * self._turns(free) ** 2).sum(axis=(0, 1)))
-
-    def _of_shear(self, free: Array) -> Array:
-        """1/2 k |e|^2 (P, S) of the tips' offsets e by shear, which stand among ``free``."""
-        return np.asarray(0.5 * (self.varied.shear * self._apart(free) ** 2).sum(axis=(0, 1, 2)))
 
     def residual(self) -> tuple[Array, Array]:
         """Derivative of the strips' energy by y (P, S, Y); force and moment of the clamps at root and tip on
@@ -193,8 +179,6 @@ class Elements:
         force, moment = inner + clamped, share[:, 0] * _cross(stick, inner)
         if self.model.yields:
             g[0] = self.varied.springs * self._turns(self._state[0]) + moment
-        if self.model.shears:
-            g[int(self.model.yields)] = (self.varied.shear * self._apart(self._state[0]) + force)[1]
         w, a, poses = self._places
         out = np.zeros((self.model.size + 3, *g.shape[3:]), dtype=complex)
         out[w[:-2]] = g[: n - 4].reshape(len(w) - 2, *g.shape[2:])
@@ -208,11 +192,10 @@ class Elements:
     def _gap(self) -> Array:
         """What the axial forces do not agree with the stretch by, (K, ...)."""
         strips, by_n = self.model.strips, self._stretching[3]
-        length = self.curve.speed if strips.measure else self.varied.speed
         parts = []
         for k, force in enumerate(self._forces(self.axial)):
             modes = strips.modes[..., (slice(strips.split), slice(strips.split, None))[k]]
-            left = by_n - self.varied.compliance[k] * force * length
+            left = by_n - self.varied.compliance[k] * force * self.varied.speed
             parts.append(times_each((self.model.shape.weight[:, None] * modes).swapaxes(1, 2), left))
         return np.concatenate(parts)
 
@@ -222,7 +205,7 @@ class Elements:
         (arm, stick, share), (free, push, pull, pose) = self._ends, self._own(rate)
         spin = pose[:, 2:]
         swing = spin + (free[0][:, None] if self.model.yields else 0.0)
-        clamped = pose[:, :2] + spin * _across(arm) + self._apart(free)
+        clamped = pose[:, :2] + spin * _across(arm)
         turn = swing * _across(stick)
         back = -(spin**2) * arm
         bent = back + 2.0 * push * turn - share * swing**2 * stick
@@ -236,16 +219,13 @@ class Elements:
         phi1, v1 = (cross1 - phi * square1) / curve.square, 0.5 * square1 / v
         cross2 = cross2 + 2.0 * _cross(by.first, by.second) - 2.0 * phi1 * square1
         phi2, v2 = (cross2 - phi * square2) / curve.square, (0.5 * square2 - v1**2) / v
-        (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _, by_nv) = self._bending, self._stretching
+        (_, m, m_phi, m_v, f, f_v), (_, g, g_v, _) = self._bending, self._stretching
         density = m * phi2 + m_phi * phi1**2 + 2.0 * m_v * phi1 * v1 + (f + g) * v2 + (f_v + g_v) * v1**2
         if len(pull):
-            length, longer = (v, v1) if self.model.strips.measure else (varied.speed, 0.0)
-            parts = zip(varied.compliance, self._forces(self.axial), self._forces(pull), strict=True)
-            for c, force, by_force in parts:
-                density = density + by_force * (2.0 * by_nv * v1 - c * by_force * length)
-                density = density - 2.0 * c * by_force * force * longer
+            for c, by_force in zip(varied.compliance, self._forces(pull), strict=True):
+                density = density + by_force * (2.0 * v1 - c * by_force * varied.speed)
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
-        return np.asarray(total.sum(axis=0) + 2.0 * (self._of_roots(free) + self._of_shear(free)))
+        return np.asarray(total.sum(axis=0) + 2.0 * self._of_roots(free))
 
 
 def _ordered(free: Array, inner: Array, clamped: Array) -> Array:

@@ -18,7 +18,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced
-from spline_model.strip.element import CURL, SHEAR, SPRING
+from spline_model.strip.element import CURL, PER_U, SPRING
 
 Array = NDArray[np.float64]
 Numbers = NDArray[Any]
@@ -167,10 +167,10 @@ class Varied(NamedTuple):
     """What of ``Strips`` knows the design, (..., G, P, 1) each: by P parameters, the same at all states.
 
     speed, stretching; bending, the rigidity EI, and aspect, the width over the length over that of the
-    design, which ``along`` takes; curl as in ``Strips``; springs (2, ...) of the roots; shear, the spring of
-    the tip; compliance (2, ...) of stretching and sliding; frames (2, 3, ...) of root and tip; reach
-    (2, ...), away from the clamp; dead (n, 2, ...); area [m^2], second_moment [m^4]; longer: the length over
-    that of the design. All else is over L and EI/L of the design.
+    design, which ``along`` takes; curl as in ``Strips``; springs (2, ...) of the roots; compliance (2, ...)
+    of stretching and sliding; frames (2, 3, ...) of root and tip; reach (2, ...), away from the clamp;
+    dead (n, 2, ...); area [m^2], second_moment [m^4]; longer: the length over that of the design. All else
+    is over L and EI/L of the design.
     """
 
     speed: Numbers
@@ -178,7 +178,6 @@ class Varied(NamedTuple):
     aspect: Numbers
     curl: Numbers
     springs: Numbers
-    shear: Numbers
     stretching: Numbers
     compliance: Numbers
     frames: Numbers
@@ -211,8 +210,7 @@ class Varied(NamedTuple):
             bending=_spread(rigidity) * second_moment * modulus,
             aspect=width / longer,
             curl=_spread(strips.along[:, 0, CURL]) * width**2 / thickness,
-            springs=_spread(strips.numbers[:, SPRING:SHEAR].T) * second_moment * modulus / thickness,
-            shear=_spread(strips.numbers[:, SHEAR]) * area * modulus / longer,
+            springs=_spread(strips.numbers[:, SPRING:PER_U].T) * second_moment * modulus / thickness,
             stretching=_spread(strips.stretching) * area * modulus,
             compliance=_spread(compliance) * np.stack((1.0 / area, longer**2 / second_moment)) / modulus,
             frames=frames + step * moved,

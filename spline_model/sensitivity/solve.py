@@ -56,7 +56,7 @@ def sensitivities(
     back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
     reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
     the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
-    the plate's own solution), sections that flatten, roots that turn and shear. The slide stiffness goes
+    the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes
     with the design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own
     potentials. Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
     (1992), ch. 7.
@@ -122,7 +122,7 @@ def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tu
     left = force[0].real.copy()
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
     at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
-    on_curve = slice(model.beside, None)
+    on_curve = slice(int(model.yields), None)
     order = model.shape.order[on_curve]
     given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, order] / model.length
     apart = still.points[on_curve, ..., 0, :].real.transpose(3, 0, 1, 2) - given

@@ -1,8 +1,8 @@
 """Condensation of a strip to its ends: axial forces and own coordinates are eliminated.
 
 Where a compliance is large enough to divide by, an axial force goes first. Where it is too small
-(inextensible strips) or depends on the state (the spatial measure) its row is combined with those
-of w exactly: with the congruence a = a' + G B w, G any gain,
+(inextensible strips) its row is combined with those of w exactly: with the congruence a = a' + G B w,
+G any gain,
 
     [ H   B^T ]          [ H + B^T G (B + E)   E^T ]
     [ B   -C  ]   --->   [ E                   -C  ],    E = (I - C G) B,
@@ -58,42 +58,31 @@ def eliminate(count, size, g, h):
 
 
 @called()
-def condense_coupled(own, size, coupled, outer, by_state, compliance, gain, g, h, b, e, gap, gram):
-    """The same with ``coupled`` axial forces beside w, the first ``outer`` of them left with the ends.
-
-    by_state: whether C is that of the state, gram, or diagonal, the compliances.
-    """
+def condense_coupled(own, size, coupled, outer, compliance, gain, g, h, b, gap):
+    """The same with ``coupled`` axial forces beside w, the first ``outer`` of them left with the ends."""
     last, end = own + coupled - outer, size - outer
     for k in range(gap.size):
-        row, mixed = b[k], e[k]
+        row, rest = b[k], 1.0 - compliance[k] * gain[k]
+        push, twice = gain[k] * gap[k], gain[k] * (1.0 + rest)
         for i in range(end):
-            mixed[i] = row[i]
-        for j in range(gap.size):
-            c = gram[k, j] if by_state else (compliance[k] if j == k else 0.0)
-            left = c * gain[j]
-            if left != 0.0:
-                for i in range(end):
-                    mixed[i] -= left * b[j, i]
-        push = gain[k] * gap[k]
-        for i in range(end):
-            left = gain[k] * row[i]
+            left = twice * row[i]
             g[i] += push * row[i]
             for j in range(i, end):
-                h[i, j] += left * (row[j] + mixed[j])
+                h[i, j] += left * row[j]
     for k in range(coupled):
+        row, rest = b[k], 1.0 - compliance[k] * gain[k]
         at = end if k < outer else own + k - outer
         g[at] = gap[k]
         for i in range(own):
-            h[i, at] = e[k, i]
+            h[i, at] = rest * row[i]
         for j in range(last, end):
             if k < outer:
-                h[j, at] = e[k, j]
+                h[j, at] = rest * row[j]
             else:
-                h[at, j] = e[k, j]
+                h[at, j] = rest * row[j]
         for j in range(k, coupled):
-            c = gram[k, j] if by_state else (compliance[k] if j == k else 0.0)
             other = end if j < outer else own + j - outer
-            h[min(at, other), max(at, other)] = -c
+            h[min(at, other), max(at, other)] = -compliance[k] if j == k else 0.0
     negative = eliminate(last, size, g, h)
     return negative if negative == SINGULAR else negative + outer - coupled
 

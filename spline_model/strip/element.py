@@ -32,16 +32,16 @@ WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
 SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
 """Places along a strip, ``Strips.along``."""
-STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, SHEAR, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 13, 15
+STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 14
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
-HESSIAN_AT, TANGENT_AT, SPEED_AT, MOMENT_AT, PULL_AT, GIVEN, FORCE_AT, LANES = 8, 18, 20, 21, 22, 24, 30, 32
+HESSIAN_AT, TANGENT_AT, SPEED_AT, MOMENT_AT, PULL_AT, GIVEN, FORCE_AT, LANES = 8, 18, 20, 21, 22, 23, 29, 30
 """Rows of ``Local.lanes`` behind x', y', x'', y'' and the derivatives of the energy in them, and their count:
-its second derivatives, the unit tangent, |C'|, the moment, the derivatives in N, what is given there, and
-both parts of N."""
+its second derivatives, the unit tangent, |C'|, the moment, the derivative in N, what is given there, and
+N."""
 LAST = -1
-"""Row of g in ``Local.reduced``, and of the gap in ``Local.axial``."""
+"""Row of g in ``Local.reduced``."""
 
 
 class Shape(NamedTuple):
@@ -91,12 +91,12 @@ class Strips(NamedTuple):
     along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
     axial force at the Gauss points, orthonormal, of which ``split`` belong to the stretching, the others to
     the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are
-    condensed; numbers (S, 15 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
+    condensed; numbers (S, 14 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
     root and tip, three each, the clamped point in its body's frame, or on the ground, and direction at rest
-    [rad]; reach, k_A and k_B; springs of both roots in EI/L, or 0, and of shear in EI/L^3, or 0
+    [rad]; reach, k_A and k_B; springs of both roots in EI/L, or 0
     (``spline_model.strip.ends``); dead load per du, two, and on the control points; roots, tips (S,) bodies
     or GROUNDED; coupled: leading axial forces that stay beside w, where a compliance is too small to divide
-    by, negative or not constant; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
+    by; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
     """
 
     along: Array
@@ -166,15 +166,14 @@ class Local(NamedTuple):
 
     nodal (S, 2 n + K + 3, 2 n), in the control points: the Hessian, the coupling of the axial forces, and
     in its last rows LEVER, GRADIENT and POINTS: moment of the tip's reaction about the points (n), gradient
-    and the points themselves; reduced (S, E + 2 K + 1, E), in the element's coordinates: h, then b and e, the
-    coupling and its combination, and last g; axial (S, K + 1, K): derivative of -gap in a, and last the gap;
-    lanes (S, LANES, G) at the Gauss points; pairs (4, P) of control points as in ``Shape``; map (S, 16) of
-    the ends; scratch (17, 8).
+    and the points themselves; reduced (S, E + K + 1, E), in the element's coordinates: h, then b, the
+    coupling, and last g; gap (S, K) of the axial forces; lanes (S, LANES, G) at the Gauss points; pairs
+    (4, P) of control points as in ``Shape``; map (S, 16) of the ends; scratch (17, 8).
     """
 
     nodal: Array
     reduced: Array
-    axial: Array
+    gap: Array
     lanes: Array
     pairs: Array
     map: Array
@@ -187,8 +186,8 @@ class Local(NamedTuple):
         size = 2 * n - 6 + coupled + 7
         shapes = (
             (s, 2 * n + k + 3, 2 * n),
-            (s, size + 2 * k + 1, size),
-            (s, k + 1, k),
+            (s, size + k + 1, size),
+            (s, k),
             (s, LANES, gauss_points),
             (4, -(-n * (n + 1) // 16) * 8),
             (s, 16),

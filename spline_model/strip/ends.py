@@ -2,9 +2,7 @@
 
 Where roots turn (``effects.RootCompliance``) the strips have a point more, the first in the order of
 elimination, that is on no curve: its coordinates are the turns of the root's and the tip's frame against
-their bodies, of which P_1 and P_(n-2) know alone. Springs hold them. Where strips shear
-(``effects.Shear``) they have another such point: how far P_(n-1), with P_(n-2), is from what the tip is
-clamped to, in the ground's frame, against a spring as well.
+their bodies, of which P_1 and P_(n-2) know alone. Springs hold them.
 """
 
 from __future__ import annotations
@@ -12,7 +10,7 @@ from __future__ import annotations
 import math
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, SHEAR, SPRING, TIP
+from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, SPRING, TIP
 
 
 @called()
@@ -94,41 +92,6 @@ def _add_roots(s, at, special, behind, tip, root, strips, local):
             h[couplings + k, e] += x * row[inner + 1] - y * row[inner]
 
 
-@called()
-def by_tip(v, at, place, out):
-    """Add a covector's entries at P_(n-2) and P_(n-1), from v[at] on, in the tip's offset to out[place:]."""
-    for c in range(2):
-        out[place + c] += v[at + 2 + c] + v[at + 4 + c]
-
-
-@called()
-def _add_shear(s, at, special, behind, tip, root, strips, local):
-    """Add the offset of the tip, as ``_add_roots`` does the turns of roots, behind which it stands."""
-    hessian, h, ends, line = local.nodal[s], local.reduced[s], local.map[s], local.scratch[16]
-    points, axial, couplings, place = (
-        hessian[POINTS],
-        hessian.shape[1],
-        h.shape[1],
-        2 * (strips.numbers[s, SPRING] > 0.0),
-    )
-    by_tip(hessian[GRADIENT], at, place, h[LAST])
-    for c in range(2):
-        row, inner, outer = place + c, at + 2 + c, at + 4 + c
-        for j in range(place + 2, at):
-            h[row, j] += hessian[j, inner] + hessian[j, outer]
-        for i in range(8):
-            line[i] = hessian[inner, at + i] + hessian[outer, at + i] if i < special else 0.0
-        to_ends(line, 0, ends, tip, root, h[row], at, behind)
-        for d in range(c, 2):
-            h[row, place + d] += line[2 + d] + line[4 + d]
-        for e in range(place):  # the turns of roots
-            mine, there = at + 2 * e, at + 6 - 2 * e
-            x, y = points[mine] - points[there], points[mine + 1] - points[there + 1]
-            h[e, row] += x * line[2 * e + 1] - y * line[2 * e]
-        for k in range(strips.compliance.shape[1]):
-            h[couplings + k, row] += hessian[axial + k, inner] + hessian[axial + k, outer]
-
-
 @part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
@@ -152,9 +115,6 @@ def place_points(s, w, pose, strips, local):
     ends[2], ends[3] = kx, ky
     ends[4], ends[5] = frame[5] - points[inner + 3], points[inner + 2] - frame[4]
     ends[6], ends[7] = frame[5] - frame[1], frame[0] - frame[4]
-    if numbers[SHEAR] > 0.0:
-        for i in range(inner + 2, inner + 6):
-            points[i] += w[2 * yields + i % 2]
 
 
 @part()
@@ -228,6 +188,4 @@ def to_element(s, moving, inner, strips, local):
     _add_turns(s, at, behind, tip, root, local)
     if strips.numbers[s, SPRING] > 0.0:
         _add_roots(s, at, special, behind, tip, root, strips, local)
-    if strips.numbers[s, SHEAR] > 0.0:
-        _add_shear(s, at, special, behind, tip, root, strips, local)
     return behind + 3 * tip + 3 * root

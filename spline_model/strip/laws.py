@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.element import SHEAR, SPRING
 
 MATERIAL, SPATIAL = range(2)
 
@@ -114,34 +113,24 @@ def stretching_law(v, speed, strain0, rigidity, measure):
 
 
 @part()
-def mixed_law(v, speed, strain0, force, loss, measure):
-    """Mixed stretching, (N eps - 1/2 q) W: value, its derivatives in v, v v and N, and that one's in v.
-
-    force: N; loss: q, the sum of c N^2 over the parts of N. W = J0, or v in the spatial measure;
-    the derivative in a part of N is by_n - c N W.
-    """
-    eps = v / speed - 1.0 - strain0
-    if measure == MATERIAL:
-        return (force * eps - 0.5 * loss) * speed, force, 0.0, eps * speed, 1.0
-    density = force * eps - 0.5 * loss
-    return density * v, density + force * v / speed, 2.0 * force / speed, eps * v, eps + v / speed
+def mixed_law(v, speed, strain0):
+    """Mixed stretching, N eps J0: its derivative in N, eps J0, whose own in v is 1; the one in v is N."""
+    return (v / speed - 1.0 - strain0) * speed
 
 
 @part()
-def axial_laws(v, speed, strain, count, stretching, force, sliding, soft, slide_soft, measure):
-    """Stretching, mixed or by quadrature: stored energy, derivatives in v, v v and N, and that one's in v.
+def axial_laws(v, speed, strain, count, stretching, force, measure):
+    """Stretching, mixed or by quadrature: stored energy, its derivatives in v, v v and N.
 
-    force, sliding: both parts of N, of the compliances soft and slide_soft.
+    force: N. The mixed form's energy is that of its forces' compliances, which is not in it.
     """
-    stored = by_v = by_vv = by_n = by_nv = 0.0
+    stored = by_v = by_vv = by_n = 0.0
     if count > 0:
-        loss = soft * force * force + slide_soft * sliding * sliding
-        density, by_v, by_vv, by_n, by_nv = mixed_law(v, speed, strain, force + sliding, loss, measure)
-        stored = density if measure != MATERIAL else 0.0
+        by_v, by_n = force, mixed_law(v, speed, strain)
     if stretching > 0.0:
-        density, more, much = stretching_law(v, speed, strain, stretching, measure)
-        stored, by_v, by_vv = stored + density, by_v + more, by_vv + much
-    return stored, by_v, by_vv, by_n, by_nv
+        stored, more, by_vv = stretching_law(v, speed, strain, stretching, measure)
+        by_v += more
+    return stored, by_v, by_vv, by_n
 
 
 @part()
@@ -166,15 +155,3 @@ def by_curve(weight, a1, b1, r, ex, ey, phi, p0, p1, p2, p3, m, m_phi, m_v, side
         bend * p2 * p3,
         bend * p3 * p3,
     )
-
-
-@part()
-def springs_of(numbers):
-    """Number of a strip's coordinates on no curve, which springs hold: turns of roots, offset of shear."""
-    return 2 * (numbers[SPRING] > 0.0) + 2 * (numbers[SHEAR] > 0.0)
-
-
-@part()
-def spring_of(i, numbers):
-    """Stiffness of the i-th of these springs."""
-    return numbers[SPRING + i] if i < 2 * (numbers[SPRING] > 0.0) else numbers[SHEAR]

@@ -19,7 +19,6 @@ from spline_model.strip.element import (
     GIVEN,
     GRADIENT,
     HESSIAN_AT,
-    LAST,
     MODES,
     ON_POINTS,
     POINTS,
@@ -34,13 +33,10 @@ from spline_model.strip.element import (
     WEIGHT,
 )
 from spline_model.strip.laws import (
-    MATERIAL,
     axial_laws,
     bending_law,
     by_curve,
     curl_law,
-    spring_of,
-    springs_of,
 )
 
 
@@ -67,16 +63,14 @@ def curve_at(points, d1, d2, curve):
 
 @part()
 def _given_at(s, a, strips, lanes):
-    """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, both parts of N."""
-    along, split = strips.along[s], strips.split
+    """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, N."""
+    along = strips.along[s]
     for p in range(along.shape[0]):
-        at, force, sliding = along[p], 0.0, 0.0
-        for k in range(split):
+        at, force = along[p], 0.0
+        for k in range(a.size):
             force += at[MODES + k] * a[k]
-        for k in range(split, a.size):
-            sliding += at[MODES + k] * a[k]
         lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
-        lanes[FORCE_AT, p], lanes[FORCE_AT + 1, p] = force, sliding
+        lanes[FORCE_AT, p] = force
         if at[CURL] > 0.0:
             x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
             phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
@@ -86,15 +80,14 @@ def _given_at(s, a, strips, lanes):
 
 @lane()
 def laws_at(
-    measure, count, strain, stretching, soft, slide_soft, weights, x1, y1, x2, y2, g0, g1, g2, g3,
-    h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, lengths, moments, pulls, mixed,
-    speed, curvature, rigidity, by_e, by_m, by_t, stretch, slide,
+    measure, count, strain, stretching, weights, x1, y1, x2, y2, g0, g1, g2, g3,
+    h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, lengths, moments, pulls,
+    speed, curvature, rigidity, by_e, by_m, by_t, force,
 ):  # fmt: skip
     """The laws at the Gauss points; returns bending and axial energy.
 
-    soft, slide_soft: compliances of both parts of N. Filled are rows, times the weight: g, h, derivatives
-    in (x', y', x'', y''); the unit tangent; |C'|; the moment; derivatives of the axial energy in N, and
-    that one's in |C'|. Behind them is what ``_given_at`` fills.
+    Filled are rows, times the weight: g, h, derivatives in (x', y', x'', y''); the unit tangent; |C'|; the
+    moment; derivatives of the axial energy in N. Behind them is what ``_given_at`` fills.
     """
     bending = axial = 0.0
     for p in range(weights.size):
@@ -108,12 +101,10 @@ def laws_at(
         )
         m, m_phi = m * by_m[p], m_phi * by_t[p]
         bending += weight * density * by_e[p]
-        stored, by_v, by_vv, by_n, by_nv = axial_laws(
-            v, speed[p], strain, count, stretching, stretch[p], slide[p], soft, slide_soft, measure
-        )
+        stored, by_v, by_vv, by_n = axial_laws(v, speed[p], strain, count, stretching, force[p], measure)
         f, f_v = f + by_v, f_v + by_vv
         axial += weight * stored
-        lengths[p], moments[p], pulls[p], mixed[p] = v, m, weight * by_n, by_nv
+        lengths[p], moments[p], pulls[p] = v, m, weight * by_n
         tx[p], ty[p] = weight * ex, weight * ey
         # gradient of phi in (x', y', x'', y'')
         p0, p1 = (b2 - 2.0 * phi * a1) * r, (-a2 - 2.0 * phi * b1) * r
@@ -165,47 +156,27 @@ def _couple(moving, d1, share, tangent, row):
 
 
 @part()
-def _add_gaps(s, a, shape, strips, local):
-    """Gap of all axial forces; returns their own energy, of the material measure."""
-    along, split, compliance, measure = strips.along[s], strips.split, strips.compliance[s], strips.measure
-    lanes, gap, axial = local.lanes[s], local.axial[s, LAST], 0.0
+def _add_gaps(s, a, strips, local):
+    """Gap of all axial forces; returns their own energy."""
+    along, compliance, lanes, gap = strips.along[s], strips.compliance[s], local.lanes[s], local.gap[s]
+    axial = 0.0
     for k in range(a.size):
         c, mode, total = compliance[k], MODES + k, 0.0
         for p in range(along.shape[0]):
             total += along[p, mode] * lanes[PULL_AT, p]
-        if measure == MATERIAL:
-            total -= c * a[k]
-            axial += 0.5 * c * a[k] * a[k]
-        else:
-            mine = lanes[FORCE_AT + (k >= split)]
-            for p in range(along.shape[0]):
-                total -= c * along[p, mode] * shape.rule[WEIGHT, p] * lanes[SPEED_AT, p] * mine[p]
-        gap[k] = total
+        gap[k] = total - c * a[k]
+        axial += 0.5 * c * a[k] * a[k]
     return axial
 
 
 @part()
 def _add_axial(s, count, moving, shape, strips, local):
-    """Coupling of all axial forces to the first ``moving`` places, and derivatives of the gaps in them."""
-    along, split, compliance, measure = strips.along[s], strips.split, strips.compliance[s], strips.measure
-    lanes, gram, d1, points = local.lanes[s], local.axial[s], shape.curve[0], along.shape[0]
-    speeds, _, _, mixed = four(lanes, SPEED_AT)
+    """Coupling of all axial forces to the first ``moving`` places."""
+    along, lanes, d1 = strips.along[s], local.lanes[s], shape.curve[0]
     tangent, share, first = (lanes[TANGENT_AT], lanes[TANGENT_AT + 1]), lanes[0], 2 * d1.shape[0]
     for k in range(count):
-        c, mode = compliance[k], MODES + k
-        for p in range(points):
-            share[p] = along[p, mode] * mixed[p]
-        if measure != MATERIAL:
-            begin, end = (0, split) if k < split else (split, count)
-            for j in range(count):
-                gram[k, j] = 0.0
-            mine = lanes[FORCE_AT + (k >= split)]
-            for p in range(points):
-                loss = c * along[p, mode]
-                share[p] -= loss * mine[p]
-                loss *= shape.rule[WEIGHT, p] * speeds[p]
-                for j in range(begin, end):
-                    gram[k, j] += loss * along[p, MODES + j]
+        for p in range(along.shape[0]):
+            share[p] = along[p, MODES + k]
         _couple(moving, d1, share, tangent, local.nodal[s, first + k])
 
 
@@ -235,19 +206,16 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
 
     Adds bending, axial and the dead load's energy to the first three of out; out[3] becomes the least v / J0.
     """
-    numbers, lanes, compliance = strips.numbers[s], local.lanes[s], strips.compliance[s]
+    numbers, lanes = strips.numbers[s], local.lanes[s]
     d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
     curve_at(points, d1, d2, four(lanes, 0))
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
-    more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + four(lanes, 28)
-    soft = compliance[0] if a.size > 0 else 0.0
-    slide_soft = compliance[strips.split] if strips.split < a.size else 0.0
+    more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
     bending, axial = laws_at(
-        strips.measure, a.size, numbers[STRAIN], numbers[STRETCHING], soft, slide_soft, shape.rule[WEIGHT],
-        *(rows + more),
-    )  # fmt: skip
+        strips.measure, a.size, numbers[STRAIN], numbers[STRETCHING], shape.rule[WEIGHT], *(rows + more)
+    )
     slowest = np.inf
     for p in range(lanes.shape[1]):
         slowest = min(slowest, lanes[SPEED_AT, p] / lanes[GIVEN, p])
@@ -255,16 +223,12 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
-    turns = 2 * (numbers[SPRING] > 0.0)
-    for i in range(springs_of(numbers)):
-        push = spring_of(i, numbers) * points[i]
+    for i in range(2 * (numbers[SPRING] > 0.0)):
+        push = numbers[SPRING + i] * points[i]
         gradient[i] += push
-        if i < turns:
-            bending += 0.5 * push * points[i]
-        else:
-            axial += 0.5 * push * points[i]
+        bending += 0.5 * push * points[i]
     out[0] += bending
-    out[1] += axial + _add_gaps(s, a, shape, strips, local)
+    out[1] += axial + _add_gaps(s, a, strips, local)
     out[3] = min(out[3], slowest)
 
 
@@ -274,6 +238,6 @@ def evaluate_points(s, a, moving, shape, strips, local, out):
     evaluate_residual(s, a, moving, shape, strips, local, out)
     numbers, hessian = strips.numbers[s], local.nodal[s]
     _add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
-    for i in range(springs_of(numbers)):
-        hessian[i, i] = spring_of(i, numbers)
+    for i in range(2 * (numbers[SPRING] > 0.0)):
+        hessian[i, i] = numbers[SPRING + i]
     _add_axial(s, a.size, moving, shape, strips, local)

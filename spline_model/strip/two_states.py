@@ -3,8 +3,8 @@
 A discrete gradient DV(p0, p1) satisfies DV . (p1 - p0) = V(p1) - V(p0) exactly and tends to the
 gradient as p1 -> p0. It is built from the product rule d(fg) = mean(f) dg + mean(g) df, which
 needs no division by the step and is frame indifferent. With v = |C'| the difference of v is
-mean(C') / mean(v) . dC', and phi = c s^-k the product of c = x' y'' - y' x'' and a power of
-s = v^2. A viscous stress, ``rate`` times the change of the strain, is beside the mean elastic
+mean(C') / mean(v) . dC', and phi = c / s the quotient of c = x' y'' - y' x'' and s = v^2. All is in
+the material measure. A viscous stress, ``rate`` times the change of the strain, is beside the mean elastic
 one. Dimensionless as in ``spline_model.strip.laws``. Sources: McLachlan, Quispel and Robidoux,
 Phil Trans R Soc A 357 (1999) 1021; Gonzalez, J Nonlinear Sci 6 (1996) 449.
 """
@@ -12,7 +12,7 @@ Phil Trans R Soc A 357 (1999) 1021; Gonzalez, J Nonlinear Sci 6 (1996) 449.
 from __future__ import annotations
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.laws import MATERIAL, curl_law
+from spline_model.strip.laws import curl_law
 
 GAUSS = (
     (0.5 - 0.4305681557970263, 0.17392742256872692),
@@ -24,28 +24,16 @@ GAUSS = (
 
 
 @part()
-def _powers_between(v0, v1, measure):
-    """Mean of s^-k, its divided difference, derivatives of both in s1; s^-k of each state, its derivative.
-
-    k = 1 for the material measure and 3/2 for the spatial one.
-    """
-    s0, s1 = v0 * v0, v1 * v1
-    if measure == MATERIAL:
-        r0, r1 = 1.0 / s0, 1.0 / s1
-        return 0.5 * (r0 + r1), -r0 * r1, -0.5 * r1 * r1, r0 * r1 * r1, r0, r1, -r1 * r1
-    square, cubes = s0 + v0 * v1 + s1, s0 * v0 * s1 * v1
-    divided = -square / (cubes * (v0 + v1))
-    by_v1 = divided * ((v0 + 2.0 * v1) / square - 3.0 / v1 - 1.0 / (v0 + v1))
-    r0, r1 = 1.0 / (s0 * v0), 1.0 / (s1 * v1)
-    return 0.5 * (r0 + r1), divided, -0.75 * r1 / s1, 0.5 * by_v1 / v1, r0, r1, -1.5 * r1 / s1
+def _powers_between(v0, v1):
+    """Mean of 1/s, its divided difference, derivatives of both in s1; 1/s of each state, its derivative."""
+    r0, r1 = 1.0 / (v0 * v0), 1.0 / (v1 * v1)
+    return 0.5 * (r0 + r1), -r0 * r1, -0.5 * r1 * r1, r0 * r1 * r1, r0, r1, -r1 * r1
 
 
 @part()
-def bending_strain(c, v, speed, curvature, measure):
-    """The strain b of bending and the length that it acts on, per du: 1/2 EI b^2 times it is the energy."""
-    if measure == MATERIAL:
-        return c / (v * v * speed) - curvature, speed
-    return c / (v * v * v) - curvature, v
+def bending_strain(c, v, speed, curvature):
+    """The strain b of bending, in the material measure."""
+    return c / (v * v * speed) - curvature
 
 
 @called()
@@ -70,10 +58,10 @@ def mean_moment(e0, e1, drop, curl):
 
 
 @part()
-def _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1, measure):
-    """Discrete gradient of c s^-k in (x', y', x'', y''), its derivative without what vanishes, by rows, the
-    derivative of c s^-k at the second state, and s^-k at both."""
-    mean, divided, mean_s, divided_s, r0, r1, slope = _powers_between(v0, v1, measure)
+def _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1):
+    """Discrete gradient of c / s in (x', y', x'', y''), its derivative without what vanishes, by rows, the
+    derivative of c / s at the second state, and 1 / s at both."""
+    mean, divided, mean_s, divided_s, r0, r1, slope = _powers_between(v0, v1)
     middle = 0.5 * (c0 + c1)
     m0, m1, m2, m3 = 0.5 * (a0 + x1), 0.5 * (b0 + y1), 0.5 * (a2 + x2), 0.5 * (b2 + y2)
     factor = 2.0 * middle * divided
@@ -115,9 +103,7 @@ def _of_product(
 
 
 @part()
-def bending_between(
-    a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, drop, curl, rate, measure
-):
+def bending_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, drop, curl, rate):
     """Discrete gradient (4 numbers) of bending in (x', y', x'', y''), and its derivative (4 x 4, by rows).
 
     a0, b0, a2, b2: C' and C'' of the first state; x1, y1, x2, y2 of the second.
@@ -125,29 +111,17 @@ def bending_between(
     c0, c1 = a0 * b2 - b0 * a2, x1 * y2 - y1 * x2
     (
         d0, d1, d2, d3, t00, t01, t02, t03, t10, t11, t12, t13, t20, t21, t30, t31, k0, k1, k2, k3, r0, r1
-    ) = _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1, measure)  # fmt: skip
-    scale, w = (1.0 / speed, speed) if measure == MATERIAL else (1.0, 0.5 * (v0 + v1))
+    ) = _turning_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, c0, c1)  # fmt: skip
+    scale = 1.0 / speed
     e0, e1 = c0 * r0 * scale - curvature, c1 * r1 * scale - curvature
     moment, share = _moment_between(e0, e1, drop, curl, rate)
     k0, k1, k2, k3 = scale * k0, scale * k1, scale * k2, scale * k3
-    force = rigidity * scale * w
-    stiff, pull = force * share, force * moment
+    stiff, pull = rigidity * share, rigidity * moment
     s0, s1, s2, s3 = stiff * k0, stiff * k1, stiff * k2, stiff * k3
-    if measure != MATERIAL:  # the length changes too
-        by_v = 0.5 * rigidity * moment / v1
-        s0, s1 = s0 + by_v * x1, s1 + by_v * y1
     g0, g1, g2, g3 = pull * d0, pull * d1, pull * d2, pull * d3
     h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33 = _of_product(
         d0, d1, d2, d3, s0, s1, s2, s3, pull, t00, t01, t02, t03, t10, t11, t12, t13, t20, t21, t30, t31
     )
-    if measure != MATERIAL:  # + 1/2 EI mean(b^2) Dv
-        push = 0.25 * rigidity * (e0 * e0 + e1 * e1) / w
-        grow, less = 0.5 * rigidity * e1 / w, 0.5 * push / (w * v1)
-        m0, m1 = 0.5 * (a0 + x1), 0.5 * (b0 + y1)
-        t0, t1, t2, t3 = grow * k0 - less * x1, grow * k1 - less * y1, grow * k2, grow * k3
-        g0, g1 = g0 + push * m0, g1 + push * m1
-        h00, h01, h02, h03 = h00 + m0 * t0 + 0.5 * push, h01 + m0 * t1, h02 + m0 * t2, h03 + m0 * t3
-        h10, h11, h12, h13 = h10 + m1 * t0, h11 + m1 * t1 + 0.5 * push, h12 + m1 * t2, h13 + m1 * t3
     return (
         g0, g1, g2, g3,
         h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33,
@@ -155,21 +129,7 @@ def bending_between(
 
 
 @part()
-def stretching_between(v0, v1, speed, strain0, rigidity, rate, measure):
+def stretching_between(v0, v1, speed, strain0, rigidity, rate):
     """Stretching by quadrature: the force along Dv and its derivative in v1."""
     e0, e1, share = v0 / speed - 1.0 - strain0, v1 / speed - 1.0 - strain0, 0.5 + rate
-    mean = 0.5 * (e0 + e1) + rate * (e1 - e0)
-    if measure == MATERIAL:
-        return rigidity * mean, rigidity * share / speed
-    w = 0.5 * (v0 + v1)
-    return (
-        rigidity * (w * mean / speed + 0.25 * (e0 * e0 + e1 * e1)),
-        rigidity * (0.5 * mean + share * w / speed + 0.5 * e1) / speed,
-    )
-
-
-@part()
-def stretching_energy(v, speed, strain0, rigidity, measure):
-    """Energy per du of stretching by quadrature."""
-    e = v / speed - 1.0 - strain0
-    return 0.5 * rigidity * e * e * (speed if measure == MATERIAL else v)
+    return rigidity * (0.5 * (e0 + e1) + rate * (e1 - e0)), rigidity * share / speed

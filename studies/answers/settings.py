@@ -14,7 +14,7 @@ class SplineSettings:
         axial_modes: m axial-force modes per strip [1]; None for the model's default, n - 2.
         basis: "bezier" (degree n - 1) or "bspline" (cubic).
         measure: "material", "spatial" (the paper's energy) or "printed" (the paper's generalised forces as
-            printed).
+            printed), the latter two with stretch "consistent".
         stretch: "mixed", "consistent" (the paper's quadrature) or "inextensible".
         gauss_points: quadrature points [1]; None for the model's default.
         slide_stiffness: of the strains that the axial modes do not see [EI/L^2]; None for the model's

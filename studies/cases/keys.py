@@ -181,7 +181,7 @@ EFFECTS: dict[str, str] = {
     "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides)",
     "anticlastic": "sections that flatten as wide strips bend, which stiffens them (of known sides)",
     "root_compliance": "clamped ends that turn, as in a body of the strips' material (of known sides)",
-    "shear": "sections that turn against the strips, in statics (spline; of the elements fe-shear has it)",
+    "shear": "sections that turn against the strips (fe-shear)",
     "pre_strain": "curvature and strain that the strips would have if they were free",
 }
 

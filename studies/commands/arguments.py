@@ -70,7 +70,8 @@ CONTROL_POINTS = Argument(
 BASIS = Argument("--basis", "of the curve (spline; default bezier)", choices=("bezier", "bspline"))
 MEASURE = Argument(
     "--measure",
-    "of curvature and strain: spatial as in the paper, printed with its forces (spline; default material)",
+    "of curvature and strain: spatial as in the paper, printed with its forces, both with "
+    "--stretch consistent (spline; default material)",
     choices=("material", "spatial", "printed"),
 )
 STRETCH = Argument(

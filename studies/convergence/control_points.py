@@ -33,15 +33,14 @@ CLOSE = 1e-4
 
 def _settings() -> list[SplineSettings]:
     """Return every discretisation of the map: basis, measure, stretch form, n, and m = 1 ... n - 1."""
-    forms: list[tuple[int, str, int | None]] = []
+    forms: list[tuple[str, int, str, int | None]] = []
     for n in COUNTS:
-        forms.append((n, "consistent", None))
-        forms += [(n, stretch, m) for stretch in ("mixed", "inextensible") for m in range(1, n)]
+        forms += [(measure, n, "consistent", None) for measure in MEASURES]
+        forms += [("material", n, stretch, m) for stretch in ("mixed", "inextensible") for m in range(1, n)]
     return [
         SplineSettings(basis=basis, measure=measure, control_points=n, stretch=stretch, axial_modes=m)
         for basis in BASES
-        for measure in MEASURES
-        for n, stretch, m in forms
+        for measure, n, stretch, m in forms
     ]
 
 

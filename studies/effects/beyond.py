@@ -46,7 +46,7 @@ def _sided(design: Either) -> Either:
 
 def prices(design: Design) -> list[dict[str, Any]]:
     """Return how far each effect beside the design's own moves its answers, a row an effect: sections by the
-    splines, shear by elements, whose modes have it too.
+    splines, shear by elements.
 
     Keys: effect; status: "converged", "refused" or "not_converged"; reason in a line; changes, NaN where
     there are none: trajectory (largest distance of a body's centre along the path over the largest travel),
@@ -62,17 +62,15 @@ def prices(design: Design) -> list[dict[str, Any]]:
     missing = tuple(name for name in SECTIONS if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
-    if SHEAR not in design.effects.names:
-        stiff = FeSettings(elements=ELEMENTS)
-        sheared = replace(stiff, element="reissner")
-        found.append(_price(SHEAR, design, sheared, lambda: _Answers.of(design, stiff)))
-    return found
+    stiff = FeSettings(elements=ELEMENTS)
+    sheared = replace(stiff, element="reissner")
+    return [*found, _price(SHEAR, design, sheared, lambda: _Answers.of(design, stiff))]
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Answers:
     """What a price is of: centres of bodies as the body turns, stiffness at the begin of that, torque and
-    stress at its end, and first mode at rest [Hz], NaN of a design that names shear."""
+    stress at its end, and first mode at rest [Hz]."""
 
     centres: dict[str, Array]
     stiffness: float
@@ -83,9 +81,7 @@ class _Answers:
     @classmethod
     def of(cls, design: Design, settings: Settings) -> "_Answers":
         path, begin = reached(answer_static(design, settings)), -design.increments - 1
-        modes: Array = np.array([])
-        if SHEAR not in design.effects.names:
-            modes = reached(answer_modes(design, settings, count=1)).frequency
+        modes = reached(answer_modes(design, settings, count=1)).frequency
         return cls(
             centres={name: each[begin:] for name, each in path.centres.items()},
             stiffness=path.stiffness[begin],

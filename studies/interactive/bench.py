@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.sequential_impulse import SWEEPS
 from studies.interactive import presets
 from studies.interactive.design import Placing, scales
 from studies.interactive.input import Clock, Hand, Readings
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import SOLVERS
+from studies.interactive.motion import SOLVERS, SWEEPS
 from studies.kinds import Array
 
 #: Designs that can be undone.

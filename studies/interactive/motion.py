@@ -1,5 +1,6 @@
 """What moves the body: an elastic hand or a load, to where strips, spring and load balance; and, released,
-step after step, sequential impulses (section 4.1) in all their forms, or the energy-consistent integrator."""
+step after step, sequential impulses (section 4.1), stable or as printed, or the energy-consistent
+integrator."""
 
 import math
 from dataclasses import dataclass
@@ -28,14 +29,12 @@ STABLE_PART, MOST_PARTS = 0.8, 1000
 MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
 #: Solvers by the name that the user chooses. The first is what one begins with.
 SOLVERS = {
-    f"{form} {way}": f"{title}, {formed}"
-    for form, formed in (("stable", "stable form"), ("printed", "as printed"))
-    for way, title in (
-        ("direct", "impulses at once (Eq 30)"),
-        ("strips", "impulses by sweeps over strips"),
-        ("constraints", "impulses by sweeps over constraints"),
-    )
-} | {"energy": "energy-consistent"}
+    "stable": "impulses at once (Eq 30), stable form",
+    "printed": "impulses by sweeps over constraints, as printed",
+    "energy": "energy-consistent",
+}
+#: Most sweeps for one linear system, if the user says nothing.
+SWEEPS = 30
 
 
 class _Moving(NamedTuple):
@@ -81,12 +80,12 @@ class _Energy:
 
 
 class _Impulses:
-    """Sequential impulses: at once or by sweeps, stable at any step, or as printed, in steps that are cut to
+    """Sequential impulses: at once, stable at any step, or as printed by sweeps, in steps that are cut to
     what is stable."""
 
-    def __init__(self, pivot: Pivot, z: Array, v: Array, form: str, way: str, sweeps: int) -> None:
-        self._solver = solver = impulse_solver(pivot, form=form, impulses=way, sweeps=sweeps)
-        self._count = "solves" if way == "direct" else "sweeps"
+    def __init__(self, pivot: Pivot, z: Array, v: Array, form: str, sweeps: int) -> None:
+        swept = sweeps if form == "printed" else None
+        self._solver = solver = impulse_solver(pivot, form=form, sweeps=swept)
         self._out = solver.look(solver.start_at(z, v))
         self._dissipated, self.longest = 0.0, math.inf
         if form == "printed":
@@ -110,7 +109,7 @@ class _Impulses:
         """Return the present state."""
         out = self._out
         energies = out.kinetic_energy, out.strain_energy, self._dissipated
-        return _Moving(out.state.z, out.state.v, *energies, out.counters[self._count])
+        return _Moving(out.state.z, out.state.v, *energies, out.counters["sweeps"])
 
 
 #: A solver that was started from a state; `longest`: step [s] that it can take.
@@ -120,12 +119,11 @@ Motion = _Energy | _Impulses
 def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
     """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
 
-    sweeps: most of them for one linear system, where there are any.
+    sweeps: most of them for one linear system of the printed form.
     """
     if solver == "energy":
         return _Energy(pivot, z, v)
-    form, way = solver.split()
-    return _Impulses(pivot, z, v, form, way, sweeps)
+    return _Impulses(pivot, z, v, solver, sweeps)
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import TABLE_1, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
-from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
+from studies.published.case import BEAM, CLAMPED_WIDTH, printed, published
 from studies.published.solids import guide_compliance, linear_factor, solid_factor
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
@@ -152,7 +152,6 @@ BOTH, SHELL, COMPLETE = "clamped_width, anticlastic", "shell", "complete"
 LOOKS = {
     BEAM: Look(label="beam", colour=GREY, marker="o"),
     CLAMPED_WIDTH: Look(label="clamped width", colour=BLUE, marker="o"),
-    SHEARED: Look(label="and shear", colour=BLACK, marker="o"),
     BOTH: Look(label="and anticlastic", colour=ORANGE, marker="o"),
     SHELL: Look(label="flattened as a shell", colour=PURPLE, marker="o"),
     COMPLETE: Look(label="complete", colour=GREEN, marker="o"),

@@ -100,11 +100,9 @@ BASES: dict[str, str] = {"bezier": "Bézier curve of degree n - 1", "bspline": "
 
 #: Stretch forms by colour, measures by line: (stretch, measure) -> look.
 STRETCH: dict[tuple[str, str], Look] = {
-    ("inextensible", "spatial"): Look(label="inextensible, spatial", colour=GREY, line="--", marker="o"),
     ("inextensible", "material"): Look(label="inextensible, material", colour=GREY, marker="s"),
     ("consistent", "spatial"): Look(label="consistent, spatial (paper)", colour=RED, line="--", marker="o"),
     ("consistent", "material"): Look(label="consistent, material", colour=RED, marker="s"),
-    ("mixed", "spatial"): Look(label="mixed, spatial", colour=BLUE, line="--", marker="o"),
     ("mixed", "material"): Look(label="mixed, material", colour=BLUE, marker="s"),
 }
 

@@ -18,8 +18,8 @@ from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part
 from studies.stability import family, maps
 
-#: Reversals, and releases with as many catches: of the default, and of the other columns.
-EVENTS = {family.DEFAULT: 1000, family.LOCKING_FREE: 100, family.PAPER: 100}
+#: Reversals, and releases with as many catches: of the default, and of the locking-free spline.
+EVENTS = {family.DEFAULT: 1000, family.LOCKING_FREE: 100}
 STEP, STEPS_BETWEEN = 5e-5, 20
 #: Rotations of the reversals, and at the first release [rad].
 REVERSAL, RELEASE = math.radians(5.0), math.radians(60.0)
@@ -198,7 +198,7 @@ STUDY = family.study(
             tables["outcomes"],
             [case for case, *_ in _tasks()],
             title=f"Sudden events: {EVENTS[family.DEFAULT]} a motion for the default, "
-            f"{EVENTS[family.PAPER]} for the others",
+            f"{EVENTS[family.LOCKING_FREE]} for the other",
         )
     },
 )

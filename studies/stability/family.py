@@ -39,7 +39,7 @@ COLUMNS: dict[str, Settings] = {
 }
 
 #: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
-#: Motions, arcs of frames and starts from guesses take six by default.
+#: Motions and arcs of frames take six by default.
 PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
 
 #: Those of paths in arc length: finer splines, as the default reaches its end there.

@@ -34,14 +34,14 @@ from studies.stability import family, maps
 
 LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
-#: tenth of it of the others.
+#: tenth of it of the locking-free spline.
 PIECE = 10_000
-PIECES = {family.DEFAULT: 100, family.LOCKING_FREE: 10, family.PAPER: 10}
+PIECES = {family.DEFAULT: 100, family.LOCKING_FREE: 10}
 #: Largest change of energy that is right [1].
 DRIFT = 1e-6
 #: Factor by which the constraint residual of the last tenth may exceed that of the first.
 GROWTH = 3.0
-COLOURS = {family.DEFAULT: BLUE, family.LOCKING_FREE: SKY, family.PAPER: RED}
+COLOURS = {family.DEFAULT: BLUE, family.LOCKING_FREE: SKY}
 
 
 def _pieces(model: str, count: int) -> Answer:
@@ -139,7 +139,7 @@ LINKAGE = "four_bar_of_flexures"
 TOLERANCE, FREQUENCY_TOLERANCE = 5e-12, 1e-9
 FREQUENCY, MODES = "frequency_", ": modes"
 #: Columns that are asked; the motion is short, as a long one magnifies any difference.
-ASKED = (family.DEFAULT, family.LOCKING_FREE, family.PAPER, family.FE)
+ASKED = (family.DEFAULT, family.LOCKING_FREE, family.FE)
 STEPS, STEP = 20, 5e-5
 THREADS = (1, 2, 4)
 REORDERED = {"second strip first, pivot": TABLE_1, "strips and bodies reversed, linkage": LINKAGE}

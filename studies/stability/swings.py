@@ -40,10 +40,10 @@ REFINED, REFINED_STEP = SplineSettings(control_points=9), 2.5e-6
 INDEPENDENT = FeSettings(elements=30)
 RECORDS = 400
 
-#: Column -> settings and integrator, none for the one that keeps energy exactly. The paper's printed forces
-#: have no energy that a motion could keep.
+#: Column -> settings and integrator, none for the one that keeps energy exactly. The paper's measure is for
+#: the leapfrog alone.
 SWINGING: dict[str, tuple[Settings, str | None]] = {
-    **{name: (family.COLUMNS[name], None) for name in (family.DEFAULT, family.LOCKING_FREE, family.PAPER)},
+    **{name: (family.COLUMNS[name], None) for name in (family.DEFAULT, family.LOCKING_FREE)},
     family.GENERALISED_ALPHA: (family.COLUMNS[family.DEFAULT], "generalised-alpha"),
     family.EXPLICIT: (family.COLUMNS[family.DEFAULT], "explicit"),
     family.FE: (family.COLUMNS[family.FE], "generalised-alpha"),

@@ -97,7 +97,8 @@ def limit_of_theory(problem: Design, theory: str) -> Limit:
         NoReference: the elements do not reach the end of the path.
     """
     if theory == "spatial":
-        fine, coarse = (spline.path(problem, 1, control_points=n, measure=theory) for n in SPATIAL)
+        paper: dict[str, Any] = {"measure": theory, "stretch": "consistent"}
+        fine, coarse = (spline.path(problem, 1, control_points=n, **paper) for n in SPATIAL)
         gap = path_errors(coarse, fine)
         return Limit(
             path=fine,

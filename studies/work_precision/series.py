@@ -29,7 +29,6 @@ LOOKS = {
     SPLINE: Look(label="spline", colour=BLUE, marker="x"),
     "spline, one axial mode more": Look(label="spline, m = n - 1", colour=SKY, line=":", marker="D"),
     "B-spline": Look(label="cubic B-spline", colour=GREEN, line="-.", marker="o"),
-    "spline, spatial measure": Look(label="spline, spatial measure", colour=BLUE, line="--", marker="+"),
     "spline as the paper": Look(label="spline, as the paper", colour=RED, line="--", marker="o"),
     ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
     SHEAR: Look(label="finite elements, shear", colour=GREY, line="--", marker="s"),
@@ -61,14 +60,13 @@ STEPS: dict[Baseline, dict[str, tuple[float, ...]]] = {
 
 def own_paths(counts: range = COUNTS) -> list[Variant]:
     """Return the settings of the two models of the suite, for paths; `counts`: control points."""
-    spatial, meshes = ("spatial",), (5, 10, 20, 40, 80, 160)
-    more = "spline, one axial mode more"
+    meshes, more = (5, 10, 20, 40, 80, 160), "spline, one axial mode more"
+    paper = {"measure": ("spatial",), "stretch": ("consistent",)}
     return [
         *grid(spline, SPLINE, control_points=counts),
         *(v for n in counts for v in grid(spline, more, control_points=(n,), axial_modes=(n - 1,))),
         *grid(spline, "B-spline", control_points=(4, 6, 8, 12, 16, 24, 32, 48, 64), basis=("bspline",)),
-        *grid(spline, "spline, spatial measure", control_points=counts, measure=spatial),
-        *grid(spline, "spline as the paper", control_points=counts, measure=spatial, stretch=("consistent",)),
+        *grid(spline, "spline as the paper", control_points=counts, **paper),
         *grid(elements, ELEMENTS, elements=meshes),
         *grid(elements, SHEAR, elements=meshes, element=("reissner",)),
     ]

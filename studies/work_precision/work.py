@@ -39,7 +39,7 @@ STRIPS = 2
 #: Operations of one element (see above): its forces and energy, and its tangent beside them.
 ELEMENT_FORCES, ELEMENT_TANGENT = 75, 43
 #: Operations of one Gauss point that depend neither on the control points nor on the axial forces.
-POINT = 163
+POINT = 153
 #: The sparse LU of a long B-spline: from so many unknowns on, and operations and entries of it for each.
 SPARSE_FROM, SPARSE_FLOPS, SPARSE_ENTRIES = 150, 308, 27
 
@@ -78,7 +78,7 @@ def _assembly_flops(points: int, functions: int, modes: int) -> int:
         points: Gauss points; functions: basis functions at a point; modes: axial forces at a point.
     """
     pairs = -(-functions * (functions + 1) // 16) * 8
-    point = POINT + 16 * functions + 26 * pairs + 5 * modes * (1 + functions)
+    point = POINT + 16 * functions + 26 * pairs + modes * (4 + 5 * functions)
     return points * point + 6 * (modes + functions) + 7
 
 
@@ -94,7 +94,7 @@ def _confirmation_flops(points: int, functions: int, modes: int) -> int:
     """Return the operations that confirm a state of one strip without a tangent: `evaluate_residual`, and its
     Hessian times the rate."""
     at_point = 16 * functions + 4 * modes
-    return points * (195 + 2 * at_point) + 8 * modes + 4 * functions - 2
+    return points * (183 + 2 * at_point) + 8 * modes + 4 * functions - 2
 
 
 def _forward_flops(own: int, modes: int) -> int:

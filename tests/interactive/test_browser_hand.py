@@ -136,7 +136,7 @@ def test_solvers_are_chosen_by_their_names(page):
     assert names[0] == "impulses at once (Eq 30), stable form"
     assert "impulses by sweeps over constraints, as printed" in names
     assert page.ask("document.getElementById('sweeps-row').hidden")
-    chosen(page, "solver", "printed strips")
+    chosen(page, "solver", "printed")
     page.wait("!document.getElementById('sweeps-row').hidden")
     chosen(page, "sweeps", "7")
     page.wait("studio.state.sweeps === 7")
@@ -145,8 +145,8 @@ def test_solvers_are_chosen_by_their_names(page):
     text = page.wait("document.getElementById('pace').textContent")
     assert re.search(r"runs at 0\.0*\d of real time", text)
     page.key("0")
-    chosen(page, "solver", "stable direct")
-    page.wait("studio.state.solver === 'stable direct' && !document.getElementById('pace').textContent")
+    chosen(page, "solver", "stable")
+    page.wait("studio.state.solver === 'stable' && !document.getElementById('pace').textContent")
 
 
 def test_parameters_are_typed_in_their_units(page):

@@ -66,7 +66,7 @@ def test_absurd_poses_are_left_out(pose):
         ({"do": "drive", "by": "will"}, "by: got 'will'"),
         ({"do": "solver", "name": 7}, "name: got 7"),
         (
-            {"do": "solver", "name": "stable strips", "sweeps": 0},
+            {"do": "solver", "name": "printed", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",
         ),
         ({"do": "setup", "preset": "polymer"}, "drive: got None"),

@@ -153,7 +153,7 @@ def test_cost_is_compared_by_one_criterion(content):
 def test_floor_is_what_a_formulation_ends_on():
     """Requirement: a floor is the error at the most control points, not the least of any setting."""
     given = OneTable(
-        basis="bezier", measure="spatial", stretch="mixed", control_points=[6, 6, 12, 12],
+        basis="bezier", measure="spatial", stretch="consistent", control_points=[6, 6, 12, 12],
         error_trajectory=[0.0005, 0.0008, 0.00075, 0.00075],
     )  # fmt: skip
     assert quotable()["facts"]["map.spatial.trajectory"].made(given) == 0.00075

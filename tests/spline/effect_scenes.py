@@ -15,7 +15,7 @@ PARAMETERS = {
     "driven_displacement": {"displacement": (-0.0148, -0.0011)},  # near the free path at 0.5 rad
     "pre_strain": {"curvature": 1.0, "strain": 1e-4},
 }
-NOT_HERE = ("inextensible", "root_compliance", "shear")
+NOT_HERE = ("inextensible", "root_compliance")
 EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, *NOT_HERE)]
 """Effects that a motion can have beside the default ones."""
 

@@ -130,6 +130,6 @@ def test_what_does_not_know_the_curl_says_so():
     """The spatial measure and sequential impulses refuse anticlastic bending by its name."""
     anticlastic = (*DEFAULT_EFFECTS, "anticlastic")
     with pytest.raises(InvalidParameter, match="measure: got 'spatial', expected material for anticlastic"):
-        thin_pivot(0.01, effects=anticlastic, measure="spatial")
+        thin_pivot(0.01, effects=anticlastic, measure="spatial", stretch="consistent")
     with pytest.raises(InvalidParameter, match="effects: got 'anticlastic'"):
         impulse_solver(thin_pivot(0.01, effects=anticlastic))

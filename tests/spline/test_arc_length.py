@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from spline_model import ConvergenceError, cross_axis_pivot, solve_loads, solve_mechanism, solve_statics
+from spline_model import ConvergenceError, solve_loads, solve_mechanism
 from tests import gates
-from tests.spline.frames import column, lees_frame, toggle
-from tests.table_one import SIX
+from tests.spline.frames import lees_frame, toggle
 
 
 def test_a_load_that_turns_round_keeps_its_sign():
@@ -51,45 +50,3 @@ def test_load_control_stops_at_the_limit_point():
         solve_mechanism(toggle(control_points=8))
     reached = 60.0 * caught.value.solution.load_factor[-1]
     assert 33.0 < reached < 33.91
-
-
-def resumed(**settings):
-    """Largest relative difference in torque of a path in two parts and in one."""
-    pivot = cross_axis_pivot(**(SIX | settings))
-    first = solve_statics(pivot, rotation=0.8, increments=8)
-    second = solve_statics(pivot, rotation=1.6, increments=8, start=first)
-    whole = solve_statics(cross_axis_pivot(**SIX), rotation=1.6, increments=16)
-    assert second.rotation[0] == first.rotation[-1]
-    return np.abs(second.torque - whole.torque[8:]).max() / whole.torque.max()
-
-
-def test_a_path_goes_on_from_a_stored_solution():
-    """Requirement: a path that is continued from a solution is the path in one go."""
-    gates.check("spline_resumed_path", resumed())
-
-
-def test_resumed_gate_has_teeth():
-    """Requirement: the check notices another discretisation."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_resumed_path", resumed(**gates.teeth("spline_resumed_path")))
-
-
-def test_arc_length_goes_on_from_beyond_a_limit_point():
-    """Requirement: a path through limit points can be taken up on its unstable part."""
-    scene = toggle(control_points=8).scene
-    whole = solve_loads(scene, control="arc-length")[1]
-    unstable = int(np.flatnonzero(whole.inertia == 1)[0])
-    part = type(whole)(**{**vars(whole), **whole.rows(slice(unstable + 1))})
-    onward = solve_loads(scene, control="arc-length", start=part, end=0.55)[1]
-    assert onward.status.value == "converged", onward.message
-    assert onward.inertia[0] == 1
-
-
-def test_states_of_a_mechanism_go_on():
-    """Requirement: a mechanism under loads goes on from its solution, beyond load factor 1 too."""
-    made = column(load=1.0, side=0.1, control_points=6)
-    half = solve_mechanism(made, end=0.5, increments=5)
-    onward = solve_mechanism(made, start=half, end=2.0, increments=15)
-    whole = solve_mechanism(made, end=2.0)
-    assert onward.load_factor[0] == 0.5
-    assert np.abs(onward.states[-1] - whole.states[-1]).max() < 1e-9

@@ -12,7 +12,6 @@ from tests.table_one import SIX
 
 FORMS = {
     "material mixed": {},
-    "spatial mixed": {"measure": "spatial"},
     "inextensible": {"stretch": "inextensible"},
     "material consistent": {"stretch": "consistent"},
     "spatial consistent": {"stretch": "consistent", "measure": "spatial"},

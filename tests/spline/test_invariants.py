@@ -92,7 +92,6 @@ FORMS = (
     {},
     {"control_points": 4},
     {"control_points": 9, "basis": "bspline"},
-    {"measure": "spatial"},
     {"stretch": "inextensible"},
     {"stretch": "consistent", "measure": "spatial", "control_points": 4},
     {"crossing_ratio": 0.2, "inclination": math.radians(30), "centre_offset": (0.01, 0.02)},

@@ -153,6 +153,13 @@ def test_all_free_scenes_move(more):
     gates.check("spline_leapfrog_agrees", np.abs(pair[0] - pair[1]).max())
 
 
+def test_the_spatial_measure_is_for_the_leapfrog():
+    """Requirement: the energy-consistent integrator refuses the paper's measure and names what has it."""
+    paper = cross_axis_pivot(**TABLE_ONE, control_points=4, stretch="consistent", measure="spatial")
+    with pytest.raises(InvalidParameter, match=r"measure: got 'spatial', expected material, or .* leapfrog"):
+        solve_release(paper, start=0.1, duration=1e-4)
+
+
 def energy_of_inextensible(step=None):
     """Largest change of the energy of strips that cannot stretch, over it, in Runge-Kutta steps."""
     stiff = cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")

@@ -25,11 +25,7 @@ from tests.table_one import SIX, TABLE_ONE
     "effects, parameters, line",
     [
         (("bending", "gravty"), {}, "effects: got 'gravty', expected one of bending, .*nearest: gravity"),
-        (
-            ("bending", "stretching", "shear", "gravity"),
-            {},
-            "'shear and gravity', expected one of .* not both",
-        ),
+        (("bending", "stretching", "shear"), {}, r"'shear', expected .* \(use --model fe-shear\)"),
         (("bending", "stretching", "inextensible"), {}, "not both"),
         (("bending",), {}, "stretching or inextensible beside bending"),
         (("stretching",), {}, "bending, without which"),

@@ -25,9 +25,7 @@ STEEL = {
 }
 FORMS = {
     "mixed": {},
-    "spatial": {"measure": "spatial"},
     "inextensible": {"stretch": "inextensible"},
-    "inextensible spatial": {"stretch": "inextensible", "measure": "spatial"},
     "consistent": {"stretch": "consistent", "control_points": 5},
     "consistent spatial": {"stretch": "consistent", "measure": "spatial", "control_points": 5},
     "B-spline": {"basis": "bspline", "control_points": 9},
@@ -118,7 +116,7 @@ def led_pivot(form):
 
 
 SCENES = {build.__name__: build for build in (guide, free_end, arc, chain, loaded_pivot, led_pivot)}
-REFUSED = [("arc", "four points"), ("led_pivot", "inextensible"), ("led_pivot", "inextensible spatial")]
+REFUSED = [("arc", "four points"), ("led_pivot", "inextensible")]
 """A curved strip of four points does not resolve its pre-strain, inextensible strips hold their centre."""
 PAIRS = [(scene, form) for scene in SCENES for form in FORMS if (scene, form) not in REFUSED]
 

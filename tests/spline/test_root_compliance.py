@@ -71,11 +71,14 @@ def test_roots_turn_by_their_moment_at_any_angle():
     assert end[1] / math.hypot(*end) == pytest.approx(at_root, rel=1e-8)
 
 
-@pytest.mark.parametrize("measure", ["material", "spatial"])
-def test_element_is_the_bordered_form(measure):
+SPATIAL = {"measure": "spatial", "stretch": "consistent"}
+
+
+@pytest.mark.parametrize("grid", [{}, SPATIAL], ids=["material", "spatial"])
+def test_element_is_the_bordered_form(grid):
     """The turns of the roots as coordinates of the elements are the clamps' rows that yield."""
     given = {"gravity": {"acceleration": (300.0, -500.0)}, "root_compliance": {"root": "monolithic"}}
-    pivot = rooted(measure=measure, effects=(*ROOTS, "gravity"), parameters=given)
+    pivot = rooted(**grid, effects=(*ROOTS, "gravity"), parameters=given)
     element, bordered = (
         solve_statics(pivot, rotation=1.5, increments=6, method=method)
         for method in ("condensed", "multipliers")
@@ -85,13 +88,13 @@ def test_element_is_the_bordered_form(measure):
     assert element.bending_energy == pytest.approx(bordered.bending_energy, rel=1e-10)
 
 
-@pytest.mark.parametrize("measure", ["material", "spatial"])
-def test_tangent_is_the_gradients_derivative(measure):
+@pytest.mark.parametrize("grid", [{}, SPATIAL], ids=["material", "spatial"])
+def test_tangent_is_the_gradients_derivative(grid):
     """The tangent of strips whose roots turn is the derivative of their gradient, off equilibrium as well.
 
     In equilibrium the force that turns with a root is none along the stretch of its clamp, and not felt.
     """
-    model = reduced(compile_scene(rooted(measure=measure).driven(1.5)))
+    model = reduced(compile_scene(rooted(**grid).driven(1.5)))
     y = at_rest(model)[None] + 0.05 * np.random.default_rng(0).standard_normal((1, model.size))
     step = 1e-6 * np.eye(model.size)
     there, back = (whole_tangents(model, y + sign * step)[0] for sign in (1.0, -1.0))

@@ -50,7 +50,7 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
             if hasattr(called, "py_func"):
                 monkeypatch.setattr(module, name, called.py_func)
     monkeypatch.setattr(points, "math", SimpleNamespace(sqrt=lambda value: value.sqrt()))
-    for name in ("add_slopes", "curve_at", "four", "spring_of", "springs_of"):
+    for name in ("add_slopes", "curve_at", "four"):
         monkeypatch.setattr(beside, name, getattr(points, name))
     monkeypatch.setattr(beside, "_product_at", beside._product_at.py_func)
     monkeypatch.setattr(strip_condense, "eliminate", strip_condense.eliminate.py_func)
@@ -58,7 +58,7 @@ def test_operations_of_the_condensed_spline(monkeypatch, n):
     curve = np.column_stack((np.linspace(0.0, 1.0, n), 0.01 * np.sin(np.arange(n))))
     counted = {name: counting(getattr(strips, name)) for name in ("along", "compliance", "numbers")}
     tables = {name: counting(getattr(shape, name)) for name in ("tables", "rule", "curve", "products")}
-    room = {name: counting(getattr(local, name)) for name in ("nodal", "axial", "lanes", "pairs")}
+    room = {name: counting(getattr(local, name)) for name in ("nodal", "gap", "lanes", "pairs")}
     shape, local = shape._replace(**tables), local._replace(**room)
     local.nodal[0, POINTS] = counting(curve.ravel())
     ones, out = counting(np.ones(modes)), counting(np.zeros(5))

@@ -109,7 +109,7 @@ export class Controls {
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;
-    at("sweeps-row").hidden = !/strips|constraints/.test(state.solver);
+    at("sweeps-row").hidden = state.solver !== "printed";
     if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]);
