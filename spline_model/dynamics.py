@@ -24,7 +24,7 @@ from spline_model.errors import (
 )
 from spline_model.mechanism import Mechanism
 from spline_model.modes import settle
-from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
+from spline_model.motion import energy_consistent, explicit, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
@@ -39,7 +39,6 @@ Array = NDArray[np.float64]
 
 INTEGRATORS: dict[str, Callable[..., Moves]] = {
     "energy": energy_consistent.Stepper,
-    "generalised-alpha": generalised_alpha.stepper,
     **{name: partial(explicit.Stepper, integrator=name) for name in explicit.SCHEMES},
 }
 """What makes of a start what advances it."""
@@ -68,7 +67,6 @@ def solve_motion(
     records: int | None = None,
     after: Trajectory | None = None,
     check: bool = True,
-    spectral_radius: float | None = None,
 ) -> Trajectory:
     """Motion of a mechanism that is let go at rest.
 
@@ -86,8 +84,8 @@ def solve_motion(
     duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
         shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), "generalised-alpha", or for free scenes of which no strip is damped or massless
-        "leapfrog", the fastest, and "explicit".
+        are dynamic), or for free scenes of which no strip is damped or massless "leapfrog", the
+        fastest, and "explicit".
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
@@ -96,16 +94,10 @@ def solve_motion(
         less; none is made with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.
-    spectral_radius : of "generalised-alpha" alone, 0 to 1 (default 0.8).
 
-    Raises InvalidParameter, also for an option that the integrator does not read, and
-    ConvergenceError if statics does not reach ``start``.
+    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
-    options = {} if spectral_radius is None else {"spectral_radius": spectral_radius}
-    if options and integrator != "generalised-alpha":
-        expected = f"none: the integrator {integrator} reads no option"
-        raise InvalidParameter("spectral_radius", spectral_radius, expected)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
     laps, body = Laps(), mechanism.design.body_named(body)
@@ -121,7 +113,7 @@ def solve_motion(
     laps.lap("compile")
     begun = _begin(motion, held, after)
     laps.lap("start")
-    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, options, laps)
+    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, laps)
     if after is not None:
         return trajectory.counted_on(after)
     return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
@@ -134,7 +126,6 @@ def _run(
     scene: Scene,
     asked: tuple[float, float | None, int | None],
     integrator: str,
-    options: dict[str, float],
     laps: Laps,
 ) -> Trajectory:
     """The motion from its start on; scene: without drives; asked: duration, step and records."""
@@ -146,7 +137,7 @@ def _run(
     stepper, ran = INTEGRATORS[integrator], integrator
     if integrator == "energy" and begun.motion.massless:
         stepper, ran = quasi_static.stepper, quasi_static.NAME
-    run = carry(stepper(begun, **options), steps)
+    run = carry(stepper(begun), steps)
     laps.lap("solve")
     return Trajectory.of(
         begun.motion.system,
@@ -157,7 +148,6 @@ def _run(
             "integrator": ran,
             "step_s": steps.step,
             "slide_stiffness": mechanism.design.discretisation.slide,
-            **options,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
         laps=laps,

@@ -78,7 +78,6 @@ class ImpulseSolver:
         require_positive("tolerance", tolerance, "1")
         require_count("sweeps", sweeps, 1)
         self.motion, soft = set_in_motion(system), form == "stable"
-        self.motion.require_compiled("sequential impulses")
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
             raise InvalidParameter("effects", ANTICLASTIC, held)

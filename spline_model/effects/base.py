@@ -9,15 +9,7 @@ class; a class that no effect names has a table of length zero.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
-
-import numpy as np
-from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from spline_model.scene import Layout
-
-Array = NDArray[np.float64]
+from typing import ClassVar
 
 
 class Potential:
@@ -43,15 +35,3 @@ class Constraint:
     """
 
     rows: ClassVar[int]
-
-
-class OpenPotential(Potential):
-    """A potential with its derivatives in Python: the way to add one without touching a kernel.
-
-    It works in statics, in modes and with the generalised-alpha integrator; the compiled
-    integrators refuse a scene that holds one.
-    """
-
-    def derivatives(self, q: Array, layout: Layout) -> tuple[float, Array, Array]:
-        """Energy [J], gradient (Q,) and Hessian (Q, Q) at the coordinates q (Q,)."""
-        raise NotImplementedError

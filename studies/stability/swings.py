@@ -44,7 +44,6 @@ RECORDS = 400
 #: have no energy that a motion could keep.
 SWINGING: dict[str, tuple[Settings, str | None]] = {
     **{name: (family.COLUMNS[name], None) for name in (family.DEFAULT, family.LOCKING_FREE, family.PAPER)},
-    family.GENERALISED_ALPHA: (family.COLUMNS[family.DEFAULT], "generalised-alpha"),
     family.EXPLICIT: (family.COLUMNS[family.DEFAULT], "explicit"),
     family.FE: (family.COLUMNS[family.FE], "generalised-alpha"),
 }
