@@ -24,7 +24,7 @@ from spline_model.errors import (
 )
 from spline_model.mechanism import Mechanism
 from spline_model.modes import settle
-from spline_model.motion import energy_consistent, explicit, quasi_static
+from spline_model.motion import energy_consistent, leapfrog, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
@@ -33,20 +33,17 @@ from spline_model.pivot import Pivot
 from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 
-__all__ = ["EXPLICIT_STEPS", "INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
+__all__ = ["INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
 
 Array = NDArray[np.float64]
 
 INTEGRATORS: dict[str, Callable[..., Moves]] = {
     "energy": energy_consistent.Stepper,
-    **{name: partial(explicit.Stepper, integrator=name) for name in explicit.SCHEMES},
+    leapfrog.NAME: leapfrog.Stepper,
 }
 """What makes of a start what advances it."""
-EXPLICIT_STEPS = {"explicit": 0.5, "leapfrog": 0.9}
-"""Default explicit step over the longest stable one, which is that of the highest frequency at start and at
-rest: stress stiffens the strips on the way, and near its limit Runge-Kutta takes energy from axial waves."""
 STEP = 5e-5
-"""Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
+"""Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
 
 def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
@@ -81,11 +78,11 @@ def solve_motion(
     ----------
     body : that ``start`` rotates and that the trajectory reports; default the only one.
     drive : a rotation that is held or driven in a part of the run, if any.
-    duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
+    duration, step : [s]; the step defaults to STEP, or to a stable one of the leapfrog; it is
         shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
         are dynamic), or for free scenes of which no strip is damped or massless "leapfrog", the
-        fastest, and "explicit".
+        fastest.
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
@@ -155,12 +152,10 @@ def _run(
 
 
 def _default_step(integrator: str, start: Start, duration: float) -> float:
-    """STEP, or that of EXPLICIT_STEPS where it is shorter; at most the duration [s]."""
+    """STEP, or a stable one of the leapfrog where it is shorter; at most the duration [s]."""
     step = min(STEP, duration)
-    if integrator in EXPLICIT_STEPS:
-        step = min(
-            step, EXPLICIT_STEPS[integrator] * explicit.critical_step(integrator, start.motion, start.z)
-        )
+    if integrator == leapfrog.NAME:
+        step = min(step, leapfrog.PART * leapfrog.critical_step(start.motion, start.z))
     return step
 
 

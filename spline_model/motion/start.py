@@ -199,11 +199,6 @@ class Motion:
         parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
         return self.system.with_tables(loads=loads._replace(value=loads.value * parts) if parts else loads)
 
-    def require_conservative(self, name: str) -> None:
-        """Refuse damping, drives and loads: only the energy-consistent scheme has them."""
-        if self.drag.size or self.damped or self.drives.row.size or self.loads.coordinate.size:
-            raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")
-
 
 @dataclass(frozen=True, eq=False)
 class Start:

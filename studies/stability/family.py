@@ -50,10 +50,8 @@ ARCS: dict[str, Settings] = {
     TWELVE: SplineSettings(control_points=12),
 }
 
-EXPLICIT = "spline, explicit"
-
 #: All columns, in the order of tables and figures.
-ORDER = (*PATHS, VARIED, EXPLICIT, EIGHT, TWELVE)
+ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

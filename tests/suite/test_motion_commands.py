@@ -184,7 +184,7 @@ REFUSED = {
     "negative step": (["release", "fe", "--step", -1e-6], "--step"),
     "unknown integrator": (
         ["release", "spline", "--integrator", "generalised-alpha"],
-        "integrator: got 'generalised-alpha', expected one of energy, explicit, leapfrog",
+        "integrator: got 'generalised-alpha', expected one of energy, leapfrog",
     ),
     "integrator of the other model": (
         ["release", "fe", "--integrator", "energy"],
