@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from spline_model.impulses.arrays import COUNTS, ENERGY, RESIDUAL, Moving
 from spline_model.impulses.steps import EULER, predict, printed_advance, solve_step, stable_advance
 from spline_model.impulses.system import fill_drag, strain_energy
-from spline_model.motion.moves import Steps, Unreduced
-from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, Whole
+from spline_model.motion.moves import Moves, Steps
+from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, Whole, rows_of
 from spline_model.motion.start import Motion
 from spline_model.strip.compiled import copy, kernel
 
@@ -79,8 +79,11 @@ class Outcome:
         return self.taken == self.asked
 
 
-class Stepper(Unreduced):
-    """A motion from a state, its steps between two events in one call; they see to the energy themselves."""
+class Stepper(Moves):
+    """A motion from a state, its steps between two events in one call; they see to the energy themselves.
+
+    A record is unknowns (N,), velocities (Q,), strain energy, work done and energy dissipated [J].
+    """
 
     most_gain = math.inf
     watched = sys.maxsize
@@ -135,6 +138,16 @@ class Stepper(Unreduced):
         record = np.empty(self.width)
         _store(self.moving, self._problem, self.solver.space, record)
         return record
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        size = self.motion.system.layout.size
+        return records[:, :size], records[:, size:-3]
+
+    def shown(self, records: Array) -> tuple[Array, Array]:
+        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        z, v = self.unknowns(records)
+        return z[:, self.motion.system.layout.poses], rows_of(self.motion, z, v, records[:, -3:])
 
     def counted(self, steps: int) -> dict[str, int]:
         """What was counted, by name."""
