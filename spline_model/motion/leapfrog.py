@@ -39,7 +39,7 @@ Array = NDArray[np.float64]
 
 NAME = "leapfrog"
 """What the integrator is called."""
-LIMIT, PLAIN_LIMIT = 12.0**0.5, 2.0
+STABILITY_LIMIT, PLAIN_LIMIT = 12.0**0.5, 2.0
 """omega h up to which a step does not amplify an undamped oscillation, with two evaluations and with one."""
 PART = 0.9
 """Default step over the longest stable one, which is that of the highest frequency at start and at rest:
@@ -157,7 +157,7 @@ class Stepper(energy_consistent.Stepper):
 
 def stability_limit(motion: Motion) -> float:
     """omega h up to which a step does not amplify an undamped oscillation of a system in motion."""
-    return PLAIN_LIMIT if (np.diag(motion.rigidity) == 0.0).any() else LIMIT
+    return PLAIN_LIMIT if (np.diag(motion.rigidity) == 0.0).any() else STABILITY_LIMIT
 
 
 def critical_step(motion: Motion, z: Array) -> float:
