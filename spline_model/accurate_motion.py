@@ -24,7 +24,7 @@ from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.motion.explicit import critical_step, require_explicit
+from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import set_in_motion
 from spline_model.solution import MotionEstimate, Status
@@ -45,10 +45,8 @@ LARGEST_PART, SMALLEST_PART = 0.7, 0.1
 """First and least explicit step over the critical one."""
 EXPLICIT_RATIO = 4.0 / 3.0
 """Coarse explicit step over the fine one."""
-EXPLICIT = "leapfrog"
-"""The scheme of the runs whose steps resolve all."""
 ORDER = 2
-"""Its order in the rotation; it is four in the phase of the waves alone."""
+"""Order of the leapfrog in the rotation; it is four in the phase of the waves alone."""
 DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
@@ -87,11 +85,11 @@ class Task:
         chosen = self.with_points(n)
         motion = set_in_motion(compile_scene(chosen.released()))
         try:
-            require_explicit(motion, EXPLICIT)
+            leapfrog.require_explicit(motion)
         except InvalidParameter:
             return 0.0
         held = static_state(chosen.at_start(), self.start, body=self.body)[: motion.system.layout.size]
-        return critical_step(EXPLICIT, motion, held)
+        return leapfrog.critical_step(motion, held)
 
     @cached_property
     def with_points(self) -> Callable[[int], Mechanism]:
@@ -250,4 +248,4 @@ class _Runs:
     def _run(self, n: int, steps: int) -> Trajectory:
         self.count += 1
         records = self.instants * (FINE if steps % FINE == 0 else 1)
-        return self.task.run(n, EXPLICIT if self.explicit else "energy", self.spacing / steps, records)
+        return self.task.run(n, leapfrog.NAME if self.explicit else "energy", self.spacing / steps, records)

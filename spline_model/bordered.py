@@ -44,9 +44,9 @@ def evaluate(
     """Fill gradient (N,) and hessian (N, N) at z (N,); returns bending and axial energy [J].
 
     Equilibrium is gradient = 0: its rows are force balance, axial compatibility and, with a minus sign, the
-    constraints. Energies of potentials in Python are not in what is returned.
+    constraints.
     """
-    count, tables = system.layout.coordinate_count, system.tables
+    tables = system.tables
     bending, axial, _ = assemble(z, tables.points, tables.clamps, gradient, hessian, np.empty((5, 4)))
     drives, loads = tables.drives, tables.loads
     gradient[drives.row] -= z[drives.coordinate] - drives.origin - load_factor * drives.target
@@ -54,17 +54,7 @@ def evaluate(
     hessian[drives.row, drives.coordinate] = hessian[drives.coordinate, drives.row] = -1.0
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
     gradient[: tables.weight.size] -= tables.weight
-    for potential in system.open_potentials:
-        _, force, stiffness = potential.derivatives(z[:count], system.layout)
-        gradient[:count] += force
-        hessian[:count, :count] += stiffness
     return bending, axial
-
-
-def open_energy(system: System, z: Array) -> float:
-    """Energy of the potentials in Python [J], which the records of a motion do not know."""
-    q = z[: system.layout.coordinate_count]
-    return float(sum(potential.derivatives(q, system.layout)[0] for potential in system.open_potentials))
 
 
 @kernel()

@@ -23,7 +23,7 @@ from spline_model.effects import (
     StripDrag,
     StripInertia,
 )
-from spline_model.effects.base import Constraint, OpenPotential
+from spline_model.effects.base import Constraint
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
@@ -147,11 +147,6 @@ class System:
             *(e.natural_strain for e in scene.of(MixedStretching)),
         )
         return any(strains) or bool(self.weight.any())
-
-    @property
-    def open_potentials(self) -> tuple[OpenPotential, ...]:
-        """The potentials whose derivatives are Python's."""
-        return self.scene.of(OpenPotential)
 
     @cached_property
     def rest(self) -> Array:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import EXPLICIT, MORE, Task
+from spline_model.accurate_motion import MORE, Task
 from spline_model.basis import SlideModes
 from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
@@ -22,7 +22,7 @@ from spline_model.effects import MixedStretching
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.modes import SLIDE_SHARE, linear_modes
-from spline_model.motion import quasi_static
+from spline_model.motion import leapfrog, quasi_static
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
@@ -40,8 +40,8 @@ CARRIED = 1e-3
 UNRESOLVED, STILL = 0.05, 1e-6
 """Largest difference to the companion that is not remarked on: over the swing, and [rad] of a motion that
 hardly is one, as its start differs by that alone."""
-PART, MOST_SHORTER = 0.9, 20.0
-"""Explicit step of the companion over the critical one; so many cost about as much as a default step."""
+MOST_SHORTER = 20.0
+"""So many of the companion's explicit steps cost about as much as a default step."""
 COMPARED = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
@@ -156,7 +156,7 @@ def with_companion(task: Task, motion: Trajectory) -> Trajectory:
     every = max((each for each in range(1, count // COMPARED + 1) if count % each == 0), default=1)
     instants = motion.time[::every]
     try:
-        scheme = _scheme(motion, PART * task.critical(points), float(instants[1]))
+        scheme = _scheme(motion, leapfrog.PART * task.critical(points), float(instants[1]))
         other = task.run(points, *scheme, len(instants) - 1)
         failed = other.message
     except (ConvergenceError, InvalidParameter) as refused:
@@ -178,8 +178,8 @@ def _scheme(motion: Trajectory, longest: float, spacing: float) -> tuple[str, fl
     longest: step of the leapfrog [s], 0 where it cannot be used.
     """
     own, step = str(motion.settings["integrator"]), float(motion.settings["step_s"])
-    if longest > 0.0 and (own == EXPLICIT or step <= MOST_SHORTER * longest):
-        return EXPLICIT, spacing / math.ceil(spacing / longest)
+    if longest > 0.0 and (own == leapfrog.NAME or step <= MOST_SHORTER * longest):
+        return leapfrog.NAME, spacing / math.ceil(spacing / longest)
     return ("energy" if own == quasi_static.NAME else own), spacing / round(spacing / step)
 
 

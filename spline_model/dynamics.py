@@ -24,7 +24,7 @@ from spline_model.errors import (
 )
 from spline_model.mechanism import Mechanism
 from spline_model.modes import settle
-from spline_model.motion import energy_consistent, explicit, generalised_alpha, quasi_static
+from spline_model.motion import energy_consistent, leapfrog, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
@@ -33,21 +33,17 @@ from spline_model.pivot import Pivot
 from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 
-__all__ = ["EXPLICIT_STEPS", "INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
+__all__ = ["INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
 
 Array = NDArray[np.float64]
 
 INTEGRATORS: dict[str, Callable[..., Moves]] = {
     "energy": energy_consistent.Stepper,
-    "generalised-alpha": generalised_alpha.stepper,
-    **{name: partial(explicit.Stepper, integrator=name) for name in explicit.SCHEMES},
+    leapfrog.NAME: leapfrog.Stepper,
 }
 """What makes of a start what advances it."""
-EXPLICIT_STEPS = {"explicit": 0.5, "leapfrog": 0.9}
-"""Default explicit step over the longest stable one, which is that of the highest frequency at start and at
-rest: stress stiffens the strips on the way, and near its limit Runge-Kutta takes energy from axial waves."""
 STEP = 5e-5
-"""Default step of the implicit integrators [s]: some 240 steps a swing of Table 1."""
+"""Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
 
 def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
@@ -68,7 +64,6 @@ def solve_motion(
     records: int | None = None,
     after: Trajectory | None = None,
     check: bool = True,
-    spectral_radius: float | None = None,
 ) -> Trajectory:
     """Motion of a mechanism that is let go at rest.
 
@@ -83,11 +78,11 @@ def solve_motion(
     ----------
     body : that ``start`` rotates and that the trajectory reports; default the only one.
     drive : a rotation that is held or driven in a part of the run, if any.
-    duration, step : [s]; the step defaults to STEP, or to that of EXPLICIT_STEPS; it is
+    duration, step : [s]; the step defaults to STEP, or to a stable one of the leapfrog; it is
         shortened so that a whole number of steps fits between the records.
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), "generalised-alpha", or for free scenes of which no strip is damped or massless
-        "leapfrog", the fastest, and "explicit".
+        are dynamic), or for free scenes of which no strip is damped or massless "leapfrog", the
+        fastest.
     accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
         points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
@@ -96,16 +91,10 @@ def solve_motion(
         less; none is made with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.
-    spectral_radius : of "generalised-alpha" alone, 0 to 1 (default 0.8).
 
-    Raises InvalidParameter, also for an option that the integrator does not read, and
-    ConvergenceError if statics does not reach ``start``.
+    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
     _check(integrator, duration, start, step, accuracy)
-    options = {} if spectral_radius is None else {"spectral_radius": spectral_radius}
-    if options and integrator != "generalised-alpha":
-        expected = f"none: the integrator {integrator} reads no option"
-        raise InvalidParameter("spectral_radius", spectral_radius, expected)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
     laps, body = Laps(), mechanism.design.body_named(body)
@@ -121,7 +110,7 @@ def solve_motion(
     laps.lap("compile")
     begun = _begin(motion, held, after)
     laps.lap("start")
-    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, options, laps)
+    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, laps)
     if after is not None:
         return trajectory.counted_on(after)
     return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
@@ -134,12 +123,11 @@ def _run(
     scene: Scene,
     asked: tuple[float, float | None, int | None],
     integrator: str,
-    options: dict[str, float],
     laps: Laps,
 ) -> Trajectory:
     """The motion from its start on; scene: without drives; asked: duration, step and records."""
     (duration, step, records), layout = asked, begun.motion.system.layout
-    if integrator not in EXPLICIT_STEPS:
+    if integrator != "leapfrog":
         begun.motion.require_material()
     if step is None:
         step = _default_step(integrator, begun, duration)
@@ -148,7 +136,7 @@ def _run(
     stepper, ran = INTEGRATORS[integrator], integrator
     if integrator == "energy" and begun.motion.massless:
         stepper, ran = quasi_static.stepper, quasi_static.NAME
-    run = carry(stepper(begun, **options), steps)
+    run = carry(stepper(begun), steps)
     laps.lap("solve")
     return Trajectory.of(
         begun.motion.system,
@@ -159,7 +147,6 @@ def _run(
             "integrator": ran,
             "step_s": steps.step,
             "slide_stiffness": mechanism.design.discretisation.slide,
-            **options,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
         laps=laps,
@@ -167,12 +154,10 @@ def _run(
 
 
 def _default_step(integrator: str, start: Start, duration: float) -> float:
-    """STEP, or that of EXPLICIT_STEPS where it is shorter; at most the duration [s]."""
+    """STEP, or a stable one of the leapfrog where it is shorter; at most the duration [s]."""
     step = min(STEP, duration)
-    if integrator in EXPLICIT_STEPS:
-        step = min(
-            step, EXPLICIT_STEPS[integrator] * explicit.critical_step(integrator, start.motion, start.z)
-        )
+    if integrator == leapfrog.NAME:
+        step = min(step, leapfrog.PART * leapfrog.critical_step(start.motion, start.z))
     return step
 
 

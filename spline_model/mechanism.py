@@ -96,10 +96,13 @@ class Mechanism:
     def released(self) -> Scene:
         """The scene in motion (``in_motion``), without the driven displacements that let go.
 
-        Refused if none of its effects has inertia.
+        Refused if none of its effects has inertia, and with printed forces, which have no energy.
         """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
+        if self.design.discretisation.measure == "printed":
+            expected = "material or spatial for motions and modes: printed forces are of static paths alone"
+            raise InvalidParameter("measure", "printed", expected)
         scene = self.in_motion().scene
         kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
         return replace(scene, effects=tuple(kept))

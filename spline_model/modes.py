@@ -12,16 +12,14 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
 from spline_model.accuracy import search, wanted
-from spline_model.basis import SlideModes
-from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
-from spline_model.effects import DrivenDisplacement, DrivenRotation, MixedStretching
+from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mechanism import Mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
-from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.sections import STATIONS
 from spline_model.solution import FrequencyEstimate, Later
@@ -204,8 +202,7 @@ def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, A
 def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array, Array, Array]:
     z, count = np.frombuffer(state).copy(), system.layout.coordinate_count
     mass = np.frombuffer(inertias).reshape(count, count)
-    model = reduced(system, longest=math.inf)
-    stiffness, slide, rows, by = _bordered(system, z) if model is None else _on_elements(model, z)
+    stiffness, slide, rows, by = _linear(require_reduced(system), z)
     norms = np.linalg.norm(rows, axis=1, keepdims=True)
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
     inertia = by.T @ mass @ by
@@ -217,58 +214,30 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     return values, by @ shapes, share
 
 
-Linear = tuple[Array, Array, Array, Array]
-"""Of F coordinates: stiffness and its part from sliding (F, F) [J], constraints (C, F), dq by them (Q, F)."""
+def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
+    """Of F coordinates of the strips' elements, in which clamps hold: stiffness and its part from sliding
+    (F, F) [J], constraints (C, F), dq by them (Q, F).
 
-
-def _on_elements(model: Reduced, z: Array) -> Linear:
-    """In the coordinates of the strips' elements, which the clamps hold by construction."""
+    Axial forces that comply are eliminated; strips that cannot stretch are constraints.
+    """
     y, strips = from_unknowns(model, z), model.strips
     hessian = model.energy * whole_tangents(model, y[None])[1][0]
-    indices, parts = np.arange(model.size), []
-    for s, compliance in enumerate(strips.compliance):
-        axial = indices[model.places(s)[1]]
-        for part, slides in ((slice(strips.split), False), (slice(strips.split, None), True)):
-            parts.append((axial[part], not compliance[part].any(), slides))
-    free = np.setdiff1d(indices, np.concatenate([model.bodies.held, *(at for at, _, _ in parts)]))
-    return *_condensed(hessian, free, parts, hessian[:0, free]), coordinates_by(model, y)[:, free]
-
-
-def _bordered(system: System, z: Array) -> Linear:
-    """In all coordinates, clamps among the constraints: where the element does not know a scene."""
-    layout, unit = system.layout, system.scales.unit
-    gradient, hessian = np.empty(layout.size), np.empty((layout.size, layout.size))
-    evaluate(system, z, 0.0, gradient, hessian)
-    hessian *= unit[:, None] * unit
-    free, indices = np.arange(layout.coordinate_count), np.arange(layout.size)
-    parts = [
-        (indices[layout.axial_modes(i)], effect.axial_compliance == 0, isinstance(effect.modes, SlideModes))
-        for i, effect in enumerate(system.scene.of(MixedStretching))
-    ]
-    held, yields = (each[layout.multiplier_start :] for each in (indices, np.diag(hessian) != 0.0))
-    parts.append((held[yields], False, False))  # moments of roots that comply
-    return *_condensed(hessian, free, parts, hessian[np.ix_(held[~yields], free)]), np.diag(unit[free])
-
-
-def _condensed(
-    hessian: Array, free: NDArray[np.int64], parts: list[tuple[NDArray[np.int64], bool, bool]], rows: Array
-) -> tuple[Array, Array, Array]:
-    """Stiffness, its part from sliding, and constraints: axial forces that comply are eliminated.
-
-    parts: places of axial forces, whether they do not comply, and whether they belong to sliding.
-    """
-    stiffness = hessian[np.ix_(free, free)]
+    axial = [np.arange(model.size)[model.places(s)[1]] for s in range(len(strips.compliance))]
+    free = np.setdiff1d(np.arange(model.size), np.concatenate([model.bodies.held, *axial]))
+    stiffness, rows = hessian[np.ix_(free, free)], [hessian[:0, free]]
     slide = np.zeros_like(stiffness)
-    for at, rigid, slides in parts:
-        coupling = hessian[np.ix_(at, free)]
-        if rigid:
-            rows = np.concatenate((rows, coupling))
-            continue
-        part = coupling.T @ np.linalg.solve(-hessian[np.ix_(at, at)], coupling)
-        stiffness += part
-        if slides:
-            slide += part
-    return stiffness, slide, rows
+    for places, compliance in zip(axial, strips.compliance, strict=True):
+        for part, slides in ((slice(strips.split), False), (slice(strips.split, None), True)):
+            at = places[part]
+            coupling = hessian[np.ix_(at, free)]
+            if not compliance[part].any():
+                rows.append(coupling)
+                continue
+            share = coupling.T @ np.linalg.solve(-hessian[np.ix_(at, at)], coupling)
+            stiffness += share
+            if slides:
+                slide += share
+    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
 
 
 def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:

@@ -46,7 +46,7 @@ class Pattern:
     def of(cls, system: System) -> Self | None:
         """The pattern of a system's tangent, or None where a dense factorisation is as fast or needed."""
         size = system.layout.size
-        if size < LEAST_SIZE or system.open_potentials:
+        if size < LEAST_SIZE:
             return None
         filled = filled_entries(system)
         if filled.mean() > LARGEST_FILL:
@@ -100,7 +100,7 @@ class Pattern:
 
 
 def filled_entries(system: System) -> NDArray[np.bool_]:
-    """Which entries of the tangent (N, N) the compiled tables can reach; potentials in Python not counted."""
+    """Which entries of the tangent (N, N) the compiled tables can reach."""
     tables, size = system.tables, system.layout.size
     filled = np.zeros((size, size), dtype=np.bool_)
     spans = np.unique(tables.points.place[:, [FIRST, WIDTH, MODE, MODES]], axis=0)

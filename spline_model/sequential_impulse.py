@@ -76,7 +76,6 @@ class ImpulseSolver:
             if form == "stable":
                 raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
         self.motion, soft = set_in_motion(system), form == "stable"
-        self.motion.require_compiled("sequential impulses")
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
             raise InvalidParameter("effects", ANTICLASTIC, held)
@@ -126,7 +125,7 @@ class ImpulseSolver:
         held = pose is not None
         if held != state.held:
             state = replace(state, known=0)
-        stepper = Stepper(self, state)
+        stepper = self.stepper(state)
         if pose is not None:
             way = self._driven(state, np.asarray(pose, dtype=float), h * count)
             stepper.drive(way, np.ones_like(self.problem.active))
@@ -135,7 +134,11 @@ class ImpulseSolver:
 
     def look(self, state: State) -> Outcome:
         """What a state is, as that of no steps."""
-        return Stepper(self, state).outcome(0, 0, state.time, state.held)
+        return self.stepper(state).outcome(0, 0, state.time, state.held)
+
+    def stepper(self, state: State) -> Stepper:
+        """Steps from a state on, in the solver's work space."""
+        return Stepper(self.motion, self.problem, self.space, self.form, state)
 
     def _driven(self, state: State, pose: Array, duration: float) -> Motion:
         """The motion with its drives on the way from the state to the pose."""
@@ -228,7 +231,7 @@ def solve_impulses(
     solver = ImpulseSolver(mechanism, system, form=form, sweeps=sweeps, tolerance=tolerance)
     steps = Steps.of(duration, step, records, 2 * system.layout.size)
     laps.lap("compile")
-    stepper = Stepper(solver, solver.start(start, body))
+    stepper = solver.stepper(solver.start(start, body))
     laps.lap("start")
     run = carry(stepper, steps)
     laps.lap("solve")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
 from spline_model import checks
-from spline_model.bordered import evaluate, open_energy
+from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
@@ -247,10 +247,10 @@ class Followed:
         return less - apart.gradient
 
     def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
-        """Energy of strips, dead weight, loads and potentials in Python, which elements do not know."""
+        """Energy of strips, dead weight and loads."""
         factor, share = self.acting(load_factor)
         loads, weight = self.external(z)
-        return sum(energies) - factor * loads - share * weight + open_energy(self.system, z)
+        return sum(energies) - factor * loads - share * weight
 
     def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
         """First and second derivative of the potential in the load factor, drives released."""

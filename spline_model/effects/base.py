@@ -11,13 +11,6 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from spline_model.layout import Layout
-
-Array = NDArray[np.float64]
-
 
 class Potential:
     """Adds an energy V(q), its gradient and its Hessian."""
@@ -42,15 +35,3 @@ class Constraint:
     """
 
     rows: ClassVar[int]
-
-
-class OpenPotential(Potential):
-    """A potential with its derivatives in Python: the way to add one without touching a kernel.
-
-    It works in statics, in modes and with the generalised-alpha integrator; the compiled
-    integrators refuse a scene that holds one.
-    """
-
-    def derivatives(self, q: Array, layout: Layout) -> tuple[float, Array, Array]:
-        """Energy [J], gradient (Q,) and Hessian (Q, Q) at the coordinates q (Q,)."""
-        raise NotImplementedError

@@ -1,7 +1,7 @@
 """The names of the effects, and what each of them makes of a design.
 
 An entry is a function of the design and of the effect's own parameters that returns frozen
-effects. A new effect is a class with such a function in a file of its own, and one line here.
+effects. A new effect is such a function in a file of its own, and one line here.
 """
 
 from __future__ import annotations

@@ -6,21 +6,17 @@ import math
 import sys
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.impulses.arrays import COUNTS, ENERGY, RESIDUAL, Moving
+from spline_model.impulses.arrays import COUNTS, ENERGY, RESIDUAL, Moving, Problem, Space
 from spline_model.impulses.steps import printed_advance, stable_advance
 from spline_model.impulses.system import strain_energy
-from spline_model.motion.moves import Steps, Unreduced
-from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, Whole
+from spline_model.motion.moves import Moves, Steps
+from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN, WEIGHT, Whole, rows_of
 from spline_model.motion.start import Motion
 from spline_model.strip.compiled import copy, kernel
-
-if TYPE_CHECKING:
-    from spline_model.sequential_impulse import ImpulseSolver
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -79,15 +75,20 @@ class Outcome:
         return self.taken == self.asked
 
 
-class Stepper(Unreduced):
-    """A motion from a state, its steps between two events in one call; they see to the energy themselves."""
+class Stepper(Moves):
+    """A motion from a state, its steps between two events in one call; they see to the energy themselves.
+
+    A record is unknowns (N,), velocities (Q,), strain energy, work done and energy dissipated [J]. problem:
+    the motion's, without drives; form: "printed" or "stable"; space: work space, which steppers may share.
+    """
 
     most_gain = math.inf
     watched = sys.maxsize
     smallest = 1.0
 
-    def __init__(self, solver: ImpulseSolver, state: State) -> None:
-        self.solver, self.counters = solver, np.zeros(6, dtype=np.int64)
+    def __init__(self, motion: Motion, problem: Problem, space: Space, form: str, state: State) -> None:
+        self._undriven, self._space, self._form = problem, space, form
+        self.counters = np.zeros(6, dtype=np.int64)
         self.moving = Moving(
             z=state.z.copy(),
             v=state.v.copy(),
@@ -97,18 +98,18 @@ class Stepper(Unreduced):
             totals=np.zeros(2),
         )
         self.width = len(state.z) + len(state.v) + 3
-        self.drive(solver.motion, np.zeros_like(solver.problem.active))
+        self.drive(motion, np.zeros_like(problem.active))
         self._begin()
 
     def _begin(self) -> None:
-        (z, v), problem = self.moving[:2], self.solver.problem
-        strain = strain_energy(z, v, problem, self.solver.space)
+        (z, v), problem = self.moving[:2], self._undriven
+        strain = strain_energy(z, v, problem, self._space)
         self.moving.status[ENERGY] = 0.5 * v @ problem.mass @ v + strain - problem.weight @ z[: v.size]
 
     def drive(self, motion: Motion, active: Indices) -> None:
         """Go on with the drives of a motion, of which those hold whose ``active`` (D,) is 1."""
         self.motion, self.active = motion, active
-        self._problem = self.solver.problem._replace(drives=motion.drives, active=active)
+        self._problem = self._undriven._replace(drives=motion.drives, active=active)
 
     def instants(self, run: Steps) -> list[float]:
         """When drives begin, change or end: at the ends of the nearest steps [s]."""
@@ -126,15 +127,25 @@ class Stepper(Unreduced):
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps ``begin`` ... ``end`` - 1; the number of the first that cannot be, or end."""
-        stable = self.solver.form == "stable"
-        given = stable, self._problem, self.solver.space, records
+        stable = self._form == "stable"
+        given = stable, self._problem, self._space, records
         return int(_advance(self.moving, time, step, begin, end, every, *given))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
         record = np.empty(self.width)
-        _store(self.moving, self._problem, self.solver.space, record)
+        _store(self.moving, self._problem, self._space, record)
         return record
+
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        size = self.motion.system.layout.size
+        return records[:, :size], records[:, size:-3]
+
+    def shown(self, records: Array) -> tuple[Array, Array]:
+        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        z, v = self.unknowns(records)
+        return z[:, self.motion.system.layout.poses], rows_of(self.motion, z, v, records[:, -3:])
 
     def counted(self, steps: int) -> dict[str, int]:
         """What was counted, by name."""
@@ -142,7 +153,7 @@ class Stepper(Unreduced):
 
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""
-        return REASONS[self.solver.form]
+        return REASONS[self._form]
 
     def outcome(self, taken: int, asked: int, time: float, held: bool) -> Outcome:
         """Where the motion stands, for who asked for steps."""

@@ -219,7 +219,6 @@ class Stepper(Moves):
 
     def __init__(self, start: Start) -> None:
         self.motion, self.first = start.motion, start.z
-        self.motion.require_compiled("energy")
         self._model = Moving.of(self.motion)
         self.width = self._model.width
         self._state, self._work = self._model.arrays(start.z, start.v, start.acceleration)

@@ -99,8 +99,8 @@ class Grid(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean, dr, dw
-    of a step; turns: cosine and sine; ends: arm and s-direction, lever: how inner and outer points of tip and
+    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean of a
+    step; turns: cosine and sine; ends: arm and s-direction, lever: how inner and outer points of tip and
     root turn; g, h, y of a strip; tangent, load of the bodies. T = 4 + I.
     """
 
@@ -108,8 +108,6 @@ class Room(NamedTuple):
     u: Annotated[Array, "R"]
     push: Annotated[Array, "R"]
     mean: Annotated[Array, "R"]
-    dr: Annotated[Array, "R"]
-    dw: Annotated[Array, "R"]
     turns: Annotated[Array, "B 2"]
     points: Annotated[Array, "S 2 n"]
     speed: Annotated[Array, "S 2 n"]

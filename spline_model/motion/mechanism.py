@@ -186,7 +186,7 @@ def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
         mass=np.array([motion.mass[at, at][::2, ::2] for at in places]) * mass,
         drag=np.array([drag[at, at][::2, ::2] for at in places]) * mass,
         dead=np.array([weight[at].reshape(n, 2).T for at in places]).reshape(count, 2, n) / (energy / length),
-        measure=min(1, made.measure),  # printed forces: of the spatial energy
+        measure=made.measure,
     )
     return {"strips": strips, "to_modes": to_modes}
 

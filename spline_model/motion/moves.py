@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter, require_count
-from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, Whole, first_gain, rows_of
+from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, Whole, first_gain
 from spline_model.motion.start import SAME, Array, Motion
 from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS, WHOLE
 
@@ -176,23 +176,6 @@ class Moves:
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""
         raise NotImplementedError
-
-
-class Unreduced(Moves):
-    """The same in the scene's own unknowns.
-
-    A record is unknowns (N,), velocities (Q,), strain energy, work done and energy dissipated [J].
-    """
-
-    def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records."""
-        size = self.motion.system.layout.size
-        return records[:, :size], records[:, size:-3]
-
-    def shown(self, records: Array) -> tuple[Array, Array]:
-        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
-        z, v = self.unknowns(records)
-        return z[:, self.motion.system.layout.poses], rows_of(self.motion, z, v, records[:, -3:])
 
 
 def carry(stepper: Moves, run: Steps) -> Records:

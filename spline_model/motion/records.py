@@ -26,8 +26,6 @@ ENERGIES = 5
 """Length of a row: the last numbers of a compiled run's record, there in EI/L."""
 MOST_GAIN = 1e-6
 """Largest gain of an energy-consistent run over its energy: a million steps stay below."""
-MOST_GAIN_OF_OTHERS = 1e-2
-"""Largest gain of a run whose scheme keeps energy in the limit of short steps only."""
 QUIET = 1e-6
 """Energies below this, in EI/L, are not told from this much: their gain is round-off."""
 

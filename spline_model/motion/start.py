@@ -199,22 +199,11 @@ class Motion:
         parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
         return self.system.with_tables(loads=loads._replace(value=loads.value * parts) if parts else loads)
 
-    def require_compiled(self, name: str) -> None:
-        """Refuse potentials in Python."""
-        if self.system.open_potentials:
-            names = [type(potential).__name__ for potential in self.system.open_potentials]
-            raise InvalidParameter("integrator", name, f"generalised-alpha for {', '.join(names)}")
-
     def require_material(self) -> None:
         """Refuse another measure than the material one, which only the leapfrog integrates."""
         for bending in self.system.scene.of(Bending):
             if bending.measure != "material":
                 raise InvalidParameter("measure", bending.measure, "material, or the integrator leapfrog")
-
-    def require_conservative(self, name: str) -> None:
-        """Refuse damping, drives and loads: only the energy-consistent scheme has them."""
-        if self.drag.size or self.damped or self.drives.row.size or self.loads.coordinate.size:
-            raise InvalidParameter("integrator", name, "energy (fixed step) for damping, loads and drives")
 
 
 @dataclass(frozen=True, eq=False)

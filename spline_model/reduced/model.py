@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Stretching
+from spline_model.errors import InvalidParameter
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, ends_of, shape_of, strips_of
 from spline_model.scene import Scene
@@ -100,10 +102,22 @@ def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
     or the spatial measure; longest: control points of a strip, at most. It is made once a system.
     """
-    if not _known(system.scene, system, longest):
+    if not _known(system.scene, longest):
         return None
     made: Reduced | None = system.once("reduced", _reduced)
     return made
+
+
+def require_reduced(system: System) -> Reduced:
+    """The reduced mechanism of a scene with strips of any length; InvalidParameter where there is none."""
+    model = reduced(system, longest=math.inf)
+    if model is None and any(e.measure == "printed" for e in system.scene.of(Bending)):
+        expected = "material or spatial: printed forces are of static paths alone"
+        raise InvalidParameter("measure", "printed", expected)
+    if model is None:
+        unknown = "strips of several kinds or a load on a clamped end"
+        raise InvalidParameter("scene", unknown, "what the strips' elements know")
+    return model
 
 
 def _reduced(system: System) -> Reduced | None:
@@ -129,13 +143,12 @@ def _reduced(system: System) -> Reduced | None:
     )
 
 
-def _known(scene: Scene, system: System, longest: float) -> bool:
+def _known(scene: Scene, longest: float) -> bool:
     bending = scene.of(Bending)
     grids = {(e.gauss_points, e.measure) for kind in ELASTIC for e in scene.of(kind)}
     bases = {strip.basis for strip in scene.strips}
     return (
-        not system.open_potentials
-        and len(bases) == 1
+        len(bases) == 1
         and len(grids) == 1
         and "printed" not in {measure for _, measure in grids}
         and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)

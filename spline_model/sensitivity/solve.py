@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,7 +17,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.layout import Layout
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
-from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.reduced.states import gathered, whole_tangents
 from spline_model.sections import STATIONS
@@ -95,10 +94,7 @@ def sensitivities(
 
 def _model_of(system: System, z: Array) -> Reduced:
     """The strips' elements of a system; refuses what they do not know, and z (S, N) of another system."""
-    model = reduced(system, longest=math.inf)
-    if model is None:
-        unknown = "printed forces or an own potential"
-        raise InvalidParameter("effects", unknown, "what the strips' elements know")
+    model = require_reduced(system)
     if z.shape[1:] != (system.layout.size,):
         got = f"{z.shape[1:]} unknowns"
         raise InvalidParameter("solution", got, f"a solution of this pivot with {system.layout.size}")

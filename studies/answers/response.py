@@ -182,7 +182,9 @@ class Response(Solved):
     @cached_property
     def body_stiffness(self) -> Array:
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
-        [N/m, N, N m/rad]; found when it is first asked for."""
+        [N/m, N, N m/rad]; found when it is first asked for; nan with the paper's printed forces."""
+        if self.settings.get("measure") == "printed":
+            return np.full((len(self.load_factor), 3, 3), np.nan)
         return np.asarray(self.solution.body_stiffness(self.body))
 
     @classmethod

@@ -77,11 +77,7 @@ DAMPED = ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5))
 
 #: Settings of the release.
 SWINGS = (
-    *grid(
-        spline, SPLINE,
-        control_points=(5, 6, 7, 8), integrator=("energy", "generalised-alpha"), step=STEPS,
-    ),
-    *grid(spline, SPLINE, control_points=(6, 7, 8), integrator=("explicit",), step=(2e-6,)),
+    *grid(spline, SPLINE, control_points=(5, 6, 7, 8), integrator=("energy",), step=STEPS),
     *(
         variant
         for n, step in LEAPS

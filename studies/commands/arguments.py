@@ -120,8 +120,7 @@ DURATION = Argument("--duration T", "of the motion, in s (default: four swings o
 STEP = Argument("--step S", "of the integrator, in s (default: its own)", positive)
 INTEGRATOR = Argument(
     "--integrator NAME",
-    "spline: energy (default), generalised-alpha, explicit, leapfrog; "
-    "fe: central-difference (default), generalised-alpha",
+    "spline: energy (default), leapfrog; fe: central-difference (default), generalised-alpha",
 )
 
 JSON = Argument(

@@ -10,11 +10,11 @@ answer is from the full one's when the effect is left out or replaced by its sim
 inextensible strips for stretching and massless strips for their inertia. Changes are of the path over the
 travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the part of the
 energy that is lost. Times are of static path and motion together, the full scene's over the line's: above 1
-the line is faster. DOF are those with inertia; the explicit step is 2.83 over the highest frequency. Then
-comes what planar beams leave out: how path, stiffness at the begin of the rotation, torque and largest stress
-at its end, and first mode change with clamps over the whole width, sections that flatten, roots cut in one
-block, all three, and with shear, which the elements have (--model fe-shear). Exit code 0: done; 2: bad input;
-3: the full scene has no answer.
+the line is faster. DOF are those with inertia; the explicit step is the longest stable one of the leapfrog.
+Then comes what planar beams leave out: how path, stiffness at the begin of the rotation, torque and largest
+stress at its end, and first mode change with clamps over the whole width, sections that flatten, roots cut in
+one block, all three, and with shear, which the elements have (--model fe-shear). Exit code 0: done; 2: bad
+input; 3: the full scene has no answer.
 """
 
 import argparse

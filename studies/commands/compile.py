@@ -34,7 +34,6 @@ CALLS: tuple[tuple[tuple[Settings, tuple[str, ...]], ...], ...] = (
         (MIXED, ("sequential impulses",)),
         (MIXED, ("leapfrog",)),
         (MIXED, ("massless", "modes")),
-        (MIXED, ("generalised-alpha",)),
         (replace(ELEMENTS, element="reissner"), ("static", "modes", "central-difference")),
         (CONSISTENT, ("static", "modes")),
         (MIXED, ("energy",)),

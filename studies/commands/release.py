@@ -111,7 +111,7 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
     A step only of the implicit splines: what is explicit, or has an accuracy, has steps of its own, and so
     have the elements.
     """
-    implicit = arguments.integrator in (None, "energy", "generalised-alpha") and arguments.accuracy is None
+    implicit = arguments.integrator in (None, "energy") and arguments.accuracy is None
     free = settings.model == "spline" and implicit and arguments.step is None
     if arguments.duration is not None and not free:
         return arguments.duration, arguments.step

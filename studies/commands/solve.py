@@ -232,7 +232,9 @@ def _readable(answer: Response) -> Iterator[str]:
     """
     yield tell.described(answer)
     yield from columns.table([*_states(answer), *_columns(answer)])
-    if answer.body is not None:
+    if answer.settings.get("measure") == "printed":
+        yield "stiffness of the body: none with printed forces, which are of static paths alone"
+    elif answer.body is not None:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))

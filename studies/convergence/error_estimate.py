@@ -55,6 +55,8 @@ SWING_ACCURACIES = (3e-2, 1e-2)
 #: Duration over the period of the swing at rest, and control points of reference and check.
 PERIODS = 1.0
 SWING_REFERENCE, SWING_CHECK = 9, 7
+#: Leapfrog steps of both in a period, at least four times as many as are stable.
+STEPS_A_PERIOD = 20000
 
 #: The band an effectivity should lie in, the share of designs that must, and the least of any.
 BAND, SHARE, LEAST = (0.3, 10.0), 0.9, 1.0 / 3.0
@@ -169,9 +171,10 @@ def _static(number: int, problem: Problem) -> Answer:
 
 def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     """Yield the rows of one design's swings."""
-    let_go = partial(answer_release, problem, duration=PERIODS * _period(problem))
+    period = _period(problem)
+    let_go = partial(answer_release, problem, duration=PERIODS * period)
     exact, check = (
-        let_go(SplineSettings(control_points=n), integrator="explicit")
+        let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)
         for n in (SWING_REFERENCE, SWING_CHECK)
     )
     uncertainty = _rotation_error(check, exact)

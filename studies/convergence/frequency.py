@@ -9,18 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.convergence.swing_sweep import INTEGRATORS, MODES, PARTS
+from studies.convergence.swing_sweep import MODES, PARTS
 from studies.engine import Claim, Study, Tables
 from studies.record.marks import Doubt, Level
 from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
-from studies.record.style import BLACK, BLUE, LOOKS, ORANGE, Look
+from studies.record.style import BLACK, BLUE, LOOKS, Look
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
 MESHES = replace(LOOKS[TWENTY], colour=BLACK, label="_")
-STEPPED = {
-    "energy": Look(label=INTEGRATORS["energy"], colour=BLUE, marker="x"),
-    "generalised-alpha": Look(label=INTEGRATORS["generalised-alpha"], colour=ORANGE, marker="o"),
-}
+STEPPED = Look(label="energy-consistent", colour=BLUE, marker="x")
 
 #: The part of a shift by which its prediction from statics may be off and still explain it.
 EXPLAINED = 0.25
@@ -45,7 +42,7 @@ def _shifts(tables: Tables) -> Figure:
             marks=(Curves(tables["elements"], MESHES), doubt)
         ),
         Panel(
-            STEP, unnamed, (Curves(tables["steps"], STEPPED, by="integrator"),),
+            STEP, unnamed, (Curves(tables["steps"], STEPPED),),
             title="Swing from 90°, n = 6", legend="upper left"
         ),
     )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 from spline_model.compile import compile_scene
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes, static_state
-from spline_model.motion.explicit import highest_frequency, stability_limit
+from spline_model.motion.leapfrog import highest_frequency, stability_limit
 from spline_model.motion.start import set_in_motion
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.models import put
@@ -91,7 +91,7 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
 
     Keys: unknowns (coordinates, axial forces and multipliers of a step's equations), degrees_of_freedom
     (independent coordinates that have inertia), highest_frequency_Hz (at rest and at the start of the motion)
-    and explicit_step_s (largest stable step of the explicit integrator there, 2.83 over that).
+    and explicit_step_s (largest stable step of the leapfrog there).
 
     Raises:
         BadInput: what the model refuses; one line. spline_model.errors.ConvergenceError: statics does not
@@ -106,7 +106,7 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
         start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
         highest = highest_frequency(motion, start)
         modes = linear_modes(system, system.rest, motion.mass)[0]
-    step = stability_limit("explicit", motion) / highest
+    step = stability_limit(motion) / highest
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 
 

@@ -50,11 +50,8 @@ ARCS: dict[str, Settings] = {
     TWELVE: SplineSettings(control_points=12),
 }
 
-GENERALISED_ALPHA = "spline, generalised-alpha"
-EXPLICIT = "spline, explicit"
-
 #: All columns, in the order of tables and figures.
-ORDER = (*PATHS, VARIED, GENERALISED_ALPHA, EXPLICIT, EIGHT, TWELVE)
+ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

@@ -48,7 +48,6 @@ def test_body_stiffness_gate_has_teeth():
     [
         (spline_model, {"control_points": 6}),
         (spline_model, {"control_points": 6, "basis": "bspline"}),
-        (spline_model, {"control_points": 6, "measure": "printed", "stretch": "consistent"}),
         (fe_reference, {"elements": 8}),
     ],
 )

@@ -32,7 +32,7 @@ def refined_swing():
 
 
 @cache
-def spline_swing(control_points, step=2e-6, integrator="explicit", **settings):
+def spline_swing(control_points, step=1e-6, integrator="leapfrog", **settings):
     """Rotation of the spline at the same instants."""
     slide = spline_model.swinging_slide_stiffness(control_points)
     design = TABLE_ONE | {"control_points": control_points, "slide_stiffness": slide} | settings

@@ -98,7 +98,7 @@ def test_frame_gate_has_teeth():
 def swing_error(module, **settings):
     """Largest difference of the rotation to the spline's over 5 ms after the release [rad]."""
     options = {"start": math.pi / 2, "duration": 5e-3}
-    limit = spline.release(CASE, **options, step=2e-6, integrator="explicit", control_points=8)
+    limit = spline.release(CASE, **options, step=1e-6, integrator="leapfrog", control_points=8)
     motion = module.release(CASE, **options, **settings)
     return np.abs(np.interp(limit.time, motion.time, motion.rotation) - limit.rotation).max()
 

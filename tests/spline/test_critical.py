@@ -7,6 +7,9 @@ import pytest
 from mpmath import ellipk, mp
 
 from spline_model import InvalidParameter, cross_axis_pivot, solve_loads, solve_mechanism, solve_statics
+from spline_model.dynamics import solve_release
+from spline_model.modes import natural_frequencies
+from spline_model.sequential_impulse import solve_impulses
 from tests import gates
 from tests.spline.frames import column, opposed
 from tests.table_one import SIX, TABLE_ONE
@@ -111,12 +114,18 @@ def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, k
     assert fast.message == slow.message
 
 
-def test_printed_forces_have_no_inertia():
-    """Requirement: forces without a potential have no inertia; their paths are followed all the same."""
+def test_printed_forces_are_of_statics_alone():
+    """Requirement: forces without a potential have a path without inertia; what needs energy refuses them."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="printed", stretch="consistent")
     answer = solve_statics(pivot, rotation=0.5, increments=5)
     assert (answer.inertia == -1).all()
     assert answer.critical_points == ()
+    line = "measure: got 'printed', expected material or spatial"
+    for ask in (natural_frequencies, solve_release, solve_impulses):
+        with pytest.raises(InvalidParameter, match=f"{line} for motions and modes"):
+            ask(pivot)
+    with pytest.raises(InvalidParameter, match=f"{line}: printed forces are of static paths alone"):
+        answer.body_stiffness()
 
 
 def test_an_unknown_branch_and_control_are_refused():

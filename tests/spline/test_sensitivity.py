@@ -263,7 +263,7 @@ def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
         (
             {"measure": "printed", "stretch": "consistent"},
             KEYWORDS,
-            "effects: got 'printed forces or an own potential', expected what",
+            "measure: got 'printed', expected material or spatial: printed forces are of static paths alone",
         ),
         ({}, ("strip_3.area",), "parameters: got 'strip_3.area', expected one of length, "),
     ],

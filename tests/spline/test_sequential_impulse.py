@@ -25,9 +25,9 @@ from tests.table_one import TABLE_ONE
 
 
 def time_errors(form, steps):
-    """Largest error of the rotation within 0.5 ms of the release, against the explicit integrator."""
+    """Largest error of the rotation within 0.5 ms of the release, against the leapfrog."""
     chosen, options = pivot(control_points=4), {"start": QUARTER, "duration": 5e-4, "records": 20}
-    exact = solve_release(chosen, integrator="explicit", step=2.5e-7, **options).rotation
+    exact = solve_release(chosen, integrator="leapfrog", step=2.5e-7, **options).rotation
     paths = [solve_impulses(chosen, form=form, step=step, **options).rotation for step in steps]
     return np.array([np.abs(path - exact).max() for path in paths])
 

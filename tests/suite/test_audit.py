@@ -109,7 +109,8 @@ def test_audit_has_a_row_for_every_effect(audited):
     assert rows["body_inertia"]["swing_frequency"] is None
     assert 0.0 < rows["gravity"]["torque"] < 1e-4
     for row in (audited["full"], *audited["rows"][1:]):
-        step = 8.0**0.5 / (2.0 * np.pi * row["highest_frequency_Hz"])
+        limit = 2.0 if "inextensible" in row["effects"] else 12.0**0.5
+        step = limit / (2.0 * np.pi * row["highest_frequency_Hz"])
         assert row["explicit_step_s"] == pytest.approx(step, rel=1e-9)
 
 

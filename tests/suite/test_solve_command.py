@@ -53,6 +53,16 @@ def test_json_of_every_model(model, case, command):
     assert answer["counters"]["increments"] == 4
 
 
+def test_printed_forces_leave_the_stiffness_of_the_body_out(case, command):
+    """A path of the paper's printed forces has torques, no stiffness of the body, and a line about that."""
+    words = ["solve", case(), "--measure", "printed", "--stretch", "consistent", "--control-points", 4]
+    words += ["--rotation-deg", 5, "--increments", 2]
+    answer = json.loads(command(*words, "--json", "-").out)
+    assert answer["torque_Nm"][-1] > 10.0
+    assert answer["body_stiffness_xx_N_per_m"] == [None, None, None]
+    assert "stiffness of the body: none with printed forces" in command(*words).out
+
+
 @pytest.mark.parametrize(
     "form",
     [

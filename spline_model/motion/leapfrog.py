@@ -1,6 +1,4 @@
-"""Explicit schemes on the reduced coordinates r of a free mechanism: a whole run in compiled code.
-
-leapfrog, with a corrected force:
+"""The leapfrog, with a corrected force, on the reduced coordinates r of a free mechanism: all steps compiled.
 
     w(t + h/2) = w(t - h/2) + h A(r + h^2/12 A(r, w), w),   r(t + h) = r(t) + h w(t + h/2)
 
@@ -10,12 +8,9 @@ for one evaluation. The rates that A depends on, by centripetal parts only, are 
 Wisdom, Holman and Touma, Fields Inst Comm 10 (1996) 217; Hairer, McLachlan and Skeel, ESAIM: M2AN 43
 (2009) 631.
 
-explicit: classical Runge-Kutta, four evaluations a step, fourth order in all, stable up to sqrt(8). Source:
-Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), II.1.
-
 omega is the highest frequency, an axial one; of strips that cannot stretch a bending one, so that their
-steps are longer. Clamps hold because they are solved, not enforced. Neither keeps energy to round-off: the
-leapfrog changes that of Table 1 with six control points by 1.5e-4 over 0.05 s at steps of 5 microseconds.
+steps are longer. Clamps hold because they are solved, not enforced. Energy is not kept to round-off: that of
+Table 1 with six control points changes by 1.5e-4 over 0.05 s at steps of 5 microseconds.
 Of strips that cannot stretch the leapfrog leaves the correction out: off the states of a step their length is
 not kept, so that it would be of first order. One evaluation, second order, stable up to 2.
 """
@@ -36,61 +31,49 @@ from spline_model.motion.arrays import State
 from spline_model.motion.energy_consistent import forward, store
 from spline_model.motion.forces import Grid, Room, move, place
 from spline_model.motion.mechanism import Moving
-from spline_model.motion.records import MOST_GAIN_OF_OTHERS
 from spline_model.motion.start import Motion, Start
 from spline_model.motion.strip import set_points
 from spline_model.strip.compiled import kernel, part
 
 Array = NDArray[np.float64]
 
-LEAPFROG, RUNGE_KUTTA = range(2)
-SCHEMES = {"explicit": RUNGE_KUTTA, "leapfrog": LEAPFROG}
-STABILITY_LIMITS = {"explicit": 8.0**0.5, "leapfrog": 12.0**0.5}
-"""omega h up to which a step does not amplify an undamped oscillation."""
-PLAIN_LIMIT = 2.0
-"""The same of the leapfrog with one evaluation, where strips cannot stretch."""
+NAME = "leapfrog"
+"""What the integrator is called."""
+STABILITY_LIMIT, PLAIN_LIMIT = 12.0**0.5, 2.0
+"""omega h up to which a step does not amplify an undamped oscillation, with two evaluations and with one."""
+PART = 0.9
+"""Default step over the longest stable one, which is that of the highest frequency at start and at rest:
+stress stiffens the strips on the way."""
+LARGEST_GAIN = 1e-2
+"""Of energy over that at the start: it is kept in the limit of short steps only."""
 SHARPNESS = 0.1
 """O h of inextensible strips: what a step leaves of their strain dies out over a few steps."""
 
 
 @part()
-def _start_stage(scheme, stage, h, r, w, push, room):
-    """Where a stage asks for accelerations, room.x, and the rates there, room.u."""
+def _start_stage(stage, h, r, w, push, room):
+    """Where a stage asks for accelerations, room.x, and the rates there, room.u; stage -1 begins a run."""
     x, u, mean = room.x, room.u, room.mean
     for i in range(r.size):
-        if scheme == LEAPFROG:
-            if stage < 0:
-                x[i], u[i] = r[i], w[i]
-            elif stage == 0:
-                r[i] += h * mean[i]
-                x[i], u[i] = r[i], mean[i] + 0.5 * h * push[i]
-            else:
-                x[i] = r[i] + h * h / 12.0 * push[i]
+        if stage < 0:
+            x[i], u[i] = r[i], w[i]
         elif stage == 0:
-            x[i], u[i], room.dr[i], room.dw[i] = r[i], w[i], 0.0, 0.0
+            r[i] += h * mean[i]
+            x[i], u[i] = r[i], mean[i] + 0.5 * h * push[i]
         else:
-            share = h if stage == 3 else 0.5 * h
-            x[i], u[i] = r[i] + share * u[i], w[i] + share * push[i]
+            x[i] = r[i] + h * h / 12.0 * push[i]
 
 
 @part()
-def _end_stage(scheme, stage, last, h, r, w, push, room):
+def _end_stage(stage, last, h, w, push, room):
     """What a stage adds."""
-    u, mean = room.u, room.mean
-    for i in range(r.size):
-        if scheme == LEAPFROG:
-            if stage < 0:
-                mean[i] = w[i] + 0.5 * h * push[i]
-            elif last:
-                mean[i] += h * push[i]
-                w[i] = mean[i] - 0.5 * h * push[i]
-        else:
-            share = h / 6.0 if stage == 0 or stage == 3 else h / 3.0
-            room.dr[i] += share * u[i]
-            room.dw[i] += share * push[i]
-            if last:
-                r[i] += room.dr[i]
-                w[i] += room.dw[i]
+    mean = room.mean
+    for i in range(w.size):
+        if stage < 0:
+            mean[i] = w[i] + 0.5 * h * push[i]
+        elif last:
+            mean[i] += h * push[i]
+            w[i] = mean[i] - 0.5 * h * push[i]
 
 
 @part()
@@ -116,17 +99,17 @@ def _show(r, w, grid, strips, masses, room, state):
 
 
 @kernel()
-def _run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
+def _run(stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
     """Fill the rows of the records, ``every`` steps of that many stages apart; returns the rows filled.
 
     A state that diverges or is no strip's ends the run.
     """
     for row in range(records.shape[0]):
         for step in range(every):
-            for stage in range(-1 if scheme == LEAPFROG and row + step == 0 else 0, stages):
-                _start_stage(scheme, stage, h, r, w, push, room)
+            for stage in range(-1 if row + step == 0 else 0, stages):
+                _start_stage(stage, h, r, w, push, room)
                 accelerate(room.x, room.u, SHARPNESS / h, grid, strips, masses, room, push)
-                _end_stage(scheme, stage, stage == stages - 1, h, r, w, push, room)
+                _end_stage(stage, stage == stages - 1, h, w, push, room)
             largest = 0.0
             for i in range(r.size):
                 largest = max(largest, abs(r[i]) + h * abs(w[i])) if r[i] == r[i] else np.inf
@@ -140,21 +123,20 @@ def _run(scheme, stages, h, every, r, w, push, grid, strips, masses, room, state
 
 
 class Stepper(energy_consistent.Stepper):
-    """A free scene that a scheme advances, all steps in one call; the first that fails ends the run.
+    """A free scene that the scheme advances, all steps in one call; the first that fails ends the run.
 
     stages: evaluations of the accelerations in a step.
     """
 
-    most_gain = MOST_GAIN_OF_OTHERS
+    most_gain = LARGEST_GAIN
     watched = sys.maxsize
     smallest = 1.0
 
-    def __init__(self, start: Start, integrator: str) -> None:
-        require_explicit(start.motion, integrator)
+    def __init__(self, start: Start) -> None:
+        require_explicit(start.motion)
         super().__init__(start)
-        model, state = self._model, self._state
-        grid, self._scheme = Grid.of(model.strips), SCHEMES[integrator]
-        self.stages = 4 if self._scheme == RUNGE_KUTTA else 1 if grid.outer else 2
+        model, state, grid = self._model, self._state, Grid.of(self._model.strips)
+        self.stages = 1 if grid.outer else 2
         r, w = _reduced(model, state)
         room = Room.of(model.strips, model.masses, grid)
         work = self._work._replace(at=state.at)  # a state is looked at as the end of a step without changes
@@ -162,7 +144,7 @@ class Stepper(energy_consistent.Stepper):
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps from the first on; at any time, as nothing that acts has a history."""
-        return every * int(_run(self._scheme, self.stages, step, every, *self._given, records))
+        return every * int(_run(self.stages, step, every, *self._given, records))
 
     def counted(self, steps: int) -> dict[str, int]:
         """Steps and evaluations of the good records."""
@@ -173,15 +155,14 @@ class Stepper(energy_consistent.Stepper):
         return f"unstable near {record:.6g} s: the step is above the critical one; take a shorter step"
 
 
-def stability_limit(integrator: str, motion: Motion) -> float:
+def stability_limit(motion: Motion) -> float:
     """omega h up to which a step does not amplify an undamped oscillation of a system in motion."""
-    tied = bool((np.diag(motion.rigidity) == 0.0).any())
-    return PLAIN_LIMIT if tied and integrator == "leapfrog" else STABILITY_LIMITS[integrator]
+    return PLAIN_LIMIT if (np.diag(motion.rigidity) == 0.0).any() else STABILITY_LIMIT
 
 
-def critical_step(integrator: str, motion: Motion, z: Array) -> float:
+def critical_step(motion: Motion, z: Array) -> float:
     """The longest stable step [s], by the highest frequency at a state and at rest."""
-    return stability_limit(integrator, motion) / highest_frequency(motion, z)
+    return stability_limit(motion) / highest_frequency(motion, z)
 
 
 def highest_frequency(motion: Motion, z: Array) -> float:
@@ -190,14 +171,14 @@ def highest_frequency(motion: Motion, z: Array) -> float:
     return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 
 
-def require_explicit(motion: Motion, integrator: str) -> None:
+def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    motion.require_compiled(integrator)
-    motion.require_conservative(integrator)
+    if motion.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
+        raise InvalidParameter("integrator", NAME, "energy (fixed step) for damping, loads and drives")
     layout = motion.system.layout
     blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
-        raise InvalidParameter("integrator", integrator, "an implicit one for strips without mass")
+        raise InvalidParameter("integrator", NAME, "energy for strips without mass")
 
 
 def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
