@@ -1,5 +1,6 @@
 """Designs: charts and where their theory ends, pivots sized by gradients."""
 
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -232,8 +233,7 @@ def _farthest(results: Results) -> float:
 
 
 FACTS |= {
-    f"sizing.{name}": Fact(made=lambda r, each=each: _gain(r, each), form=times)
-    for name, each in QUESTIONS.items()
+    f"sizing.{name}": Fact(made=partial(_gain, question=each), form=times) for name, each in QUESTIONS.items()
 }
 FACTS |= {
     "sizing.beams.most": Fact(

@@ -1,4 +1,4 @@
-"""Figures of the design charts: stiffness, shift, stress and variation, loads, and where the theory ends."""
+"""Figures of the design charts: stiffness, shift, stress and variation, and what loads do to them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -6,10 +6,10 @@ from dataclasses import replace
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.engine import Tables, records
-from studies.record.marks import Level, Words
-from studies.record.panels import Axis, Curves, Mark, Panel, sheet
-from studies.record.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, Look
+from studies.engine import Tables
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, SKY, Look
 
 #: Quantity -> how it is written beside its charts.
 NAMES = {
@@ -21,8 +21,6 @@ NAMES = {
 #: Inclinations of the columns [deg], and colours of the rotations.
 DRAWN, COLOURS = (30.0, 45.0, 60.0), (BLUE, SKY, GREEN, ORANGE, BLACK)
 PAGE = 6.3
-#: Where the names of pivots stand whose neighbours are near: how far [pt], and on which side.
-BESIDE = {"large steel": ((4, -10), "right"), "titanium": ((4, -10), "left")}
 
 
 def _charts(tables: Tables) -> Figure:
@@ -83,33 +81,7 @@ def _buckling(rows: pd.DataFrame) -> Panel:
     )
 
 
-def _validity(tables: Tables) -> Figure:
-    """Draw where a plain beam is off by a percent: width and thickness over length, with pivots marked."""
-    marks: list[Mark] = []
-    for row in records(tables["limits"]):
-        line, share = "-" if row["share"] < 0.02 else "--", f"{row['share']:.0%}"
-        if row["ratio"] == "width_ratio":
-            words = f"clamped width {share}"
-            marks.append(Level(row["value"], words=words, colour=GREEN, line=line, upright=True, place=0.85))
-        elif row["ratio"] == "thickness_ratio":
-            words = f"roots of one block {share}"
-            marks.append(Level(row["value"], words=words, colour=PURPLE, line=line, place=0.99))
-    marks.append(Curves(tables["validity"], Look(label="_", colour=BLACK, line="", marker="o")))
-    for row in records(tables["validity"]):
-        text = row["pivot"].removesuffix("_pivot").replace("_", " ")
-        by, side = BESIDE.get(text, ((4, 4), "left"))
-        place = (row["width_ratio"], row["thickness_ratio"])
-        marks.append(Words(text, place, by=by, colour=BLACK, side=side))
-    panel = Panel(
-        Axis("width_ratio", "width over length $b/L$", log=True, limits=(0.02, 2.0)),
-        Axis("thickness_ratio", "thickness over length $t/L$", log=True, limits=(2.5e-3, 0.2)),
-        marks,
-    )
-    return sheet(PAGE, 3.1, [[panel]])
-
-
 CHARTS: Mapping[str, Callable[[Tables], Figure]] = {
     "charts": _charts,
     "charts_loads": _loads,
-    "charts_validity": _validity,
 }

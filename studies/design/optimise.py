@@ -50,7 +50,7 @@ class Outcome:
         problem: the design there; answers: its own.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
-        solved, failed: designs that were solved, and those whose path ended early.
+        solved: designs that were solved.
     """
 
     at: Array
@@ -63,7 +63,6 @@ class Outcome:
     residual: float
     active: tuple[Active, ...]
     solved: int
-    failed: int
 
 
 def optimise(task: Sizing, start: Array) -> Outcome | None:
@@ -239,7 +238,6 @@ def _outcome(programme: Programme, at: Array, message: str) -> Outcome | None:
         residual=residual,
         active=active,
         solved=programme.solved,
-        failed=programme.failed,
     )
 
 

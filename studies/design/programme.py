@@ -45,13 +45,12 @@ class Active:
 class Programme:
     """The programme of a task; `scale` holds the start's largest value of every objective.
 
-    Counts designs that were solved and those whose path ended early; keeps the last design's answer.
+    Counts designs that were solved; keeps the last design's answer.
     """
 
     task: Sizing
     scale: dict[str, float]
     solved: int = 0
-    failed: int = 0
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     @classmethod
@@ -68,7 +67,6 @@ class Programme:
             try:
                 found = self.task.answers(self.task.values(y))
             except PathEnds:
-                self.failed += 1
                 found = None
             self._last = (key, found)
         return self._last[1]

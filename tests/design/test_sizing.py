@@ -77,7 +77,7 @@ def test_optimum_of_narrow_strips(own, narrow):
         "inclination at its most",
         "stiffness",
     }
-    assert found.solved < 20 and found.failed == 0
+    assert found.solved < 20
 
 
 def _variables(task, start):
@@ -102,7 +102,7 @@ def test_price_is_what_another_limit_costs(narrow, name):
 
 
 def test_a_start_without_a_path_is_outside(own):
-    """A design whose path ends early stands far outside and is counted; it is no error of the search."""
+    """A design whose path ends early stands far outside; it is no error of the search."""
     start = replace(own[0], rotation=3.5, increments=1)
     task = replace(_task(own), start=start)
     programme = Programme(task=task, scale={name: 1.0 for name in OBJECTIVES})
@@ -110,7 +110,7 @@ def test_a_start_without_a_path_is_outside(own):
     assert programme.answers(y) is None
     assert (programme.inequalities(y) == OUTSIDE).all() and programme.equality(y) == OUTSIDE
     assert not programme.inequality_jacobian(y).any() and not programme.equality_jacobian(y).any()
-    assert (programme.solved, programme.failed) == (1, 1)
+    assert programme.solved == 1
 
 
 def test_constraints_that_no_design_meets(own):
