@@ -26,7 +26,6 @@ CRITERIA = {
     "axial_modes": "torque within 5 % of a refined spline",
     "fuzz": "path within 5 % of seventeen points; balance of energy to 10⁻⁸",
     "events": "rotation and energy within 5 %; balance of energy",
-    "environment": "the same answer, to 10⁻¹² (frequencies 10⁻⁹)",
 }
 #: Families in which elements and the default are asked the same cases.
 SHARED = ("rotation", "slenderness", "geometry", "buckling", "step_size", "ratios")
@@ -159,12 +158,6 @@ def _(r: Results) -> Any:
 def _(r: Results) -> Any:
     """every random path that elements follow too is within 5 % of theirs"""
     return AGAINST.rows(r)["error"].max() <= 0.05
-
-
-@holds("hard.environment.order")
-def _(r: Results) -> Any:
-    """no answer depends on threads, the compiler or the order of strips"""
-    return r.table(GROUP + "environment", "outcomes").query("outcome == 'wrong'").empty
 
 
 @holds("hard.long_run.bounded")

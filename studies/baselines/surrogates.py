@@ -4,6 +4,7 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
+import math
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -27,8 +28,7 @@ from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.published.account import CASE as GUIDE
-from studies.published.account import LOADS, guide_shape
+from studies.published.case import published
 from studies.published.problems import moved
 from studies.record.marks import Level
 from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
@@ -38,6 +38,9 @@ from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLO
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
 #: Control points of the reference, and those whose difference to it is its uncertainty.
 REFINED, CHECK = 12, 10
+
+#: Published problem whose strips the constraint model solves as a guide, and its loads across [EI/L^2].
+GUIDE, LOADS = "parallelogram", (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 #: States of a path: one a degree.
 STATES = 91
@@ -148,9 +151,17 @@ def _swung(part: float) -> Answer:
     return {"swings": rows}
 
 
+def _guide_shape() -> dict[str, float]:
+    """Return the length of the guide's strips [m], and over it their thickness and distance [1]."""
+    one, other = published(GUIDE).design.strips
+    assert one.thickness is not None
+    apart = math.dist(one.start, other.start) / one.length
+    return {"thickness": one.thickness / one.length, "apart": apart, "length": one.length}
+
+
 def _guided(load: float) -> Answer:
     """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
-    shape = guide_shape()
+    shape = _guide_shape()
     limit = np.array(moved(GUIDE, "spline", "beam", load)) / (shape["length"], shape["length"], 1.0)
     rows = []
     for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
