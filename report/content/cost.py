@@ -26,7 +26,6 @@ SIMPLE = {
     "pin joint": "pin joint with a spring",
     "four-bar": "four-bar with springs",
     "beam constraint model": "beam constraint model",
-    "chained constraint model": "the same, chained",
 }
 #: Splines of four control points that the path of the four-bar is compared with.
 FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}

@@ -20,19 +20,16 @@ from studies.answers.settings import SplineSettings
 from studies.baselines import pseudo_rigid
 from studies.baselines.answer import SolvedPath
 from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
-from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model, guide
+from studies.baselines.constraint_model import constraint_model
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
-from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.published.account import CASE as GUIDE
-from studies.published.account import LOADS, guide_shape
-from studies.published.problems import moved
 from studies.record.marks import Level
 from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, Look
+from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, YELLOW, Look
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
@@ -151,19 +148,6 @@ def _swung(part: float) -> Answer:
     return {"swings": rows}
 
 
-def _guided(load: float) -> Answer:
-    """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
-    shape = guide_shape()
-    limit = np.array(moved(GUIDE, "spline", "beam", load)) / (shape["length"], shape["length"], 1.0)
-    rows = []
-    for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
-        place = guide(shape["apart"], 1.0 / shape["thickness"], count).pushed(np.array([0.0, load]))
-        for quantity, found, known in zip(("displacement_x", "displacement_y"), place, limit, strict=False):
-            row = {"model": model, "load": load, "quantity": quantity, "found": found, "reference": known}
-            rows.append({**row, "error": found / known - 1.0})
-    return {"guide": rows}
-
-
 def _parameters(problem: Problem) -> list[dict[str, Any]]:
     """Return what the surrogates were made with, and whether published or fitted."""
     rigidity = problem.youngs_modulus * problem.second_moment_of_area / problem.length
@@ -177,7 +161,6 @@ def _parameters(problem: Problem) -> list[dict[str, Any]]:
         (four_bar, "link length over L", pseudo_rigid.link_length(problem), fitted),
         (four_bar, "spring over EI/L", pseudo_rigid.spring(problem) / rigidity, fitted),
         (constraint_model, "beams a strip", 1, "published"),
-        (chained_constraint_model, "beams a strip", CHAINED, "chosen"),
     ]
     columns = ("parameter", "value", "origin")
     return [{"model": each.model, **dict(zip(columns, row, strict=True))} for each, *row in found]
@@ -200,7 +183,6 @@ MODELS = {
     "pin joint": Look(label="pin joint", colour=PURPLE),
     "four-bar": Look(label="four-bar (fitted)", colour=GREEN),
     "beam constraint model": Look(label="beam constraint model", colour=YELLOW),
-    "chained constraint model": Look(label="the same, chained", colour=SKY),
 }
 DRAWN = {name: replace(LOOKS[name], line="--", marker="") for name in SPLINES}
 #: The smallest and the largest error that is drawn.
@@ -257,12 +239,10 @@ def _motions(rows: pd.DataFrame) -> tuple[Panel, Panel]:
 
 
 STUDY = Study(
-    cases=(TABLE_1, f"published/cases/{GUIDE}"),
     parts=(
         Part(ask=_paths, alone=True),
         Part(ask=_released, alone=True),
         Part(at=lambda: AMPLITUDES, ask=_swung),
-        Part(at=lambda: LOADS, ask=_guided),
         Part(ask=lambda: {"parameters": _parameters(named_case())}),
     ),
     made={"thresholds": _thresholds},

@@ -9,22 +9,20 @@ out is accounted for in `model_form/account`, whose answer with all of it is dra
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.baselines.constraint_model import guide
 from studies.engine import Answer, Claim, Part, Study, Tables, records
-from studies.published.account import BOTH, CASE, CLOSE, LOAD, SHELL, accounted, guide_shape
+from studies.published.account import BOTH, CASE, CLOSE, LOAD, SHELL, accounted
 from studies.published.account import LOOKS as WORDS
 from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.progress import measure
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, Look
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, Look
 
 #: Theory or size of solids, displacement [m] at that load, and time a state [s].
 THEIRS = printed(CASE)
@@ -42,8 +40,6 @@ KINDS = {
     "fe-shear": (SHEARED,),
 }
 FINEST = {("spline", 12), ("fe", 40), ("fe-shear", 40)}
-#: Beams a strip of the constraint model, and steps to the load.
-BEAMS, STEPS = (1, 4, 8), 10
 REPEATS = 7
 
 
@@ -63,15 +59,6 @@ def _solved(model: str, settings: Settings, answer: str) -> Answer:
     count = settings.points if isinstance(settings, SplineSettings) else settings.elements
     setting = f"{count} " + ("control points" if model == "spline" else "elements")
     return _rows(model, answer, setting, count, found, timing.median)
-
-
-def _constrained(count: int) -> Answer:
-    """Return the same of the beam constraint model with so many beams a strip."""
-    shape = guide_shape()
-    strips = guide(shape["apart"], 1.0 / shape["thickness"], count)
-    timing = measure(lambda: strips.pushed(np.array([0.0, LOAD]), steps=STEPS), repeat=REPEATS)
-    found = float(timing.result[1]) * shape["length"]
-    return _rows("constraint model", BEAM, f"{count} beams", count, found, timing.median)
 
 
 def _rows(model: str, answer: str, setting: str, count: int, found: float, seconds: float) -> Answer:
@@ -97,15 +84,9 @@ LINES = {
     ("fe", CLAMPED_WIDTH): ("elements,\nclamped width", 1, (8, -2), "left"),
     ("spline", SHEARED): ("splines,\nclamped width\nand shear", 2, (-5, -28), "right"),
     ("fe-shear", SHEARED): ("elements, clamped\nwidth and shear", 3, (8, -9), "left"),
-    ("constraint model", BEAM): ("constraint model,\n1, 4, 8 beams", 0, (5, 3), "left"),
 }
 #: Looks of our curves, hollow where they are those of a beam, and of what is in print.
-OURS = {
-    "spline": (BLUE, "o"),
-    "fe": (BLACK, "s"),
-    "fe-shear": (ORANGE, "^"),
-    "constraint model": (GREEN, "D"),
-}
+OURS = {"spline": (BLUE, "o"), "fe": (BLACK, "s"), "fe-shear": (ORANGE, "^")}
 LOOKS = {
     (model, answer): Look(label="_", colour=OURS[model][0], marker=OURS[model][1], hollow=answer == BEAM)
     for model, answer in LINES
@@ -180,7 +161,6 @@ STUDY = Study(
     cases=(f"published/cases/{CASE}", f"published/tables/{CASE}"),
     parts=(
         Part(at=_asked, ask=_solved, alone=True),
-        Part(at=lambda: BEAMS, ask=_constrained, alone=True),
         Part(ask=_theirs),
         Part(ask=_floors),
     ),
