@@ -95,7 +95,6 @@ class Curves:
     Attributes:
         looks: of each curve, by the value of the column `by`, or by the values of several; or the look of all
             rows as one curve.
-        family: column whose values have a curve each in the same look.
         along: column in whose order points are joined, x by default.
         y: column in place of the axis's.
         more: of `Axes.plot`.
@@ -104,7 +103,6 @@ class Curves:
     rows: pd.DataFrame
     looks: Mapping[Any, Look] | Look
     by: str | Sequence[str] = "formulation"
-    family: str = ""
     along: str = ""
     y: str = ""
     more: Mapping[str, Any] | None = None
@@ -117,14 +115,12 @@ class Curves:
             panel.plot(x.of(ordered), upright.of(ordered), **look.keywords() | dict(self.more or {}))
 
     def _curves(self) -> Iterable[tuple[Look, pd.DataFrame]]:
-        """Yield the rows of every curve with its look, which has a name where it is first drawn."""
+        """Yield the rows of every curve with its look."""
         looks = self.looks if isinstance(self.looks, Mapping) else {None: self.looks}
         for key, look in looks.items():
             mine = self.rows if key is None else self.rows[self._is(key)]
-            families = mine.groupby(self.family, sort=False) if self.family else [("", mine)]
-            for place, (_, rows) in enumerate(families):
-                if len(rows):
-                    yield (look if place == 0 else replace(look, label="_")), rows
+            if len(mine):
+                yield look, mine
 
     def _is(self, key: Any) -> Any:
         """Return which rows are of a look."""
