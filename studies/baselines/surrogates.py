@@ -28,8 +28,8 @@ from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.record.marks import Level
-from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, YELLOW, Look
+from studies.record.panels import AMPLITUDE, ROTATION, Axis, Curves, Panel, sheet
+from studies.record.style import GREEN, LOOKS, ORANGE, PURPLE, YELLOW, Look
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
@@ -190,11 +190,10 @@ ERRORS = (1e-6, 30.0)
 
 
 def _figure(tables: Tables) -> Figure:
-    """Draw the static errors over the rotation (above), frequencies and motion (below)."""
-    above = [_static(tables["errors"], quantity) for quantity in QUANTITIES]
-    above[0] = replace(above[0], title="Static path to 90°")
-    below = [_frequencies(tables["swings"]), *_motions(tables["motion"])]
-    return sheet(9.5, 6.4, [above, below], legend=4)
+    """Draw the static errors over the rotation, and the shift of the frequency over the amplitude."""
+    path, torque, stiffness = (_static(tables["errors"], quantity) for quantity in QUANTITIES)
+    below = [stiffness, _frequencies(tables["swings"])]
+    return sheet(9.5, 6.4, [[replace(path, title="Static path to 90°"), torque], below], legend=4)
 
 
 def _static(rows: pd.DataFrame, quantity: str) -> Panel:
@@ -216,25 +215,6 @@ def _frequencies(rows: pd.DataFrame) -> Panel:
         Axis("shift", "shift of the frequency [%]", factor=100.0),
         (Curves(rows, looks, by="model"), Level(0.0)),
         title="Free swing",
-    )
-
-
-def _motions(rows: pd.DataFrame) -> tuple[Panel, Panel]:
-    """Return the rotation and its difference to the refined spline over time."""
-    looks = {"reference": Look(label="refined spline", colour=BLACK)} | MODELS
-    label = "difference to the refined spline [°]"
-    return (
-        Panel(
-            TIME,
-            replace(ROTATION, label="rotation [°]", ticks=range(-90, 91, 45)),
-            (Curves(rows, looks, by="model"),),
-            title="Released at 90°",
-        ),
-        Panel(
-            TIME,
-            replace(ROTATION, column="difference_rad", label=label, ticks=range(-180, 181, 60)),
-            (Curves(rows, MODELS, by="model"),),
-        ),
     )
 
 
