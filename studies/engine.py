@@ -126,7 +126,7 @@ class Study:
         parts: what is asked, in this order.
         made: tables that follow from those before them, by name.
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
-        figures: name -> what draws it from the tables as they come back from their files.
+        figures: name -> what draws it from the tables as they come back from their files; none by default.
         varying: tables that differ from run to run, beside those whose name says time.
         digits: columns that other work on the machine changes in their last digits, and how many hold.
         missing: says in a line what this machine lacks for it, and nothing where it can be run.
@@ -137,7 +137,7 @@ class Study:
     made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Row]]] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     claims_of_time: tuple[Claim, ...] = ()
-    figures: Mapping[str, Callable[[Tables], Figure]]
+    figures: Mapping[str, Callable[[Tables], Figure]] = field(default_factory=dict)
     varying: tuple[str, ...] = ()
     digits: Mapping[str, Digits] = field(default_factory=dict)
     missing: Callable[[], str] = str

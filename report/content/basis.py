@@ -121,14 +121,12 @@ def _(r: Results) -> Any:
 
 #: Gates beside each other in a row of their table; cases of a study that are named; letters of a hash.
 BESIDE, NAMED, HASH = 3, 3, 10
-#: Tables of the findings on cost, designs and sweeps.
+#: Tables of the findings on cost.
 FINDINGS = (
     ("work_precision/statics", "findings"),
     ("work_precision/statics", "findings_of_time"),
     ("work_precision/dynamics", "findings"),
     ("work_precision/dynamics", "findings_of_time"),
-    ("sweep/design_space", "findings"),
-    ("sweep/throughput", "findings_of_time"),
 )
 PLATE = Stored("model_form/plate", "paper")
 

@@ -7,7 +7,6 @@ from math import pi, sin
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import swing_frequency
@@ -27,10 +26,8 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
-from studies.engine import Answer, Part, Study, Tables
+from studies.engine import Answer, Part, Study
 from studies.kinds import Array
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import ORANGE, RED, Look
 
 PAPER = "n = 4, as the paper"
 REFINED = "FE refined"
@@ -179,25 +176,7 @@ def _read() -> Answer:
     return {"readings": rows}
 
 
-def _figure(tables: Tables) -> Figure:
-    """Draw the errors of torque and stiffness over the number of Gauss points."""
-    looks = {
-        "error_torque": Look(label="torque", colour=RED, marker="o"),
-        "error_stiffness": Look(label="stiffness", colour=ORANGE, line="--", marker="s"),
-    }
-    panel = Panel(
-        Axis("gauss_points", "Gauss points a strip"),
-        Axis("error_torque", "largest error [1]", log=True),
-        [Curves(tables["quadrature"], look, y=column) for column, look in looks.items()],
-        legend="best",
-    )
-    return sheet(4.0, 2.4, [[panel]])
-
-
-READINGS = Study(
-    parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
-    figures={"readings": _figure},
-)
+READINGS = Study(parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)))
 """What the paper leaves open: how it integrates, where the centre of mass lies, gravity and damping.
 
 Coarser and finer quadratures of four control points as the paper has them, and what each open assumption

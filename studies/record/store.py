@@ -120,7 +120,6 @@ class Store:
             "command": command,
             "inputs": inputs(module, cases),
             "tables": _hashes(contents),
-            "figures": {},
             "elapsed_s": round(elapsed, 2),
             **_surroundings(),
         }
@@ -143,7 +142,7 @@ class Store:
         }
         record = self.record(study)
         require_writable_folder(self.figures)
-        for name in set(record["figures"]) - set(contents):
+        for name in set(record.get("figures", {})) - set(contents):
             (self.figures / name).unlink(missing_ok=True)
         for name, content in contents.items():
             write_whole(self.figures / name, content)
@@ -168,6 +167,8 @@ class Store:
             record = self.record(study)
         except FileNotFoundError:
             return _State(kind="missing", reason="never run")
+        if "figures" not in record:
+            return _State(kind="missing", reason="its figures were not drawn")
         for folder, kind in ((self.data(study), "tables"), (self.figures, "figures")):
             for name, digest in record[kind].items():
                 path = folder / name
@@ -175,8 +176,6 @@ class Store:
                     return _State(kind="missing", reason=f"{name} does not exist")
                 if sha256(path.read_bytes()).hexdigest() != digest:
                     return _State(kind="stale", reason=f"{name} was changed after it was made")
-        if not record["figures"]:
-            return _State(kind="missing", reason="no figure was drawn")
         now = inputs(module, cases)
         for part, said in (("cases", "a case"), ("source_sha256", "the source")):
             if record["inputs"][part] != now[part]:

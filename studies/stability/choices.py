@@ -91,23 +91,6 @@ def _thicker(strip: Strip, factor: float) -> Strip:
 
 GEOMETRY = family.study(
     Part(at=lambda: [*_grid(), *_others()], ask=family.outcomes_of),
-    figures={
-        "stability_geometry": lambda tables: maps.outcome_map(
-            tables["outcomes"][tables["outcomes"]["case"].str.startswith("cross")],
-            title="Driven to 90° in 20 increments: torque and path within 5 % of the refined answer",
-            xlabel="crossing ratio [1]",
-            ylabel="inclination of the strips [deg]",
-            xlim=(0.0, 1.0),
-            ylim=(0.0, 90.0),
-            xticks=[0.0, 0.5, 1.0],
-            yticks=list(INCLINATIONS),
-        ),
-        "stability_other_geometry": lambda tables: maps.listed(
-            tables["outcomes"][~tables["outcomes"]["case"].str.startswith("cross")],
-            [case.name for case in _others()],
-            title=f"Other pairs of strips, driven to {OTHER_ROTATION:g}°",
-        ),
-    },
 )
 """Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
 
@@ -118,7 +101,6 @@ MODES = "axial modes,\nslide stiffness 10"
 FLOATING = "axial modes,\nno slide stiffness"
 POINTS = "Gauss points,\nmixed stretch"
 PAPER_POINTS = "Gauss points,\nconsistent stretch"
-PANELS = (MODES, FLOATING, POINTS, PAPER_POINTS)
 
 
 @cache
@@ -163,19 +145,6 @@ def _settings() -> Iterator[tuple[str, str, int, int, SplineSettings]]:
 AXIAL_MODES = family.study(
     Part(at=_settings, ask=_outcome_of),
     Part(ask=_independent),
-    figures={
-        "stability_axial_modes": lambda tables: maps.outcome_map(
-            tables["outcomes"],
-            panels_by="panel",
-            order=PANELS,
-            title=f"Table 1 driven to {ROTATION_DEG:g}°: torque and path within 5 % of the refined answer",
-            xlabel="control points [1]",
-            ylabel="axial modes, Gauss points [1]",
-            xlim=(3.0, 11.0),
-            ylim=(0.0, 13.0),
-            xticks=list(COUNTS),
-        )
-    },
 )
 """Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
 

@@ -16,7 +16,7 @@ from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part
-from studies.stability import family, maps
+from studies.stability import family
 
 #: Reversals, and releases with as many catches: of the default, and of the other columns.
 EVENTS = {family.DEFAULT: 1000, family.LOCKING_FREE: 100, family.PAPER: 100}
@@ -191,14 +191,4 @@ def _bounded(answer: family.Found, jumps: int) -> family.Found:
     return answer
 
 
-STUDY = family.study(
-    Part(at=_tasks, ask=_timed, alone=True),
-    figures={
-        "stability_events": lambda tables: maps.listed(
-            tables["outcomes"],
-            [case for case, *_ in _tasks()],
-            title=f"Sudden events: {EVENTS[family.DEFAULT]} a motion for the default, "
-            f"{EVENTS[family.PAPER]} for the others",
-        )
-    },
-)
+STUDY = family.study(Part(at=_tasks, ask=_timed, alone=True))

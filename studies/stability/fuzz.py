@@ -14,7 +14,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Tables
 from studies.errors import BadInput
-from studies.stability import family, maps
+from studies.stability import family
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -247,18 +247,4 @@ STUDY = family.study(
             most=TOLERANCE,
         ),
     ),
-    figures={
-        "stability_fuzz": lambda tables: maps.outcome_map(
-            tables["outcomes"],
-            panels_by="panel",
-            order=[f"{model}: {kind}" for kind in (STATIC, MOTION) for model in reversed(MODELS)],
-            title="Random designs and commands, spline",
-            xlabel="largest rotation [deg]",
-            ylabel="slenderness L/t [1]",
-            yscale="log",
-            xlim=(-210.0, 210.0),
-            ylim=(3.0, 2e4),
-            xticks=[-180, -90, 0, 90, 180],
-        )
-    },
 )

@@ -1,7 +1,6 @@
 """What families show: maps of where each model is right, refuses, is wrong or cannot be asked, and counts."""
 
 import textwrap
-from collections.abc import Iterable, Sequence
 from typing import Any
 
 import pandas as pd
@@ -29,27 +28,19 @@ WIDTH, HEIGHT, NARROWEST = 2.3, 3.5, 8.0
 IN_ROW, ROW_HEIGHT = 4, 2.7
 
 
-def outcome_map(
-    outcomes: pd.DataFrame,
-    *,
-    title: str,
-    panels_by: str = "model",
-    order: Sequence[str] = ORDER,
-    **axes: Any,
-) -> Figure:
-    """Draw one panel a model, or another column of the table: a mark a case at (x, y), by its outcome.
+def outcome_map(outcomes: pd.DataFrame, *, title: str, **axes: Any) -> Figure:
+    """Draw one panel a model: a mark a case at (x, y), by its outcome.
 
     Args:
-        outcomes: columns x, y, outcome and `panels_by`.
+        outcomes: columns model, x, y and outcome.
         title: of the figure.
-        panels_by: column whose values have a panel each; order: of the panels.
         axes: properties of the panels, as of `Axes.set`.
     """
-    models = [model for model in order if (outcomes[panels_by] == model).any()]
+    models = [model for model in ORDER if (outcomes["model"] == model).any()]
     figure, panels, across = _grid(len(models))
     ylabel = axes.pop("ylabel", "")
     for place, (panel, model) in enumerate(zip(panels, models, strict=True)):
-        mine = outcomes[outcomes[panels_by] == model]
+        mine = outcomes[outcomes["model"] == model]
         _marked(panel, mine, mine["x"], mine["y"], markersize=5.0, clip_on=False)
         counts = ", ".join(
             f"{count} {name}" for name in LOOKS if (count := int((mine["outcome"] == name).sum()))
@@ -88,23 +79,6 @@ def _grid(count: int) -> tuple[Figure, list[Axes], int]:
     for panel in panels[count:]:
         panel.remove()
     return figure, panels[:count], across
-
-
-def listed(outcomes: pd.DataFrame, cases: Iterable[str], *, title: str) -> Figure:
-    """Draw a family without axes: a line a case in the order of `cases`, a mark a model."""
-    names = list(dict.fromkeys(cases))
-    place = {name: len(names) - 1 - i for i, name in enumerate(names)}
-    models = [model for model in ORDER if (outcomes["model"] == model).any()]
-    across = {model: i for i, model in enumerate(models)}
-    figure = page(0.95 * len(models) + 3.2, 1.3 + 0.2 * len(names))
-    panel = figure.subplots()
-    _marked(panel, outcomes, outcomes["model"].map(across), outcomes["case"].map(place), markersize=6.0)
-    panel.set_xticks(range(len(models)), labels=[_broken(model) for model in models], fontsize=7.5)
-    panel.set_yticks(list(place.values()), labels=list(place), fontsize=7.5)
-    panel.set(xlim=(-0.6, len(models) - 0.4), ylim=(-0.7, len(names) - 0.3))
-    figure.legend(loc="outside lower center", ncols=len(LOOKS))
-    figure.suptitle(title)
-    return figure
 
 
 def _broken(model: str) -> str:

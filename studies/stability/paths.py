@@ -25,9 +25,8 @@ ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
 INCREMENTS = (1, 2, 5, 20, 200)
 #: A reference at these rotations needs more points than at a quarter turn.
 FAR, FAR_CHECK = SplineSettings(control_points=16), SplineSettings(control_points=14)
-#: Columns whose answers to other increments are compared with one another, and their colours.
-COMPARED = {family.SIX: BLUE, family.FE: BLACK}
-DIFFERENCE = Axis("", "difference of torque [1]", log=True)
+#: Columns whose answers to other increments are compared with one another.
+COMPARED = (family.SIX, family.FE)
 
 
 def _rotated() -> Iterator[family.StaticCase]:
@@ -79,47 +78,12 @@ def _critical() -> list[dict[str, Any]]:
     return [*rows, end]
 
 
-def _increments_figure(tables: Tables) -> Figure:
-    parts = (("torque_change", "o", "-", "torque at 90°"), ("hysteresis", "s", "--", "there and back"))
-    curves = [
-        Curves(
-            tables["increments"], by="model", y=column,
-            looks={
-                model: Look(label=f"{model}: {label}", colour=colour, line=line, marker=marker)
-                for model, colour in COMPARED.items()
-            }
-        )
-        for column, marker, line, label in parts
-    ]  # fmt: skip
-    panel = Panel(
-        Axis("increments", "increments [1]", log=True),
-        replace(DIFFERENCE, least=1e-17, limits=(1e-17, 1e-6)),
-        (*curves, Level(1e-8, colour=ORANGE), Level(1e-9, colour=GREY, line=":")),
-        legend={"loc": "center left", "fontsize": 7},
-    )
-    return sheet(4.6, 3.2, [[panel]])
-
-
 ROTATION = family.study(
     Part(at=_rotated, ask=family.outcomes_of),
     # the same path in any number of increments, and back again
     Part(at=lambda: COMPARED, ask=lambda model: {"increments": _increments(model)}),
     # the critical points that the refined spline finds on its way
     Part(ask=lambda: {"critical": _critical()}),
-    figures={
-        "stability_rotation": lambda tables: maps.outcome_map(
-            tables["outcomes"].assign(y=np.log10(tables["outcomes"]["y"])),
-            title="Table 1 driven through a rotation: torque and path within 5 % of the refined answer",
-            xlabel="rotation [deg]",
-            ylabel="increments [1]",
-            xlim=(-200.0, 280.0),
-            ylim=(-0.3, 2.6),
-            xticks=[-180, -90, 0, 90, 180],
-            yticks=np.log10(INCREMENTS),
-            yticklabels=INCREMENTS,
-        ),
-        "stability_increments": _increments_figure,
-    },
 )
 """Rotation to a half turn and beyond, in any number of increments, there and back."""
 
@@ -204,7 +168,7 @@ def _limit_figure(tables: Tables) -> Figure:
     lost = Look(label="beyond the law, neighbours", colour=ORANGE, line="--", marker="s")
     left = Panel(
         slenderness,
-        DIFFERENCE,
+        Axis("", "difference of torque [1]", log=True),
         (
             Curves(limit, error, y="error"),
             Curves(limit, lost, y="lost_digits"),

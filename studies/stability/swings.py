@@ -26,7 +26,7 @@ from studies.engine import Answer, Part, Row, Tables
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
-from studies.stability import family, maps
+from studies.stability import family
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
 #: twentieth of the swing's period errs by 0.03 after one swing; an answer off by more shows another motion.
@@ -190,21 +190,7 @@ STEP_SIZE = family.study(
     Part(at=lambda: STARTS, ask=_settled),
     Part(at=lambda: product(STARTS, STEPS), ask=_outcomes_of_step),
     Part(ask=lambda: {"order": _order_table()}),
-    figures={
-        "stability_step_size": lambda tables: maps.outcome_map(
-            tables["outcomes"],
-            title="Release of Table 1: rotation of the first swing within 5 %, no gain of energy",
-            xlabel="step [s]",
-            ylabel="rotation at the release [deg]",
-            xscale="log",
-            xlim=(5e-8, 2e-2),
-            ylim=(0.0, 145.0),
-            xticks=(1e-7, 1e-5, 1e-3),
-            xticklabels=("1e-7", "1e-5", "1e-3"),
-            yticks=list(STARTS),
-        ),
-        "stability_step_order": _order_figure,
-    },
+    figures={"stability_step_order": _order_figure},
 )
 """Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 
@@ -261,15 +247,5 @@ def _outcomes_of_ratio(case: str, kind: str, factor: float, design: Design) -> A
     return {"outcomes": rows, "references": {**known, "settled": "yes" if settled else "no"}}
 
 
-RATIOS = family.study(
-    Part(at=_ratios, ask=_outcomes_of_ratio),
-    figures={
-        "stability_ratios": lambda tables: maps.listed(
-            tables["outcomes"],
-            [case for case, *_ in _ratios()],
-            title=f"Release from {START_DEG:g}°, one period in {STEPS_A_PERIOD} steps: rotation within 5 %, "
-            "no gain of energy",
-        )
-    },
-)
+RATIOS = family.study(Part(at=_ratios, ask=_outcomes_of_ratio))
 """Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""

@@ -76,7 +76,7 @@ def test_every_figure_of_every_study_is_shown_and_referred_to(content):
 
 
 def test_every_study_appears(content):
-    """Each study with figures has one shown or named in the report, and each a line in its provenance."""
+    """Each study of the register has a line in the provenance; of its figures one is shown or named."""
     for study in STUDIES:
         names = {name.partition(".")[0] for name in Store().record(study)["figures"]}
         assert not names or names & (quoted("plot") | _further(content)), study

@@ -7,7 +7,7 @@ import pytest
 
 from studies.asking import answered
 from studies.registry import STUDIES, study_of
-from studies.stability import machine, paths, swings
+from studies.stability import long_run, paths, swings
 from studies.stability.family import DEFAULT, GENERALISED_ALPHA, PAPER, PATHS, SIX, VARIED
 from tests import gates
 
@@ -133,7 +133,7 @@ def test_error_goes_with_the_square_of_the_step():
 
 def drift(pieces=4, steps=5000):
     """Rows of drift and memory of a run in pieces."""
-    drifts, memory = zip(*machine._run(DEFAULT, pieces, steps), strict=True)
+    drifts, memory = zip(*long_run._run(DEFAULT, pieces, steps), strict=True)
     assert len(drifts) == pieces
     return drifts, memory
 
@@ -144,7 +144,7 @@ def test_long_run_keeps_energy():
     rows, memory = drift()
     gates.check("stability_long_run", rows[-1]["energy_change"])
     residual = [row["constraint_residual_m"] for row in rows]
-    assert residual[-1] < machine.GROWTH * residual[0]
+    assert residual[-1] < long_run.GROWTH * residual[0]
     assert memory[-1]["largest_memory_MB"] < 1.05 * memory[0]["largest_memory_MB"]
 
 

@@ -100,8 +100,15 @@ def test_fresh_stale_missing(store, monkeypatch):
     (store.figures / "example.png").unlink()
     assert _state(store) == ("missing", "example.png does not exist")
     _save(store)
-    assert _state(store) == ("missing", "no figure was drawn")
+    assert _state(store) == ("missing", "its figures were not drawn")
     assert Store(store.root / "empty").state(STUDY, module=MODULE, cases=CASES).reason == "never run"
+
+
+def test_study_without_figures_is_fresh(store):
+    """A study that draws nothing is fresh, and figures that it drew before do not linger."""
+    store.save_figures(STUDY, {})
+    assert _state(store) == ("fresh", "")
+    assert list(store.figures.iterdir()) == []
 
 
 def test_changed_case_is_stale(store):

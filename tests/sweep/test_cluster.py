@@ -1,9 +1,12 @@
 """Sweeps on a Dask cluster: scheduler and workers of their own on loopback, and what there is without."""
 
 import importlib.util
+import logging
 import socket
 import subprocess
 import sys
+import tempfile
+from contextlib import contextmanager
 
 import pandas as pd
 import pytest
@@ -13,12 +16,31 @@ from studies.errors import BadInput
 from studies.record.source import ROOT
 from studies.sweep.read import read_plan
 from studies.sweep.run import cluster, sweep
-from studies.sweep.throughput import loopback
 from tests.sweep.sweeps import RANDOM, plan
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
 
 MANY = RANDOM.replace("points = 200", "points = 4000").replace("chunk = 32", "chunk = 100")
+
+
+@contextmanager
+def loopback(workers):
+    """Yield a cluster on this machine, Dask's own, of that many workers with one thread each, which has a
+    `scheduler_address`; all processes end with the context."""
+    from distributed.deploy.subprocess import SubprocessCluster
+
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        SubprocessCluster(
+            scheduler_kwargs={"dashboard": False, "scheduler_file": f"{folder}/scheduler.json"},
+            worker_class="distributed.Worker",
+            n_workers=workers,
+            threads_per_worker=1,
+            worker_kwargs={"dashboard": False, "local_directory": folder},
+            silence_logs=logging.CRITICAL,
+        ) as own,
+    ):
+        yield own
 
 
 def refusal(address, tmp_path, capsys):
