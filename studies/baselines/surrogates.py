@@ -52,23 +52,20 @@ SWING_STEP = 2e-5
 
 
 def _paths() -> Answer:
-    """Return errors over the path (a row a model and degree), the reference's uncertainty and the times."""
+    """Return errors over the path (a row a model and degree) and the reference's uncertainty."""
     problem = named_case()
     turns = np.linspace(0.0, problem.rotation, STATES)
     limit, near = (spline.static_path(problem, turns, control_points=n) for n in (REFINED, CHECK))
-    paths = {name: each.static_path(problem, turns).timed(9) for name, each in SURROGATES.items()}
+    paths = {name: each.static_path(problem, turns) for name, each in SURROGATES.items()}
     fine = replace(problem, increments=STATES - 1)
     beside = {name: answer_static(fine, formulations.SETTINGS[name]) for name in SPLINES}
     found = [_errors(name, path, limit) for name, path in (paths | beside).items()]
     uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
-    paths[spline.model] = spline.static_path(problem, turns).timed(9)
-    task = f"path of {STATES - 1} increments"
     return {
         "errors": pd.concat(found),
         "reference": [
             {"quantity": name, "unit": "1", "uncertainty": value} for name, value in uncertainty.items()
         ],
-        "timings": [{"model": name, "task": task, "solve_s": path.solve_s} for name, path in paths.items()],
     }
 
 
@@ -109,21 +106,19 @@ def _first_above(rotation: Array, error: Array, level: float) -> float:
 
 
 def _released() -> Answer:
-    """Return the motions from the end of the path, the reference's uncertainty and the times."""
+    """Return the motions from the end of the path and the reference's uncertainty."""
     problem = named_case()
     limit, check = (
         formulations.sampled(formulations.resolved(each), formulations.INSTANTS)
         for each in (SplineSettings(control_points=10), SWING)
     )
-    motions, times = [_motion("reference", limit.rotation, limit)], []
+    motions = [_motion("reference", limit.rotation, limit)]
     for name, each in SURROGATES.items():
-        motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP).timed(9)
+        motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP)
         motions.append(_motion(name, np.interp(limit.time, motion.time, motion.rotation), limit))
-        task = f"swing of {DURATION:g} s in {motion.work['steps']} steps"
-        times.append({"model": name, "task": task, "solve_s": motion.solve_s})
     apart = float(np.abs(check.rotation - limit.rotation).max())
     uncertainty = {"quantity": "rotation", "unit": "rad", "uncertainty": apart}
-    return {"motion": pd.concat(motions), "reference": uncertainty, "timings": times}
+    return {"motion": pd.concat(motions), "reference": uncertainty}
 
 
 def _motion(name: str, rotation: Array, limit: Swing) -> pd.DataFrame:
@@ -220,8 +215,8 @@ def _frequencies(rows: pd.DataFrame) -> Panel:
 
 STUDY = Study(
     parts=(
-        Part(ask=_paths, alone=True),
-        Part(ask=_released, alone=True),
+        Part(ask=_paths),
+        Part(ask=_released),
         Part(at=lambda: AMPLITUDES, ask=_swung),
         Part(ask=lambda: {"parameters": _parameters(named_case())}),
     ),
