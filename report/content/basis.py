@@ -77,12 +77,6 @@ def _closed_form(results: Results) -> float:
     return abs(float(stiffness) / _stiffness() - 1.0)
 
 
-def _plate(results: Results) -> float:
-    """Return by how much a strip of Table 1's material is stiffer where its section stays flat."""
-    square = float(_pivot().poisson_ratio) ** 2
-    return square / (1.0 - square)
-
-
 FACTS |= {
     f"reference.{name}": STATICS.at("uncertainty", power, quantity=name)
     for name in ("trajectory", "torque", "stiffness")
@@ -93,7 +87,6 @@ FACTS |= {
     "pivot.depth": Fact(made=lambda _: _pivot().depth, form=unit("mm", 2, 1e3)),
     "pivot.width": Fact(made=lambda _: _pivot().area / _pivot().depth, form=unit("mm", 2, 1e3)),
     "pivot.quarter-turn": Fact(made=lambda _: _pivot().rotation, form=degrees),
-    "sizing.plate": Fact(made=_plate, form=percent),
     "reference.frequency": RELEASE.at("uncertainty", power, quantity="frequency"),
     "reference.rotation": RELEASE.at("uncertainty", unit("rad"), quantity="rotation_rad"),
     "reference.fine.rotation": FINE.at("uncertainty", unit("rad"), quantity="rotation_rad"),

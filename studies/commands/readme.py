@@ -17,6 +17,7 @@ import pandas as pd
 
 from studies.commands.case import PAGE, markdown_head
 from studies.commands.parser import command
+from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TOLERANCES
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.source import ROOT
@@ -63,16 +64,43 @@ def _short(store: Store) -> Iterator[str]:
 
 
 def _sized(store: Store) -> Iterator[str]:
-    """Yield the table of the designs that gradients found, a row a design, beside what each began from."""
-    size = "length, depth, width [mm]"
+    """Yield the table of the designs that gradients found, with plate effects and supports, beside what each
+    began from; below it what was promised as beams."""
+    size = "length, thickness, width [mm]"
     yield markdown_head("design", size, "inclination", "crossing", "shift [mm]", "stiffness varies by")
     table = _stored(store, "design/sizing", "designs")
-    for row in table.sort_values(["baseline", "factor_centre_shift"]).to_dict("records"):
-        size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
-        place = f"{math.degrees(row['inclination_rad']):.3g}° | {row['crossing_ratio']:.3g}"
-        shift = f"{1e3 * row['centre_shift_m']:.2g}{_less(row['factor_centre_shift'])}"
-        varies = f"{100 * row['variation']:.2g} %{_less(row['factor_stiffness_variation'])}"
-        yield f"| {row['design']} | {size} | {place} | {shift} | {varies} |"
+    begun, again = (table[table["basis"] == basis].set_index("design") for basis in (EFFECTS, AGAIN))
+    for baseline in sorted(set(table["baseline"])):
+        found = again[again["baseline"] == baseline].sort_values("centre_shift_m", ascending=False)
+        for name, row in pd.concat([begun.loc[[baseline]], found]).iterrows():
+            yield _design(str(name), row, begun.loc[baseline])
+    yield ""
+    promised = "; ".join(_promised(table, str(name)) for name in again.index)
+    yield "All numbers are with plate effects and supports."
+    yield f"Sized as plain beams, the same questions have these factors: {promised}."
+
+
+def _design(name: str, row: "pd.Series[Any]", begun: "pd.Series[Any]") -> str:
+    """Return the line of a design, with how many times less its shift and variation are than at the begin."""
+    size = ", ".join(f"{1e3 * row[f'{key}_m']:.3g}" for key in ("length", "thickness", "width"))
+    shift, varies = (_less(begun[key] / row[key]) for key in ("centre_shift_m", "variation"))
+    return (
+        f"| {name} | {size} | {math.degrees(row['inclination_rad']):.3g}° | {row['crossing_ratio']:.3g} | "
+        f"{1e3 * row['centre_shift_m']:.2g}{shift} | {100 * row['variation']:.2g} %{varies} |"
+    )
+
+
+def _promised(table: pd.DataFrame, name: str) -> str:
+    """Return how many times less the aim of a design that was sized as beams is: as beams, with the effects
+    and at the tolerances."""
+    aim = "centre_shift_m" if "shift" in name else "variation"
+    values = table.set_index(["design", "basis"])[aim]
+    baseline = table.loc[table["design"] == name, "baseline"].iloc[0]
+    beams, effects, tolerances = (
+        f"{values[baseline, begun] / values[name, basis]:.3g}"
+        for basis, begun in ((BEAMS, BEAMS), (EFFECTS, EFFECTS), (TOLERANCES, BEAMS))
+    )
+    return f"{name} {beams} ({effects} with the effects, {tolerances} at tolerances)"
 
 
 def _less(factor: float) -> str:

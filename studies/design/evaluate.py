@@ -9,7 +9,7 @@ import numpy as np
 from spline_model.sensitivity.solve import sensitivities
 from studies.answers.models import put
 from studies.answers.reference import reference
-from studies.answers.response import Response, centre_shift
+from studies.answers.response import centre_shift
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
@@ -199,9 +199,8 @@ def _joined(sides: Sequence[Array]) -> Array:
     return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
 
 
-def by_elements(problem: Problem) -> tuple[Measured, Response]:
-    """Return what the finite elements say of a design in the limit of refinement, stress and shape on the
-    finest mesh.
+def by_elements(problem: Problem) -> Measured:
+    """Return what the finite elements say of a design in the limit of refinement, stress on the finest mesh.
 
     Raises:
         NoReference: they do not reach the end of the range.
@@ -209,10 +208,9 @@ def by_elements(problem: Problem) -> tuple[Measured, Response]:
     limits = [reference(replace(problem, rotation=sign * problem.rotation)) for sign in sides_of(problem)]
     turned = slice(-problem.increments - 1, None)
     shifts = [centre_shift(problem.crossing_point, limit.rotation, limit.centre)[turned] for limit in limits]
-    measured = Measured(
+    return Measured(
         rotation=_joined([limit.rotation[turned] for limit in limits]),
         shift=_joined([np.hypot(*(shift - shift[0]).T) for shift in shifts]),
         stiffness=_joined([limit.stiffness[turned] for limit in limits]),
         stress=_joined([limit.finest.max_stress[turned] for limit in limits]),
     )
-    return measured, limits[0].finest

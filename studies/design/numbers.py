@@ -3,7 +3,7 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -97,7 +97,6 @@ class NumbersTask(Sizing):
     objective: str = STRESS
     stiffness: float = math.nan
     allowable_stress: float = math.inf
-    limits: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def start(self) -> Mechanism:

@@ -45,16 +45,14 @@ class Outcome:
     """Where one start led.
 
     Attributes:
-        start: scaled variables (N,) of the start; at: (N + 1,) where it ended, t last.
+        at: scaled variables (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
         problem: the design there; answers: its own.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
-        history: (iterations + 1, 2) objective over the start's, and violation.
-        solved, failed: designs that were solved, and those whose path ended early.
+        solved: designs that were solved.
     """
 
-    start: Array
     at: Array
     converged: bool
     message: str
@@ -64,9 +62,7 @@ class Outcome:
     violation: float
     residual: float
     active: tuple[Active, ...]
-    history: Array
     solved: int
-    failed: int
 
 
 def optimise(task: Sizing, start: Array) -> Outcome | None:
@@ -77,21 +73,20 @@ def optimise(task: Sizing, start: Array) -> Outcome | None:
     programme = Programme.of(task)
     if programme.answers(start) is None:
         return None
-    history = [_progress(programme, start)]
-    outcome, at = None, feasible(programme, start, history)
+    outcome, at = None, feasible(programme, start)
     for _ in range(MOST_RUNS):
-        outcome = _run(programme, start, at, history)
+        outcome = _run(programme, at)
         if outcome is None or outcome.converged or outcome.violation > FEASIBLE:
             break
         at = outcome.at[:-1]
     return outcome
 
 
-def feasible(programme: Programme, at: Array, history: list[tuple[float, float]]) -> Array:
+def feasible(programme: Programme, at: Array) -> Array:
     """Return the scaled variables (N,) of a feasible design near ``at``, or of the least violation there.
 
-    Each step, which goes to the history, is the shortest of those that leave the linearised constraints least
-    violated; it is shortened where they are no guide.
+    Each step is the shortest of those that leave the linearised constraints least violated; it is shortened
+    where they are no guide.
     """
     beyond, jacobian = _graded(*programme.excesses(at))
     reach = LONGEST
@@ -107,7 +102,6 @@ def feasible(programme: Programme, at: Array, history: list[tuple[float, float]]
         new, slope = _graded(*programme.excesses(there))  # of a design without an answer: far outside
         if left @ left - np.sum(_violated(new) ** 2) >= KEPT * foretold:
             at, beyond, jacobian = there, new, slope
-            history.append(_progress(programme, at))
         else:
             reach *= 0.25
     return at
@@ -146,8 +140,8 @@ def _towards(excess: Array, jacobian: Array, low: Array, high: Array) -> Array:
     return step
 
 
-def _run(programme: Programme, start: Array, at: Array, history: list[tuple[float, float]]) -> Outcome | None:
-    """Run the optimiser once from ``at``; its steps go to the history."""
+def _run(programme: Programme, at: Array) -> Outcome | None:
+    """Run the optimiser once from ``at``."""
     begin = programme.answers(at)
     if begin is None:
         return None
@@ -162,9 +156,8 @@ def _run(programme: Programme, start: Array, at: Array, history: list[tuple[floa
             {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
         ],
         options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
-        callback=lambda x: history.append(_progress(programme, x)),
     )
-    return _outcome(programme, start, found.x, str(found.message), np.array(history))
+    return _outcome(programme, found.x, str(found.message))
 
 
 def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
@@ -220,20 +213,12 @@ def _t(programme: Programme, found: Answers) -> float:
     return float(ratio**2 if name == CENTRE_SHIFT else ratio)
 
 
-def _progress(programme: Programme, y: Array) -> tuple[float, float]:
-    found = programme.answers(y)
-    if found is None:
-        return np.nan, np.nan
-    name = programme.task.objective
-    return found.largest(name) / programme.scale[name], _violation(programme, y)
-
-
 def _violation(programme: Programme, y: Array) -> float:
     """Return the worst violation of what does not depend on t."""
     return float(np.abs(_violated(programme.excesses(y)[0])).max())
 
 
-def _outcome(programme: Programme, start: Array, at: Array, message: str, history: Array) -> Outcome | None:
+def _outcome(programme: Programme, at: Array, message: str) -> Outcome | None:
     task = programme.task
     found = programme.answers(at)
     if found is None:
@@ -243,7 +228,6 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
     active, residual = programme.conditions(at)
     converged = violation <= FEASIBLE and residual <= STATIONARY
     return Outcome(
-        start=start,
         at=at,
         converged=converged,
         message="" if converged else _reason(message, violation, residual),
@@ -253,9 +237,7 @@ def _outcome(programme: Programme, start: Array, at: Array, message: str, histor
         violation=violation,
         residual=residual,
         active=active,
-        history=history,
         solved=programme.solved,
-        failed=programme.failed,
     )
 
 

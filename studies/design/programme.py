@@ -45,13 +45,12 @@ class Active:
 class Programme:
     """The programme of a task; `scale` holds the start's largest value of every objective.
 
-    Counts designs that were solved and those whose path ended early; keeps the last design's answer.
+    Counts designs that were solved; keeps the last design's answer.
     """
 
     task: Sizing
     scale: dict[str, float]
     solved: int = 0
-    failed: int = 0
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     @classmethod
@@ -68,7 +67,6 @@ class Programme:
             try:
                 found = self.task.answers(self.task.values(y))
             except PathEnds:
-                self.failed += 1
                 found = None
             self._last = (key, found)
         return self._last[1]
@@ -108,51 +106,36 @@ class Programme:
         """Return what each row of `inequalities` holds."""
         states, fibres = self.task.states, 2 * self.task.fibres
         counts = {CENTRE_SHIFT: states, VARIATION: 2 * states, STRESS: fibres}
-        rows = [name for name in self._held() for _ in range(counts[name])]
+        objective = self.task.objective
+        rows = [objective] * counts[objective]
         shape = list(self.task.shape(self.task.low)[2])
-        return [*rows, *["allowable stress" if STRESS in rows else "stress"] * fibres, *shape]
-
-    def _held(self) -> list[str]:
-        """Return the objectives with rows: the one to be least and those with a limit."""
-        task = self.task
-        return [name for name in task.objectives if name == task.objective or name in task.limits]
+        return [*rows, *["allowable stress" if objective == STRESS else "stress"] * fibres, *shape]
 
     def _rows(self, y: Array) -> tuple[Array, Array]:
         found = self.answers(y)
         if found is None:
             size = len(self.row_names())
             return np.full(size, OUTSIDE), np.zeros((size, len(self.task.span) + 1))
-        values, jacobians = [], []
-        for name in self._held():
-            value, jacobian = self._objective(name, found, y[-1])
-            values.append(value)
-            jacobians.append(jacobian)
         span, allowed = self.task.span, self.task.allowable_stress
         stress, by_stress = found.stress / allowed, found.by_stress * span / allowed
-        values += [1.0 - stress, 1.0 + stress]
-        jacobians += [_widened(-by_stress), _widened(by_stress)]
-        value, jacobian, _ = self.task.shape(self.task.values(y))
-        return np.concatenate([*values, value]), np.concatenate([*jacobians, _widened(jacobian)])
+        shape, by_shape, _ = self.task.shape(self.task.values(y))
+        objective, by_objective = self._objective(found, y[-1])
+        jacobians = (by_objective, _widened(-by_stress), _widened(by_stress), _widened(by_shape))
+        return np.concatenate((objective, 1.0 - stress, 1.0 + stress, shape)), np.concatenate(jacobians)
 
-    def _objective(self, name: str, found: Answers, t: float) -> tuple[Array, Array]:
-        """Return the rows of one objective: below t, or below its limit."""
-        scale, span = self.scale[name], self.task.span
-        least = name == self.task.objective
-        bound = t if least else self.task.limits[name] / scale
-        slope = float(least)
+    def _objective(self, found: Answers, t: float) -> tuple[Array, Array]:
+        """Return the rows of the objective, below t."""
+        name, span = self.task.objective, self.task.span
+        scale = self.scale[name]
         if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
-            bound, value, by = (
-                bound if least else bound**2,
-                found.square_shift / scale**2,
-                found.by_square_shift,
-            )
-            return bound - value, _widened(-by * span / scale**2, slope)
+            value, by = found.square_shift / scale**2, found.by_square_shift * span / scale**2
+            return t - value, _widened(-by, 1.0)
         value, by = (
             (found.stress, found.by_stress) if name == STRESS else (found.variation, found.by_variation)
         )
         value, by = value / scale, by * span / scale
-        rows = np.concatenate((bound - value, bound + value))
-        return rows, np.concatenate((_widened(-by, slope), _widened(by, slope)))
+        rows = np.concatenate((t - value, t + value))
+        return rows, np.concatenate((_widened(-by, 1.0), _widened(by, 1.0)))
 
     def conditions(self, y: Array) -> tuple[tuple[Active, ...], float]:
         """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
@@ -197,9 +180,6 @@ class Programme:
         if variable in task.variables:
             low, high = task.bounds[variable]
             return float((low if end == "least" else -high) / (high - low))
-        if name in task.limits:
-            bound = task.limits[name] / self.scale[name]
-            return -2.0 * bound**2 if name == CENTRE_SHIFT else -bound
         fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
         return (fixed | task.shape(self.task.values(y))[2])[name]
 
@@ -207,40 +187,3 @@ class Programme:
 def _widened(rows: Array, last: float = 0.0) -> Array:
     """Return Jacobian rows (R, N) with the column of t."""
     return np.column_stack((rows, np.full(len(rows), last)))
-
-
-#: First step of differences, of a variable's bounds, and how often it is halved.
-STEP, LEVELS = 0.01, 4
-
-
-def gradient_error(task: Sizing, values: Array, levels: int = LEVELS) -> float:
-    """Return the largest error of the gradients that the optimiser is given at a design (N,), against
-    differences [1].
-
-    Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
-    any variable, over the bounds.
-    """
-    programme = Programme.of(task)
-    at = (values - task.low) / np.where(task.span == 0.0, 1.0, task.span)
-    y = np.append(at, 1.0)
-    exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
-    errors = np.zeros_like(exact)
-    for i, unit in enumerate(np.eye(len(y))):
-        found = []
-        for step in (STEP / 2**level * unit for level in range(levels)):
-            up, down = (
-                np.concatenate((programme.inequalities(each), programme.equality(each)))
-                for each in (y + step, y - step)
-            )
-            found.append((up - down) / (2.0 * step[i]))
-        errors[:, i] = np.abs(exact[:, i] - _limit(found))
-    names = np.array([*programme.row_names(), "stiffness"])
-    parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
-    return float(max(error / largest for error, largest in parts if largest > 0.0))
-
-
-def _limit(row: list[Array]) -> Array:
-    """Return the limit of differences whose steps are halved, by Richardson's extrapolation."""
-    for order in range(1, len(row)):
-        row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
-    return row[0]

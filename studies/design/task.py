@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,6 @@ class Sizing:
         objective: what is to be least, one of `objectives`.
         stiffness: wanted: of the body as it begins to turn, under the loads [N m / rad], or its travel [m].
         allowable_stress: of the extreme fibres, at the states of `held_states` [Pa].
-        limits: largest value of an objective that is not the one to be least, by its name.
         own: variables of the start (N,).
         columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
     """
@@ -51,7 +50,6 @@ class Sizing:
     objective: str
     stiffness: float
     allowable_stress: float
-    limits: Mapping[str, float]
     #: Properties of one kind, fields of the other.
     own: Any
     objectives: Any
@@ -134,7 +132,6 @@ class Task(Sizing):
     bounds: Mapping[str, tuple[float, float]]
     least_slenderness: float
     largest_aspect: float
-    limits: Mapping[str, float] = field(default_factory=dict)
 
     objectives = tuple(OBJECTIVES)
     columns = (
@@ -198,7 +195,7 @@ class Task(Sizing):
 
     def by_elements(self, design: Problem) -> dict[str, float]:
         """Return what the finite elements say of it; NoReference where they do not reach its range's end."""
-        return evaluate.by_elements(design)[0].quantities()
+        return evaluate.by_elements(design).quantities()
 
 
 def variables_of(problem: Problem) -> Array:
@@ -227,8 +224,6 @@ STARTS = 8
 ALLOWABLE = 500e6
 #: Strips no wider than half their length, in place of no wider than long.
 NARROW = 0.5
-#: Largest variations of stiffness for which the centre shift is made least [1].
-TRADE = (0.07, 0.06, 0.05, 0.04, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,16 +241,14 @@ class Question:
     aspect: float = 1.0
     stress: float | None = None
 
-    def task(self, start: Problem, own: Answers, *, variation: float | None = None) -> Task:
-        """Return what is asked beside that design at the stiffness of its own answers, with `variation` as
-        the largest one of the stiffness [1] where it is given."""
+    def task(self, start: Problem, own: Answers) -> Task:
+        """Return what is asked beside that design at the stiffness of its own answers."""
         return Task.usual(
             start,
             objective=self.objective,
             stiffness=own.stiffness,
             allowable_stress=own.largest(STRESS) if self.stress is None else self.stress,
             largest_aspect=self.aspect,
-            limits={} if variation is None else {VARIATION: variation},
         )
 
 
@@ -273,8 +266,6 @@ QUESTIONS: Mapping[str, Question] = {
         baseline=SPRING_STEEL, objective=VARIATION, stress=ALLOWABLE
     ),
 }
-#: The two between which the trade lies.
-WIDE = ("least centre shift", "least variation of stiffness")
 
 
 def baseline(name: str = TABLE_ONE) -> Problem:

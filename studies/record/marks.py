@@ -1,16 +1,12 @@
-"""Marks of panels beside their curves: levels, slopes, maps, words, and how uncertain a reference is."""
+"""Marks of panels beside their curves: levels, slopes, words, and how uncertain a reference is."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
 
 from studies.record.panels import Axis
-from studies.record.style import BLUE
 
 #: Colour of levels and slopes, and of the words beside them.
 MARK = "#444444"
@@ -55,38 +51,6 @@ class Level:
         return place | {"xytext": (0, 2), "textcoords": "offset points", "ha": side, "va": "bottom"}
 
 
-@dataclass(frozen=True)
-class Contours:
-    """Lines of equal values of a table over both axes: a map of a design space.
-
-    Attributes:
-        column: of the values; factor: to what is written beside the lines.
-        levels: of the lines, round ones without; shaded: whether what lies between them is.
-    """
-
-    rows: pd.DataFrame
-    column: str
-    factor: float = 1.0
-    levels: Sequence[float] = ()
-    colour: str = BLUE
-    shaded: bool = False
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Draw the lines with their values."""
-        grid: Any = self.rows.pivot(index=y.column, columns=x.column, values=self.column) * self.factor
-        low, high = grid.to_numpy().min(), grid.to_numpy().max()
-        levels = self.levels or MaxNLocator(4, steps=(1, 2, 2.5, 5, 10)).tick_values(low, high)
-        where = (grid.columns, grid.index, grid)
-        if self.shaded:
-            panel.contourf(*where, levels=[min(0.0, low), *levels, high], cmap="Blues", alpha=0.6)
-        lines = panel.contour(*where, levels=levels, colors=self.colour, linewidths=0.8)
-        for said in panel.clabel(
-            lines, fontsize=8 if self.shaded else 7, inline_spacing=1, fmt=lambda value: f"{value:.3g}"
-        ):
-            said.set_clip_on(False)
-        panel.grid(visible=False)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Slope:
     """What goes with a power of x, over a span of x through a point: an order.
@@ -114,7 +78,7 @@ class Words:
     """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
 
     Attributes:
-        by: how far from there [pt]; side: of the words that is there, left or right; turned: written upwards.
+        by: how far from there [pt]; side: of the words that is there, left or right.
     """
 
     text: str
@@ -122,15 +86,13 @@ class Words:
     by: tuple[float, float] = (0.0, 0.0)
     colour: str = MARK
     side: str = "left"
-    turned: bool = False
     placed: bool = False
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
         """Write the words."""
         panel.annotate(
             self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
-            ha=self.side, va="top" if self.turned else "baseline", rotation=90 if self.turned else 0,
-            color=self.colour, fontsize=8,
+            ha=self.side, va="baseline", color=self.colour, fontsize=8,
         )  # fmt: skip
 
 

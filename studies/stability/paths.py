@@ -8,17 +8,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Part, Tables
-from studies.record.marks import Level
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
+from studies.engine import Part
 from studies.stability import family, maps
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
@@ -160,35 +156,6 @@ def _gap(one: Response, other: Response) -> float:
     return float(np.abs(one.torque - other.torque).max() / np.abs(other.torque).max())
 
 
-def _limit_figure(tables: Tables) -> Figure:
-    limit = tables["limit"]
-    slenderness = Axis("slenderness", "slenderness L/t [1]", log=True)
-    iterations = "Newton iterations of the path [1]"
-    error = Look(label="to the inextensible strip", colour=BLUE, marker="o")
-    lost = Look(label="beyond the law, neighbours", colour=ORANGE, line="--", marker="s")
-    left = Panel(
-        slenderness,
-        Axis("", "difference of torque [1]", log=True),
-        (
-            Curves(limit, error, y="error"),
-            Curves(limit, lost, y="lost_digits"),
-            Level(1e-9, colour=GREY, line=":"),
-        ),
-        title="Spline n = 6, 90°",
-        legend="upper right",
-    )
-    right = Panel(
-        slenderness,
-        Axis("iterations", iterations, limits=(0.0, 30.0)),
-        (
-            Curves(limit, Look(label="extensible", colour=BLUE, marker="o")),
-            Level(limit["iterations_inextensible"].iloc[0], label="inextensible", colour=BLACK, line="--"),
-        ),
-        legend="lower right",
-    )
-    return sheet(7.4, 3.1, [[left, right]])
-
-
 SLENDERNESS = family.study(
     Part(at=_slender_cases, ask=family.outcomes_of),
     # the approach of six control points to the inextensible strip
@@ -206,7 +173,6 @@ SLENDERNESS = family.study(
             xticklabels=("10", "1e3", "1e5", "∞"),
             yticks=list(SLENDER_ROTATIONS),
         ),
-        "stability_slenderness_limit": _limit_figure,
     },
 )
 """Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""

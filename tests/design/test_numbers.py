@@ -10,8 +10,8 @@ from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
 from studies.design.evaluate import STRESS, VARIATION
 from studies.design.numbers import NumbersTask, by_sides, number_of
-from studies.design.programme import gradient_error
 from tests import gates
+from tests.design.gradients import gradient_error
 
 FREE = (
     "section.thickness_m",

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.record.marks import Contours, Level, Slope
+from studies.record.marks import Level, Slope
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, RED, Look
 
@@ -77,13 +77,3 @@ def test_slope_goes_with_its_power_and_leaves_the_limits():
     without = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES,))]]).axes[0]
     np.testing.assert_allclose(with_slope.lines[-1].get_ydata(), [1e-1, 2.5e-2])
     assert with_slope.get_ylim() == without.get_ylim()
-
-
-def test_contours_stand_where_the_table_has_their_values():
-    """Over a plane the line of a level is where the plane has it."""
-    x, y = np.meshgrid(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 2.0, 5))
-    rows = pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "z": (x + y).ravel()})
-    map_ = Contours(rows, "z", factor=10.0, levels=(15.0,))
-    panel = sheet(3.0, 2.0, [[Panel(Axis("x", ""), Axis("y", ""), (map_,))]]).axes[0]
-    (line,) = panel.collections[0].get_paths()
-    np.testing.assert_allclose(line.vertices.sum(axis=1), 1.5)

@@ -1,0 +1,41 @@
+"""Gradients of a sizing question held against differences of its answers."""
+
+import numpy as np
+
+from studies.design.programme import Programme
+
+#: First step of differences, of a variable's bounds, and how often it is halved.
+STEP, LEVELS = 0.01, 4
+
+
+def gradient_error(task, values, levels=LEVELS):
+    """Return the largest error of the gradients that the optimiser is given at a design (N,), against
+    differences [1].
+
+    Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
+    any variable, over the bounds.
+    """
+    programme = Programme.of(task)
+    at = (values - task.low) / np.where(task.span == 0.0, 1.0, task.span)
+    y = np.append(at, 1.0)
+    exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
+    errors = np.zeros_like(exact)
+    for i, unit in enumerate(np.eye(len(y))):
+        found = []
+        for step in (STEP / 2**level * unit for level in range(levels)):
+            up, down = (
+                np.concatenate((programme.inequalities(each), programme.equality(each)))
+                for each in (y + step, y - step)
+            )
+            found.append((up - down) / (2.0 * step[i]))
+        errors[:, i] = np.abs(exact[:, i] - _limit(found))
+    names = np.array([*programme.row_names(), "stiffness"])
+    parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
+    return float(max(error / largest for error, largest in parts if largest > 0.0))
+
+
+def _limit(row):
+    """Return the limit of differences whose steps are halved, by Richardson's extrapolation."""
+    for order in range(1, len(row)):
+        row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
+    return row[0]
