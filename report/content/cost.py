@@ -11,14 +11,13 @@ import pandas as pd
 from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
 from report.forms import angle, count, decade, percent, power, seconds, significant, times, unit
 
-CODES, STATIC, MOVING = "baselines/peers", "work_precision/statics", "work_precision/dynamics"
+CODES = "baselines/peers"
 #: Groups of the comparison beside the spline, in the order of the table.
 GROUPS = ("finite elements", "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates")
 TASKS = {"path": Stored(CODES, "statics_ratios"), "swing": Stored(CODES, "swings_ratios")}
 WAITS = Stored("work_precision/waits", "waits_of_time")
 SPLINE, ELEMENTS = "spline, n = 6", "80 elements"
 WHOLE, ALONE = "whole call", "increments alone"
-LANGUAGE = Stored(STATIC, "language", series="finite elements", setting="20 elements")
 SURROGATES = "baselines/surrogates"
 ERRORS, REACHED = Stored(SURROGATES, "errors"), Stored(SURROGATES, "thresholds", level=0.01)
 SIMPLE = {
@@ -26,7 +25,6 @@ SIMPLE = {
     "pin joint": "pin joint with a spring",
     "four-bar": "four-bar with springs",
     "beam constraint model": "beam constraint model",
-    "chained constraint model": "the same, chained",
 }
 #: Splines of four control points that the path of the four-bar is compared with.
 FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
@@ -146,7 +144,6 @@ def _extreme(task: str, group: str, pick: Callable[[Any], Any]) -> Fact:
     return Fact(made=lambda r: pick(_ratios(r, task, group)), form=times)
 
 
-LESS_WORK = "At an error of 0.001 in path and torque the spline takes less counted work"
 OVER = "the largest error of the torque over the best such model's"
 FACTS |= {
     f"cost.{task}.{short}.{name}": _extreme(task, group, pick)
@@ -168,12 +165,6 @@ FACTS |= {
     "cost.independent": Stored(CODES, "theories").at("torque", power, what="exudyn ancf, 64 elements"),
     "cost.exudyn.version": Stored(CODES, "codes").at("version", str, code="exudyn"),
     "cost.opensees.version": Stored(CODES, "codes").at("version", str, code="openseespy"),
-    "cost.work.fe": Stored(STATIC, "findings", claim=LESS_WORK).at(
-        "value", times, formulation="finite elements, 20 elements"
-    ),
-    "cost.python": LANGUAGE.at("python_share", percent),
-    "cost.fe20": LANGUAGE.at("solve_s", seconds),
-    "cost.fe20.compiled": LANGUAGE.at("compiled_s", seconds),
     "waits.whole.spline": WAITS.at("solve_s", seconds, what=WHOLE, model=SPLINE),
     "waits.command.spline": WAITS.at("solve_s", seconds, what="command line", model=SPLINE),
     "waits.slower.whole": _slower((WHOLE, ELEMENTS), (WHOLE, SPLINE)),

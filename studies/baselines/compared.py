@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from studies.answers.reference import Reference
 from studies.baselines.answer import BaselineFailed, Followed, SolvedPath
-from studies.baselines.constraint_model import chained_constraint_model, constraint_model
+from studies.baselines.constraint_model import constraint_model
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements as own_elements
@@ -24,10 +24,10 @@ from studies.work_precision import equal_error
 from studies.work_precision.limits import WITH_SHEAR, WITHOUT_SHEAR, errors_of
 from studies.work_precision.series import ELEMENTS, SPLINE
 
-#: Models of which the rotation is the only coordinate, those whose beams have others that are eliminated, and
-#: other codes.
+#: Models of which the rotation is the only coordinate, the one whose beams have others that are eliminated,
+#: and other codes.
 PSEUDO_RIGID = {each.model: each for each in (linear_pivot, pin_joint, four_bar)}
-SURROGATES = PSEUDO_RIGID | {each.model: each for each in (constraint_model, chained_constraint_model)}
+SURROGATES = PSEUDO_RIGID | {constraint_model.model: constraint_model}
 PEERS: dict[str, Baseline] = {each.model: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
 
 #: What to do about a peer that is not there.

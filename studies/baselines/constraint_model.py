@@ -1,7 +1,7 @@
-"""Strips as one or several beams in closed form: the beam constraint model of Awtar, and its chained form.
+"""Strips as one beam each in closed form: the beam constraint model of Awtar.
 
-Of a beam of length l, with everything over l, EI/l^2 and EI/l, let u be the displacement of its tip along it
-and v = (y, theta) that across it and its rotation, in the frame of its root, and c = I / (A l^2). Stiffness
+Of a beam of length L, with everything over L, EI/L^2 and EI/L, let u be the displacement of its tip along it
+and v = (y, theta) that across it and its rotation, in the frame of its root, and c = I / (A L^2). Stiffness
 and shortening are those of the beam-column up to the second power of the axial force p,
 
     (f, m) = (K0 + p K1 + p^2 K2) v,      u = c p - v K1 v / 2 - p v K2 v
@@ -12,20 +12,16 @@ which are the derivatives of the energy
 
     V = v K0 v / 2 + a^2 / (2 b),   a = u + v K1 v / 2,   b = c - v K2 v,   p = a / b
 
-One beam a strip is Awtar's model, for deflections up to about a tenth of the length; several in a row, each
-in the frame where it begins, are the chained model, for any. Exact for small displacements at small axial
+The model is for deflections up to about a tenth of the length. Exact for small displacements at small axial
 forces; leaves out that a beam's own rotation is large. In motion a beam is the cubic of its end tangents.
 
-Of a pivot a rotation leaves free the body's place and, in the chained form, the nodes within the strips; they
-are solved for from rest on.
+A rotation leaves the place of the body free; it is solved for from rest on.
 
-Source: S. Awtar, A. H. Slocum, E. Sevincer, Journal of Mechanical Design 129 (2007) 625; F. Ma, G. Chen,
-Journal of Mechanisms and Robotics 8 (2016) 021018; the energy is derived here.
+Source: S. Awtar, A. H. Slocum, E. Sevincer, Journal of Mechanical Design 129 (2007) 625; the energy is
+derived here.
 """
 
-import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -39,12 +35,10 @@ from studies.kinds import Array
 K0 = np.array([[12.0, -6.0], [-6.0, 4.0]])
 K1 = np.array([[6.0 / 5.0, -1.0 / 10.0], [-1.0 / 10.0, 2.0 / 15.0]])
 K2 = np.array([[-1.0 / 700.0, 1.0 / 1400.0], [1.0 / 1400.0, -11.0 / 6300.0]])
-#: Mass matrix of a cubic with the places and slopes of its ends, over mu l / 420.
-CUBIC = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]], dtype=float)
+#: Mass matrix of a cubic with the place and slope of its tip, its root at rest, over mu L / 420.
+CUBIC = np.array([[156.0, -22.0], [-22.0, 4.0]])
 #: Tolerance of the residual [EI/L^2], and most iterations of a step.
 TOLERANCE, ITERATIONS = 1e-10, 40
-#: Beams a strip of the chained model.
-CHAINED = 4
 #: Largest turn of a step to a rotation [rad].
 STEP = 0.1
 
@@ -67,195 +61,105 @@ def _element(u: Array, v: Array, compliance: float) -> tuple[Array, Array, Array
     return energy, gradient, hessian
 
 
-def _placed(
-    start: Array, end: Array, angle: float, length: float, compliance: float
-) -> tuple[Array, Array, Array]:
-    """Return energy [EI/L], gradient (S, 6) and Hessian (S, 6, 6) by both ends' places and turns.
-
-    Args:
-        start, end: (S, 3) x, y over L, turn. angle: of the beam at rest [rad]. length: l over L.
-    """
-    turn = start[:, 2] + angle
-    along = np.stack((np.cos(turn), np.sin(turn)), axis=1)
-    across = np.stack((-along[:, 1], along[:, 0]), axis=1)
-    apart = (end - start)[:, :2] / length
-    x, y = (apart * along).sum(axis=1), (apart * across).sum(axis=1)
-    values, gradient, hessian = _element(x - 1.0, np.stack((y, end[:, 2] - start[:, 2]), axis=1), compliance)
-    frame = np.stack((along, across), axis=1) / length
-    jacobian = np.zeros((len(x), 3, 6))
-    jacobian[:, :2, :2], jacobian[:, :2, 3:5] = -frame, frame
-    jacobian[:, 0, 2], jacobian[:, 1, 2] = y, -x
-    jacobian[:, 2, 2], jacobian[:, 2, 5] = -1.0, 1.0
-    whole = np.einsum("ski,skl,slj->sij", jacobian, hessian, jacobian)
-    # places in the frame of the root turn with it
-    mixed = gradient[:, :1] * frame[:, 1] - gradient[:, 1:2] * frame[:, 0]
-    for columns, sign in ((slice(0, 2), -1.0), (slice(3, 5), 1.0)):
-        whole[:, 2, columns] += sign * mixed
-        whole[:, columns, 2] += sign * mixed
-    whole[:, 2, 2] -= gradient[:, 0] * x + gradient[:, 1] * y
-    return values / length, np.einsum("sk,ski->si", gradient, jacobian) / length, whole / length
-
-
 @dataclass(frozen=True, kw_only=True)
 class _Strips:
-    """Two strips of one length between the ground and a body, with `count` beams each; lengths over L.
+    """Two strips of one length between the ground and a body; lengths over L.
+
+    The coordinates of a state are the place of the body and its rotation.
 
     Attributes:
-        root: (2, 2) at rest. direction: (2, 2) unit, to the body. centre: (2,) of the body, where forces act.
-        compliance: I / (A L^2) [1].
+        root: (2, 2) ground ends. direction: (2, 2) unit vectors from there to the body.
+        centre: (2,) of the body at rest. compliance: I / (A L^2) [1].
     """
 
     root: Array
     direction: Array
     centre: Array
     compliance: float
-    count: int
 
-    @property
-    def unknowns(self) -> int:
-        """Coordinates: those of the inner nodes of both strips, the body's place, its rotation last."""
-        return 6 * (self.count - 1) + 3
-
-    def rest(self) -> Array:
-        """Return the coordinates at rest."""
-        inner = np.zeros((2, self.count - 1, 3))
-        for strip in range(2):
-            inner[strip, :, :2] = self.nodes(strip)[1:-1]
-        return np.concatenate((inner.ravel(), self.centre, [0.0]))
-
-    def nodes(self, strip: int) -> Array:
-        """Return the nodes of a strip at rest (count + 1, 2)."""
-        part = np.linspace(0.0, 1.0, self.count + 1)[:, None]
-        return np.asarray(self.root[strip] + part * self.direction[strip])
-
-    def angle(self, strip: int) -> float:
-        """Return the angle of a strip at rest [rad]."""
-        return math.atan2(self.direction[strip][1], self.direction[strip][0])
-
-    def ends(self, y: Array, strip: int, node: int) -> tuple[Array, Array, Array]:
-        """Return a node (S, 3), its Jacobian (S, 3, N) and its place's second derivative by p (S, 2)."""
-        states, jacobian = len(y), np.zeros((len(y), 3, self.unknowns))
-        curved = np.zeros((states, 2))
-        if node == 0:
-            return np.tile((*self.root[strip], 0.0), (states, 1)), jacobian, curved
-        if node < self.count:
-            first = 3 * (strip * (self.count - 1) + node - 1)
-            jacobian[:, range(3), range(first, first + 3)] = 1.0
-            return y[:, first : first + 3], jacobian, curved
-        arm = self.nodes(strip)[-1] - self.centre
-        cosine, sine = np.cos(y[:, -1]), np.sin(y[:, -1])
-        turned = np.stack((cosine * arm[0] - sine * arm[1], sine * arm[0] + cosine * arm[1]), axis=1)
-        jacobian[:, range(2), range(self.unknowns - 3, self.unknowns - 1)] = 1.0
-        jacobian[:, 0, -1], jacobian[:, 1, -1], jacobian[:, 2, -1] = -turned[:, 1], turned[:, 0], 1.0
-        return np.concatenate((y[:, -3:-1] + turned, y[:, -1:]), axis=1), jacobian, -turned
+    def _arm(self, strip: int, p: Array) -> Array:
+        """Return the way from the body's centre to the tip of a strip at rotations (S,), (S, 2)."""
+        x, y = self.root[strip] + self.direction[strip] - self.centre
+        cosine, sine = np.cos(p), np.sin(p)
+        return np.stack((cosine * x - sine * y, sine * x + cosine * y), axis=1)
 
     def assembled(self, y: Array) -> tuple[Array, Array, Array]:
-        """Return V (S,), its gradient (S, N) and Hessian (S, N, N) [EI/L] at coordinates (S, N)."""
-        length = 1.0 / self.count
-        energy, gradient = np.zeros(len(y)), np.zeros((len(y), self.unknowns))
-        hessian = np.zeros((len(y), self.unknowns, self.unknowns))
-        for strip, node in itertools.product(range(2), range(self.count)):
-            (start, by_start, _), (end, by_end, curved) = (
-                self.ends(y, strip, each) for each in (node, node + 1)
-            )
-            v, g, h = _placed(start, end, self.angle(strip), length, self.compliance / length**2)
-            by = np.concatenate((by_start, by_end), axis=1)
+        """Return V (S,), its gradient (S, 3) and Hessian (S, 3, 3) [EI/L] at coordinates (S, 3)."""
+        energy, gradient, hessian = np.zeros(len(y)), np.zeros((len(y), 3)), np.zeros((len(y), 3, 3))
+        for strip, along in enumerate(self.direction):
+            frame = np.stack((along, _quarter_turned(along)))
+            arm = self._arm(strip, y[:, 2])
+            tip = (y[:, :2] + arm - self.root[strip]) @ frame.T
+            v, g, h = _element(tip[:, 0] - 1.0, np.stack((tip[:, 1], y[:, 2]), axis=1), self.compliance)
+            jacobian = np.tile(np.eye(3), (len(y), 1, 1))
+            jacobian[:, :2, :2], jacobian[:, :2, 2] = frame, _quarter_turned(arm) @ frame.T
             energy += v
-            gradient += np.einsum("sk,ski->si", g, by)
-            hessian += np.swapaxes(by, 1, 2) @ h @ by
-            hessian[:, -1, -1] += (g[:, 3:5] * curved).sum(axis=1)
+            gradient += np.einsum("sk,ski->si", g, jacobian)
+            hessian += np.swapaxes(jacobian, 1, 2) @ h @ jacobian
+            hessian[:, 2, 2] -= (g[:, :2] * (arm @ frame.T)).sum(axis=1)
         return energy, gradient, hessian
 
-    def settle(self, y: Array, free: int, where: str, load: Array | float = 0.0) -> Array:
-        """Move the first `free` coordinates of y (S, N) to equilibrium under a load; return the Hessian.
+    def turned(self, p: Array) -> tuple[Array, Array]:
+        """Return the coordinates (S, 3) at rotations (S,), reached from rest, and the derivative.
 
         Raises:
-            BaselineFailed: there is none, `where`.
+            BaselineFailed: there is no equilibrium on the way.
+        """
+        furthest = float(np.abs(p).max(initial=0.0))
+        steps = max(1, math.ceil(furthest / STEP))
+        y = np.tile((*self.centre, 0.0), (len(p), 1))
+        slope = np.zeros_like(y)
+        for step in range(steps + 1):
+            ahead = step / steps * p - y[:, 2]
+            y += ahead[:, None] * slope
+            y[:, 2] = step / steps * p
+            hessian = self._settle(y, step / steps * furthest)
+            slope = np.ones_like(y)
+            slope[:, :2] = -np.linalg.solve(hessian[:, :2, :2], hessian[:, :2, 2:])[..., 0]
+        return y, slope
+
+    def _settle(self, y: Array, furthest: float) -> Array:
+        """Move the body's place in y (S, 3) to equilibrium; return the Hessian.
+
+        Raises:
+            BaselineFailed: there is none, `furthest` being the largest rotation [rad].
         """
         for _ in range(ITERATIONS):
             _, gradient, hessian = self.assembled(y)
-            residual = gradient[:, :free] - load
-            if np.abs(residual).max() < TOLERANCE:
+            if np.abs(gradient[:, :2]).max() < TOLERANCE:
                 return hessian
-            y[:, :free] -= np.linalg.solve(hessian[:, :free, :free], residual[..., None])[..., 0]
-        raise BaselineFailed(f"constraint model: no equilibrium {where}")
-
-    def turned(self, p: Array) -> tuple[Array, Array]:
-        """Return the coordinates (S, N) at rotations (S,), reached from rest, and the derivative."""
-        furthest = float(np.abs(p).max(initial=0.0))
-        steps = max(1, math.ceil(furthest / STEP))
-        y = np.tile(self.rest(), (len(p), 1))
-        slope = np.zeros_like(y)
-        for step in range(steps + 1):
-            ahead = step / steps * p - y[:, -1]
-            y += ahead[:, None] * slope
-            y[:, -1] = step / steps * p
-            where = f"on the way to {math.degrees(step / steps * furthest):.3g} deg"
-            hessian = self.settle(y, self.unknowns - 1, where)
-            slope = np.ones_like(y)
-            slope[:, :-1] = -np.linalg.solve(hessian[:, :-1, :-1], hessian[:, :-1, -1:])[..., 0]
-        return y, slope
-
-    def pushed(self, force: Array, steps: int = 40) -> Array:
-        """Return the displacement [L] and turn (3,) of the body under a force [EI/L^2], led there in steps.
-
-        Raises:
-            BaselineFailed: no equilibrium on the way.
-        """
-        rest = self.rest()
-        y, load = rest[None].copy(), np.zeros(self.unknowns)
-        for step in range(1, steps + 1):
-            load[-3:-1] = step / steps * force
-            self.settle(y, self.unknowns, f"at {step / steps:.3g} of the force", load)
-        return np.asarray((y[0] - rest)[-3:])
+            y[:, :2] -= np.linalg.solve(hessian[:, :2, :2], gradient[:, :2, None])[..., 0]
+        raise BaselineFailed(
+            f"constraint model: no equilibrium on the way to {math.degrees(furthest):.3g} deg"
+        )
 
     def moving(self, y: Array, slope: Array) -> Array:
-        """Return the strips' part of M over mu L^3 (S,): cubics between the nodes."""
-        length, total = 1.0 / self.count, np.zeros(len(y))
-        for strip in range(2):
-            moved = []
-            for node in range(self.count + 1):
-                place, by, _ = self.ends(y, strip, node)
-                rate = np.einsum("ski,si->sk", by, slope)
-                turn = place[:, 2] + self.angle(strip)
-                tangent = rate[:, 2:] * length * np.stack((-np.sin(turn), np.cos(turn)), axis=1)
-                moved.append((rate[:, :2], tangent))
-            for one, other in itertools.pairwise(moved):
-                rates = np.stack((*one, *other), axis=1)
-                total += length / 420.0 * np.einsum("ija,jk,ika->i", rates, CUBIC, rates)
+        """Return the strips' part of M over mu L^3 (S,): a cubic each."""
+        total = np.zeros(len(y))
+        for strip, along in enumerate(self.direction):
+            arm = self._arm(strip, y[:, 2])
+            turn = y[:, 2] + math.atan2(along[1], along[0])
+            tangent = np.stack((-np.sin(turn), np.cos(turn)), axis=1)
+            rates = np.stack((slope[:, :2] + _quarter_turned(arm), tangent), axis=1)
+            total += np.einsum("ija,jk,ika->i", rates, CUBIC, rates) / 420.0
         return total
 
 
-def guide(apart: float, slenderness: float, count: int) -> _Strips:
-    """Return the strips of a parallelogram along x, pushed where they end.
+def _quarter_turned(vectors: Array) -> Array:
+    """Return vectors (..., 2) turned counter-clockwise by 90 degrees."""
+    return np.stack((-vectors[..., 1], vectors[..., 0]), axis=-1)
 
-    Args:
-        apart: [L]. slenderness: L over the thickness [1]. count: beams a strip.
-    """
-    return _Strips(
-        root=np.array([[0.0, 0.5 * apart], [0.0, -0.5 * apart]]),
-        direction=np.array([[1.0, 0.0], [1.0, 0.0]]),
-        centre=np.array([1.0, 0.0]),
-        compliance=1.0 / (12.0 * slenderness**2),
-        count=count,
+
+def _law_of(problem: Problem) -> Law:
+    """Return the law of a pivot."""
+    at_rest, length = geometry_of(problem), problem.length
+    strips = _Strips(
+        root=at_rest.root / length,
+        direction=at_rest.direction,
+        centre=at_rest.centre / length,
+        compliance=problem.second_moment_of_area / (problem.area * length**2),
     )
-
-
-def with_beams(count: int) -> Callable[[Problem], Law]:
-    """Return what makes the law of a pivot with so many beams a strip."""
-
-    def law_of(problem: Problem) -> Law:
-        at_rest, length = geometry_of(problem), problem.length
-        strips = _Strips(
-            root=at_rest.root / length,
-            direction=at_rest.direction,
-            centre=at_rest.centre / length,
-            compliance=problem.second_moment_of_area / (problem.area * length**2),
-            count=count,
-        )
-        return partial(_state, problem, strips)
-
-    return law_of
+    return partial(_state, problem, strips)
 
 
 def _state(problem: Problem, strips: _Strips, p: Array) -> State:
@@ -263,18 +167,17 @@ def _state(problem: Problem, strips: _Strips, p: Array) -> State:
     y, slope = strips.turned(p)
     energy, gradient, hessian = strips.assembled(y)
     scale = problem.youngs_modulus * problem.second_moment_of_area / problem.length
-    speed = np.einsum("si,si->s", slope[:, -3:-1], slope[:, -3:-1])
+    speed = np.einsum("si,si->s", slope[:, :2], slope[:, :2])
     mass = problem.density * problem.area * problem.length
     turning = problem.body_moment_of_inertia / problem.length**2
     inertia = turning + problem.body_mass * speed + mass * strips.moving(y, slope)
     return State(
-        centre=y[:, -3:-1] * problem.length,
+        centre=y[:, :2] * problem.length,
         energy=scale * energy,
-        torque=scale * gradient[:, -1],
-        stiffness=scale * np.einsum("si,si->s", hessian[:, -1], slope),
+        torque=scale * gradient[:, 2],
+        stiffness=scale * np.einsum("si,si->s", hessian[:, 2], slope),
         inertia=inertia * problem.length**2,
     )
 
 
-constraint_model = Surrogate(model="beam constraint model", law_of=with_beams(1))
-chained_constraint_model = Surrogate(model="chained constraint model", law_of=with_beams(CHAINED))
+constraint_model = Surrogate(model="beam constraint model", law_of=_law_of)

@@ -30,7 +30,6 @@ from studies.baselines.variant import Baseline, repeats_of
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.work_precision.work import work_of, work_of_motion
 
 #: Records of a motion, some 50 of every period of the strips' own oscillations.
 RECORDS = 2500
@@ -95,7 +94,7 @@ class _Own(Baseline):
     def path(
         self, problem: Design, repeat: int, *, accuracy: float | None = None, **settings: Any
     ) -> SolvedPath:
-        """Return the path of a case, with counted work, as far as it was followed.
+        """Return the path of a case, as far as it was followed.
 
         Args:
             repeat: timed solves [1]; accuracy: that a spline finds its own control points for.
@@ -103,12 +102,11 @@ class _Own(Baseline):
         free = {} if accuracy is None else {"control_points": None}
         chosen: Any = self.discretised(**free | settings)
         answer = answer_static(problem, chosen, repeat=repeat, accuracy=accuracy)
-        found = replace(chosen, **{name: answer.settings[name] for name in free})
-        return SolvedPath.of(answer, repeats=repeat, work=work_of(found, answer.counters))
+        return SolvedPath.of(answer, repeats=repeat, work=answer.counters)
 
     def swing(self, problem: Design, duration: float, **settings: Any) -> SolvedMotion:
-        """Return the motion of a case for `duration` [s], with counted work; `integrator` and `step` [s] are
-        the model's own unless they are given."""
+        """Return the motion of a case for `duration` [s]; `integrator` and `step` [s] are the model's own
+        unless they are given."""
         given = {name: settings.pop(name, None) for name in ("integrator", "step")}
         chosen = self.discretised(**settings)
         released = partial(answer_release, problem, chosen, duration=duration, **given)
@@ -117,8 +115,7 @@ class _Own(Baseline):
             return SolvedMotion.of(motion, work={})
         repeats = repeats_of(motion.solve_s)
         solve_s = released(records=TIMED_RECORDS, repeat=repeats).solve_s
-        work = work_of_motion(chosen, motion.counters)
-        return SolvedMotion.of(motion, solve_s=solve_s, repeats=repeats, work=work)
+        return SolvedMotion.of(motion, solve_s=solve_s, repeats=repeats, work=motion.counters)
 
 
 class _Spline(_Own):

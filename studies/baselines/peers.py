@@ -32,7 +32,7 @@ from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Study, Tables, records
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, YELLOW, Look
+from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, Look
 from studies.work_precision.limits import path_limits, swing_limits
 from studies.work_precision.series import ELEMENTS, SPLINE
 
@@ -43,8 +43,6 @@ TIMES = {"s": "solve_s", "low_s": "low_s", "high_s": "high_s"}
 
 #: A limit must be this much more certain than the level that errors against it are compared at.
 CERTAINTY = 2.0
-#: How all variants are drawn behind the fastest: marks alone, without a name.
-FAINT = {"linestyle": "", "alpha": 0.35, "label": None}
 
 
 def _ratios(
@@ -98,52 +96,41 @@ def _fastest(joined: pd.DataFrame, group: str, error: str, level: float) -> dict
     return {"name": f"{best['model']}, {setting}"} | {name: float(best[TIMES[name]]) for name in TIMES}
 
 
-#: Looks by model and group: a colour a code, a marker a beam.
+#: Looks by group: a colour a code.
 LOOKS = {
-    ("spline", SPLINE): Look(label="spline", colour=BLUE, marker="x"),
-    ("finite elements", ELEMENTS): Look(label="finite elements", colour=BLACK, marker="s"),
-    ("exudyn ancf", EXUDYN): Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"),
-    ("exudyn exact", EXUDYN): Look(label="Exudyn, geometrically exact", colour=PURPLE, marker="v"),
-    ("exudyn ancf", AS_DELIVERED): Look(label="Exudyn as delivered, ANCF cable", colour=YELLOW, marker="^"),
-    ("exudyn exact", AS_DELIVERED): Look(
-        label="Exudyn as delivered, geometrically exact", colour=YELLOW, marker="v"
-    ),
-    ("openseespy frame", OPENSEES): Look(label="OpenSees, corotational frame", colour=ORANGE, marker="<"),
+    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
+    ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
+    EXUDYN: Look(label="Exudyn, tuned", colour=PURPLE, marker="^"),
+    AS_DELIVERED: Look(label="Exudyn as delivered", colour=PURPLE, line=":", marker="v"),
+    OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
 }
 
 
-def _work_precision(tables: Tables) -> Figure:
-    """Draw every setting as a point and the best of each model as a line, for the path and the swing."""
+def _fastest_of_all(tables: Tables) -> Figure:
+    """Draw the error over the time of the best settings of each group, for the path and the swing."""
     path = Axis("worst", "larger error of trajectory and torque [1]", log=True)
     swing = Axis("rotation_rad", "largest error of the rotation [rad]", log=True)
-    doubts = [
-        Level(row["rotation_rad"], words=f"uncertainty of the limit {row['theory']}", line=":", place=0.99)
+    unsure = {
+        row["theory"]: row["rotation_rad"]
         for row in records(tables["swing_theories"].query("what == 'uncertainty'"))
-    ]
+    }
+    doubts = [Level(level, words=theory, line=":", place=1.0) for theory, level in unsure.items()]
     panels = [
         _panel(tables, "statics", path, "Static path to 90° in 20 increments"),
         _panel(tables, "swings", swing, "Free swing of 0.05 s from 90°", *doubts),
     ]
-    title = "Each against the limit of its own theory; points: all settings tried; lines: the best of them"
-    return sheet(9.5, 4.6, [panels], title=title, legend=3)
+    return sheet(9.5, 4.2, [panels], legend=5)
 
 
 def _panel(tables: Tables, task: str, y: Axis, title: str, *marks: Level) -> Panel:
-    """Return the panel of a task: all settings that converged, and of each model and beam those that none
-    that is faster betters."""
-    rows, times = tables[task], tables[f"{task}_timings"]
-    rows = rows[rows["status"] == "converged"].merge(times, on=["model", "variant"]).sort_values("solve_s")
-    best = rows[rows[y.column] <= rows.groupby(["model", "group"])[y.column].cummin()]
-    return Panel(
-        Axis("solve_s", "time of the solver [ms]", factor=1e3, log=True),
-        y,
-        (
-            Curves(rows, LOOKS, by=("model", "group"), more=FAINT),
-            Curves(best, LOOKS, by=("model", "group")),
-            *marks,
-        ),
-        title=title,
-    )
+    """Return the panel of a task: of each group the settings that keep an error which none that is faster
+    keeps, as the table of ratios has them."""
+    rows = kept(tables[task], y.column).merge(tables[f"{task}_timings"], on=["model", "variant"])
+    rows = rows[rows["status"] == "converged"].sort_values("solve_s")
+    least = rows.groupby("group")[y.column].cummin()
+    best = rows[(rows[y.column] == least) & ~rows.duplicated(["group", y.column])]
+    time = Axis("solve_s", "time of the increments or steps [ms]", factor=1e3, log=True)
+    return Panel(time, y, (Curves(best, LOOKS, by="group"), *marks), title=title)
 
 
 #: Errors at which times are compared: of the path [1], and of the swing [rad].
@@ -221,6 +208,6 @@ STUDY = Study(
         ),
     ),
     varying=("statics_ratios", "swings_ratios"),
-    figures={"peers": _work_precision},
+    figures={"peers": _fastest_of_all},
     missing=missing,
 )

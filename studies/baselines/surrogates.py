@@ -4,7 +4,6 @@ The four-bar's link length and spring are fitted to the small-angle limit: its p
 not found.
 """
 
-import math
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -21,26 +20,21 @@ from studies.answers.settings import SplineSettings
 from studies.baselines import pseudo_rigid
 from studies.baselines.answer import SolvedPath
 from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
-from studies.baselines.constraint_model import CHAINED, chained_constraint_model, constraint_model, guide
+from studies.baselines.constraint_model import constraint_model
 from studies.baselines.own import spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
-from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.published.case import published
-from studies.published.problems import moved
 from studies.record.marks import Level
-from studies.record.panels import AMPLITUDE, ROTATION, TIME, Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, GREEN, LOOKS, ORANGE, PURPLE, SKY, YELLOW, Look
+from studies.record.panels import AMPLITUDE, ROTATION, Axis, Curves, Panel, sheet
+from studies.record.style import GREEN, LOOKS, ORANGE, PURPLE, YELLOW, Look
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
 SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
 #: Control points of the reference, and those whose difference to it is its uncertainty.
 REFINED, CHECK = 12, 10
-
-#: Published problem whose strips the constraint model solves as a guide, and its loads across [EI/L^2].
-GUIDE, LOADS = "parallelogram", (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
 
 #: States of a path: one a degree.
 STATES = 91
@@ -57,23 +51,20 @@ SWING = SplineSettings(control_points=8)
 
 
 def _paths() -> Answer:
-    """Return errors over the path (a row a model and degree), the reference's uncertainty and the times."""
+    """Return errors over the path (a row a model and degree) and the reference's uncertainty."""
     problem = named_case()
     turns = np.linspace(0.0, problem.rotation, STATES)
     limit, near = (spline.static_path(problem, turns, control_points=n) for n in (REFINED, CHECK))
-    paths = {name: each.static_path(problem, turns).timed(9) for name, each in SURROGATES.items()}
+    paths = {name: each.static_path(problem, turns) for name, each in SURROGATES.items()}
     fine = replace(problem, increments=STATES - 1)
     beside = {name: answer_static(fine, formulations.SETTINGS[name]) for name in SPLINES}
     found = [_errors(name, path, limit) for name, path in (paths | beside).items()]
     uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
-    paths[spline.model] = spline.static_path(problem, turns).timed(9)
-    task = f"path of {STATES - 1} increments"
     return {
         "errors": pd.concat(found),
         "reference": [
             {"quantity": name, "unit": "1", "uncertainty": value} for name, value in uncertainty.items()
         ],
-        "timings": [{"model": name, "task": task, "solve_s": path.solve_s} for name, path in paths.items()],
     }
 
 
@@ -114,21 +105,19 @@ def _first_above(rotation: Array, error: Array, level: float) -> float:
 
 
 def _released() -> Answer:
-    """Return the motions from the end of the path, the reference's uncertainty and the times."""
+    """Return the motions from the end of the path and the reference's uncertainty."""
     problem = named_case()
     limit, check = (
         formulations.sampled(formulations.resolved(each), formulations.INSTANTS)
         for each in (SplineSettings(control_points=10), SWING)
     )
-    motions, times = [_motion("reference", limit.rotation, limit)], []
+    motions = [_motion("reference", limit.rotation, limit)]
     for name, each in SURROGATES.items():
-        motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP).timed(9)
+        motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP)
         motions.append(_motion(name, np.interp(limit.time, motion.time, motion.rotation), limit))
-        task = f"swing of {DURATION:g} s in {motion.work['steps']} steps"
-        times.append({"model": name, "task": task, "solve_s": motion.solve_s})
     apart = float(np.abs(check.rotation - limit.rotation).max())
     uncertainty = {"quantity": "rotation", "unit": "rad", "uncertainty": apart}
-    return {"motion": pd.concat(motions), "reference": uncertainty, "timings": times}
+    return {"motion": pd.concat(motions), "reference": uncertainty}
 
 
 def _motion(name: str, rotation: Array, limit: Swing) -> pd.DataFrame:
@@ -151,27 +140,6 @@ def _swung(part: float) -> Answer:
     return {"swings": rows}
 
 
-def _guide_shape() -> dict[str, float]:
-    """Return the length of the guide's strips [m], and over it their thickness and distance [1]."""
-    one, other = published(GUIDE).design.strips
-    assert one.thickness is not None
-    apart = math.dist(one.start, other.start) / one.length
-    return {"thickness": one.thickness / one.length, "apart": apart, "length": one.length}
-
-
-def _guided(load: float) -> Answer:
-    """Return the displacement of a parallelogram under a load across it [EI/L^2], and that of its beams."""
-    shape = _guide_shape()
-    limit = np.array(moved(GUIDE, "spline", "beam", load)) / (shape["length"], shape["length"], 1.0)
-    rows = []
-    for model, count in ((constraint_model.model, 1), (chained_constraint_model.model, CHAINED)):
-        place = guide(shape["apart"], 1.0 / shape["thickness"], count).pushed(np.array([0.0, load]))
-        for quantity, found, known in zip(("displacement_x", "displacement_y"), place, limit, strict=False):
-            row = {"model": model, "load": load, "quantity": quantity, "found": found, "reference": known}
-            rows.append({**row, "error": found / known - 1.0})
-    return {"guide": rows}
-
-
 def _parameters(problem: Problem) -> list[dict[str, Any]]:
     """Return what the surrogates were made with, and whether published or fitted."""
     rigidity = problem.youngs_modulus * problem.second_moment_of_area / problem.length
@@ -185,7 +153,6 @@ def _parameters(problem: Problem) -> list[dict[str, Any]]:
         (four_bar, "link length over L", pseudo_rigid.link_length(problem), fitted),
         (four_bar, "spring over EI/L", pseudo_rigid.spring(problem) / rigidity, fitted),
         (constraint_model, "beams a strip", 1, "published"),
-        (chained_constraint_model, "beams a strip", CHAINED, "chosen"),
     ]
     columns = ("parameter", "value", "origin")
     return [{"model": each.model, **dict(zip(columns, row, strict=True))} for each, *row in found]
@@ -208,7 +175,6 @@ MODELS = {
     "pin joint": Look(label="pin joint", colour=PURPLE),
     "four-bar": Look(label="four-bar (fitted)", colour=GREEN),
     "beam constraint model": Look(label="beam constraint model", colour=YELLOW),
-    "chained constraint model": Look(label="the same, chained", colour=SKY),
 }
 DRAWN = {name: replace(LOOKS[name], line="--", marker="") for name in SPLINES}
 #: The smallest and the largest error that is drawn.
@@ -216,11 +182,10 @@ ERRORS = (1e-6, 30.0)
 
 
 def _figure(tables: Tables) -> Figure:
-    """Draw the static errors over the rotation (above), frequencies and motion (below)."""
-    above = [_static(tables["errors"], quantity) for quantity in QUANTITIES]
-    above[0] = replace(above[0], title="Static path to 90°")
-    below = [_frequencies(tables["swings"]), *_motions(tables["motion"])]
-    return sheet(9.5, 6.4, [above, below], legend=4)
+    """Draw the static errors over the rotation, and the shift of the frequency over the amplitude."""
+    path, torque, stiffness = (_static(tables["errors"], quantity) for quantity in QUANTITIES)
+    below = [stiffness, _frequencies(tables["swings"])]
+    return sheet(9.5, 6.4, [[replace(path, title="Static path to 90°"), torque], below], legend=4)
 
 
 def _static(rows: pd.DataFrame, quantity: str) -> Panel:
@@ -245,32 +210,11 @@ def _frequencies(rows: pd.DataFrame) -> Panel:
     )
 
 
-def _motions(rows: pd.DataFrame) -> tuple[Panel, Panel]:
-    """Return the rotation and its difference to the refined spline over time."""
-    looks = {"reference": Look(label="refined spline", colour=BLACK)} | MODELS
-    label = "difference to the refined spline [°]"
-    return (
-        Panel(
-            TIME,
-            replace(ROTATION, label="rotation [°]", ticks=range(-90, 91, 45)),
-            (Curves(rows, looks, by="model"),),
-            title="Released at 90°",
-        ),
-        Panel(
-            TIME,
-            replace(ROTATION, column="difference_rad", label=label, ticks=range(-180, 181, 60)),
-            (Curves(rows, MODELS, by="model"),),
-        ),
-    )
-
-
 STUDY = Study(
-    cases=(TABLE_1, f"published/cases/{GUIDE}"),
     parts=(
-        Part(ask=_paths, alone=True),
-        Part(ask=_released, alone=True),
+        Part(ask=_paths),
+        Part(ask=_released),
         Part(at=lambda: AMPLITUDES, ask=_swung),
-        Part(at=lambda: LOADS, ask=_guided),
         Part(ask=lambda: {"parameters": _parameters(named_case())}),
     ),
     made={"thresholds": _thresholds},

@@ -54,7 +54,7 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     if isinstance(problem.design, Problem):
         found = _of_pivot(problem.design, SETTINGS[model], value)
     elif value.quantity in AXES:
-        found = moved(name, model, answer, value.load)[AXES[value.quantity]]
+        found = _moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
         arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
@@ -68,7 +68,7 @@ def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
 
 
 @cache
-def moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
+def _moved(name: str, model: str, answer: str, load: float) -> tuple[float, ...]:
     """Return how far the body moves under a load, x, y [m] and its turn [rad]; NaN where the path stops."""
     frame = published(name).frame(load, answer)
     response = answer_static(frame.design, SETTINGS[model])

@@ -1,1 +1,1 @@
-"""What accuracy costs: error against time and against work that does not depend on the machine."""
+"""What accuracy costs: error against time, and what a user waits for."""

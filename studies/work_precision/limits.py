@@ -1,4 +1,4 @@
-"""The limit that each theory tends to, and the errors and work of what models answer.
+"""The limit that each theory tends to, and the errors and counters of what models answer.
 
 `path_limits` and `swing_limits` are those of the comparison with other codes.
 """
@@ -35,15 +35,15 @@ from studies.cases.problem import Problem
 from studies.kinds import Array
 from studies.paper import formulations
 
-#: Names of columns of work in the counters of a baseline, where they differ.
-THEIRS = {"iterations": "newton_iterations"}
+#: Names of columns in the counters of a model, where they differ.
+THEIRS = {"iterations": "newton_iterations", "evaluations": "force_evaluations"}
 #: Errors of a path and of a motion, as columns of tables.
 PATH_ERRORS = [f"{kind}_{name}" for kind in ("error", "end") for name in QUANTITIES]
 MOTION_ERRORS = ("error_rotation_rad", "end_rotation_rad", "error_frequency")
 
 
 def counted(columns: Iterable[str], work: Mapping[str, float]) -> dict[str, float]:
-    """Return the columns of work from a model's counters, NaN of those that it does not count."""
+    """Return the columns of a model's counters, NaN of those that it does not count."""
     return {name: float(work.get(name, work.get(THEIRS.get(name, ""), math.nan))) for name in columns}
 
 

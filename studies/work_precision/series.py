@@ -1,4 +1,4 @@
-"""The models of the work-precision diagrams: a series of settings each, from coarse to fine.
+"""The models of the work-precision tables: a series of settings each, from coarse to fine.
 
 In motion all have strips without shear and without rotary inertia of their sections: two theories would be
 3e-2 rad apart after 0.05 s, more than any mesh here.
@@ -9,35 +9,11 @@ from studies.baselines.openseespy import openseespy_frame
 from studies.baselines.own import elements, spline
 from studies.baselines.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.baselines.variant import Baseline, Variant, grid
-from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW, Look
 
 SPLINE, ITSELF = spline.model, "spline, by itself"
 ELEMENTS, SHEAR = elements.model, "finite elements with shear"
 IMPLICIT = "spline, energy-consistent"
 COUNTS = range(4, 13)
-
-#: Looks of the series of paths, those of motions, and those of the others in both.
-OTHERS = {
-    "linear pivot": Look(label="linear closed form", colour=GREY, line="", marker="P"),
-    "pin joint": Look(label="pseudo-rigid: pin joint", colour=YELLOW, line="", marker="*"),
-    "four-bar": Look(label="pseudo-rigid: four-bar", colour=RED, line="", marker="X"),
-    "exudyn ancf": Look(label="Exudyn, ANCF cable", colour=PURPLE, marker="^"),
-    "exudyn exact": Look(label="Exudyn, exact beam", colour=PURPLE, line=":", marker="v"),
-    "openseespy frame": Look(label="OpenSees, corotational", colour=ORANGE, line="--", marker="<"),
-}
-LOOKS = {
-    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
-    "spline, one axial mode more": Look(label="spline, m = n - 1", colour=SKY, line=":", marker="D"),
-    "B-spline": Look(label="cubic B-spline", colour=GREEN, line="-.", marker="o"),
-    "spline as the paper": Look(label="spline, as the paper", colour=RED, line="--", marker="o"),
-    ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
-    SHEAR: Look(label="finite elements, shear", colour=GREY, line="--", marker="s"),
-} | OTHERS
-MOVING_LOOKS = {
-    SPLINE: Look(label="spline, leapfrog", colour=BLUE, marker="x"),
-    IMPLICIT: Look(label="spline, energy-consistent", colour=SKY, line=":", marker="D"),
-    ELEMENTS: Look(label="finite elements, central difference", colour=BLACK, marker="s"),
-} | OTHERS
 
 #: Elements a strip of the paths of the others; what has none is in closed form.
 MESHES: dict[Baseline, dict[str, tuple[int, ...]]] = {

@@ -8,17 +8,13 @@ import json
 import subprocess
 import sys
 import time
-from typing import Any
-
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.baselines.compared import spread
 from studies.cases.problem import TABLE_1, named_case
-from studies.engine import Answer, Part, Study, Tables
+from studies.engine import Answer, Part, Study
 from studies.record.source import ROOT
-from studies.record.style import BLACK, BLUE, page
 
 #: Label -> settings of the least number that keep path and torque to 1e-4, and the words that ask for them.
 MODELS: dict[str, tuple[Settings, tuple[str, ...]]] = {
@@ -73,24 +69,7 @@ def _call(settings: Settings) -> tuple[float, float]:
     return time.perf_counter() - begin, answer.solve_s
 
 
-def _figure(tables: Tables) -> Figure:
-    """Draw median and quartiles of every wait, by model."""
-    drawn = page(6.3, 2.2)
-    panel = drawn.subplots()
-    rows: Any = tables["waits_of_time"]
-    kinds = list(dict.fromkeys(rows["what"]))
-    for (label, colour), shift in zip(zip(MODELS, (BLUE, BLACK), strict=True), (-0.12, 0.12), strict=True):
-        mine = rows[rows["model"] == label].set_index("what").loc[kinds]
-        places = [place + shift for place in range(len(kinds))]
-        spans = [mine["solve_s"] - mine["low_s"], mine["high_s"] - mine["solve_s"]]
-        panel.errorbar(mine["solve_s"], places, xerr=spans, fmt="o", color=colour, label=label, capsize=2)
-    panel.set(xscale="log", xlabel="time [s]", yticks=range(len(kinds)), yticklabels=kinds)
-    panel.invert_yaxis()
-    panel.legend()
-    return drawn
-
-
 STUDY = Study(
     parts=(Part(at=lambda: tuple(MODELS), ask=_waited, alone=True),),
-    figures={"waits": _figure},
+    figures={},
 )

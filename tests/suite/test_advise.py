@@ -17,16 +17,15 @@ from studies.errors import BadInput
 from studies.work_precision import advice, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
 from studies.work_precision.limits import path_errors
-from studies.work_precision.work import WORK
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
 
-def rows(errors, *, names="abc", costs=None):
-    """A table of one series a letter, each with its errors from coarse to fine."""
+def rows(errors, *, names="abc", slow=1.0):
+    """A table of one series a name, each with its errors from coarse to fine; all but the first are slow."""
     table = [
         {"series": name, "family": "all", "setting": f"{name}{rank}", "rank": rank, "error_x": error}
-        | {"cost": (costs or {}).get(name, 1.0) * 2.0**rank, "solve_s": 2.0**rank, "message": ""}
+        | {"solve_s": (1.0 if name == names[0] else slow) * 2.0**rank, "message": ""}
         for name, values in zip(names, errors, strict=False)
         for rank, error in enumerate(values)
     ]
@@ -41,13 +40,13 @@ def test_an_error_by_luck_does_not_count():
 
 
 def test_cheapest_at_equal_error():
-    """At each error the cheapest setting of every series is found, and its cost over the baseline's."""
-    table = rows([[1e-1, 1e-3, 1e-5], [1e-2, 1e-3]], costs={"b": 10.0})
-    found = cheapest(table, columns=["error_x"], cost="cost", rank="rank", targets=(1e-2, 1e-4), baseline="a")
+    """At each error the fastest setting of every series is found, and its time over the spline's."""
+    table = rows([[1e-1, 1e-3, 1e-5], [1e-2, 1e-3]], names=("spline", "b"), slow=10.0)
+    found = cheapest(table, columns=["error_x"], rank="rank", targets=(1e-2, 1e-4))
     loose, tight = found.iloc[:2].set_index("series"), found.iloc[2:].set_index("series")
-    assert (loose.loc["a", "setting"], loose.loc["b", "setting"]) == ("a1", "b0")
+    assert (loose.loc["spline", "setting"], loose.loc["b", "setting"]) == ("spline1", "b0")
     assert loose.loc["b", "ratio"] == 10.0 / 2.0
-    assert tight.loc["a", "setting"] == "a2"
+    assert tight.loc["spline", "setting"] == "spline2"
     assert tight.loc["b", "setting"] == "" and math.isnan(tight.loc["b", "ratio"])
 
 
@@ -71,7 +70,7 @@ def exact_path(problem, offset=0.0):
         max_stress=turns * (1.0 + 2.0 * offset),
         solve_s=1e-3 / max(offset, 1e-9),
         wall_s=1.0,
-        work=dict.fromkeys(WORK, 1.0),
+        work={},
     )
 
 
