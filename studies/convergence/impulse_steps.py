@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from studies.convergence.impulse_tables import PAPER_STEP, PARTS
 from studies.engine import Claim, Study, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLUE, GREEN, GREY, ORANGE, RED, Look
@@ -186,5 +187,6 @@ STUDY = Study(
             most=1.0,
         ),
     ),
+    digits={"contraction": Digits(relative=1e-3)},
     figures={"impulse_step_size": _step_size, "impulse_limits": _limits_and_sweeps},
 )

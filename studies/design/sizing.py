@@ -19,6 +19,7 @@ from studies.design.evaluate import CENTRE_SHIFT, VARIATION, Answers, Measured, 
 from studies.design.optimise import Outcome, best, numbered, search
 from studies.design.programme import gradient_error
 from studies.engine import Answer, Part, Study
+from studies.record.digits import Digits
 from studies.record.progress import measure, silent
 
 #: Control points of what is timed, and how often it is.
@@ -259,6 +260,11 @@ STUDY = Study(
         Part(at=lambda: TIMED, ask=_timed, alone=True),
     ),
     claims=margins.CLAIMS,
+    varying=("history",),
+    digits={
+        **dict.fromkeys(("violation", "kkt_residual", "paths_solved")),
+        **dict.fromkeys(("checks.error", "resized.error"), Digits(relative=1e-3, floor=1e-7)),
+    },
     figures={
         "sizing": lambda tables: figures.designs(tables, questions.TABLE_ONE),
         "sizing_spring_steel": lambda tables: figures.designs(tables, questions.SPRING_STEEL),

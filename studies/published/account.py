@@ -31,6 +31,7 @@ from studies.cases.problem import TABLE_1, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.published.case import BEAM, CLAMPED_WIDTH, SHEARED, printed, published
 from studies.published.solids import guide_compliance, linear_factor, solid_factor
+from studies.record.digits import Digits
 from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Look
@@ -134,6 +135,10 @@ PLATE = Study(
             most=LACKING,
         ),
     ),
+    digits={
+        "change_halved": Digits(floor=5e-7),
+        **dict.fromkeys(("difference", "findings.value"), Digits(floor=1e-8)),
+    },
     figures={"plate_factors": _plate_figure},
 )
 """What a beam's clamps leave out: the stiffness of a strip as a plate, over its width and Poisson ratio."""

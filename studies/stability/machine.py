@@ -26,6 +26,7 @@ from studies.cases.design import named_design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import TABLE_1, named_case
 from studies.engine import Answer, Part, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
@@ -126,6 +127,7 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
 
 LONG_RUN = family.study(
     Part(at=PIECES.items, ask=_pieces),
+    digits={"growth": Digits(floor=1.0)},
     figures={"stability_long_run": _drift_figure},
 )
 """A million steps of free swing without damping: energy, constraints and memory."""

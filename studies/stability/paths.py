@@ -16,6 +16,7 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Part, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
@@ -229,6 +230,7 @@ SLENDERNESS = family.study(
     Part(at=_slender_cases, ask=family.outcomes_of),
     # the approach of six control points to the inextensible strip
     Part(ask=lambda: {"limit": _limit_table(family.PATHS[family.SIX])}),
+    digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
     figures={
         "stability_slenderness": lambda tables: maps.outcome_map(
             tables["outcomes"],

@@ -23,6 +23,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine import Answer, Part, Row, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
@@ -263,6 +264,7 @@ def _outcomes_of_ratio(case: str, kind: str, factor: float, design: Design) -> A
 
 RATIOS = family.study(
     Part(at=_ratios, ask=_outcomes_of_ratio),
+    digits={"outcomes.error": Digits(relative=0.05, floor=1e-9, rows="outcome == 'right'")},
     figures={
         "stability_ratios": lambda tables: maps.listed(
             tables["outcomes"],
