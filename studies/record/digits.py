@@ -79,11 +79,13 @@ def _reproduced(stored: pd.DataFrame, found: pd.DataFrame, name: str, digits: Di
 
 
 def as_csv(table: pd.DataFrame) -> bytes:
-    """Return `table` as CSV: 8 significant digits, rows sorted by the columns from left to right."""
-    ordered = table.sort_values(list(table.columns), kind="stable")
-    text = io.StringIO()
-    ordered.to_csv(text, index=False, float_format=f"%.{WRITTEN}g", lineterminator="\n")
-    return text.getvalue().encode()
+    """Return `table` as CSV: 8 significant digits, rows sorted by the columns from left to right as written."""
+    written = read_csv(_text(table)).sort_values(list(table.columns), kind="stable")
+    return _text(table.iloc[written.index])
+
+
+def _text(table: pd.DataFrame) -> bytes:
+    return table.to_csv(index=False, float_format=f"%.{WRITTEN}g", lineterminator="\n").encode()
 
 
 def read_csv(content: bytes) -> pd.DataFrame:

@@ -47,9 +47,7 @@ def test_modules_are_reached_by_imports(tmp_path):
     "changed",
     [
         {"studies/study.py": FILES["studies/study.py"].replace("What it shows", "Something else")},
-        {
-            "studies__part": "# a remark\nimport   spline_model.deep\n\n\nVALUE = (spline_model.deep.f())  # x\n"
-        },
+        {"studies/part.py": "# a remark\nimport spline_model.deep\n\n\nVALUE = (spline_model.deep.f())\n"},
         {"studies/part.py": FILES["studies/part.py"] + '"""What it is."""\n'},
         {"spline_model/deep.py": FILES["spline_model/deep.py"].replace("():\n", '():\n    """Say."""\n')},
         {"studies/apart.py": "VALUE = 4\n"},

@@ -1,21 +1,19 @@
-"""The engine of studies: tables, findings, points beside each other, and on from where it was interrupted."""
+"""The engine of studies: tables, findings, and points beside each other."""
 
 from concurrent.futures import ThreadPoolExecutor
 
 import pandas as pd
 import pytest
 
-from studies.asking import Asking, Kept, answered, processes, whole
+from studies.asking import Asking, answered, processes, whole
 from studies.engine import Claim, Part, Study, finding
 
 ASKED: list[int] = []
 
 
 def squared(number):
-    """A row and its neighbour in a table of its own; 3 has no answer."""
+    """A row and its neighbour in a table of its own."""
     ASKED.append(number)
-    if number == 3:
-        raise ArithmeticError("three")
     return {"squares": {"number": number, "square": number**2}, "next": [{"number": number + 1}]}
 
 
@@ -78,20 +76,6 @@ def test_progress_is_told_of_every_point():
     told = []
     answered(study(), lambda *done: told.append(done))
     assert told == [(0, 2), (1, 2), (2, 2)]
-
-
-def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
-    """Points that were answered are not asked again, and a last answer that was cut off is."""
-    kept = Kept(tmp_path / "kept.pickle")
-    with pytest.raises(ArithmeticError):
-        answered(study(numbers=(1, 2, 3)), kept=kept)
-    file = tmp_path / "kept.pickle"
-    file.write_bytes(file.read_bytes()[:-5])
-    ASKED.clear()
-    assert len(answered(study(numbers=(1, 2, 4)), kept=kept)["squares"]) == 3
-    assert ASKED == [2, 4]
-    kept.forget()
-    assert not kept.read()
 
 
 def test_what_must_be_alone_comes_after_all_others():
