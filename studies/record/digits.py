@@ -79,7 +79,7 @@ def _reproduced(stored: pd.DataFrame, found: pd.DataFrame, name: str, digits: Di
 
 
 def as_csv(table: pd.DataFrame) -> bytes:
-    """Return `table` as CSV: 8 significant digits, rows sorted by the columns from left to right as written."""
+    """Return `table` as CSV: 8 significant digits, rows sorted by the columns as written, from the left."""
     written = read_csv(_text(table)).sort_values(list(table.columns), kind="stable")
     return _text(table.iloc[written.index])
 

@@ -39,7 +39,7 @@ SETTINGS: Any = {
     "svg.fonttype": "path",
     # a line may leave out points that move it by less than this [1/72 inch]
     "path.simplify_threshold": 0.8,
-    "savefig.dpi": 180,
+    "savefig.dpi": 120,
 }
 
 

@@ -30,7 +30,7 @@ def test_default_is_never_wrong(family):
     wrong = mine[mine["outcome"] == "wrong"]
     assert wrong.empty, wrong[["case", "error", "reason"]].to_string()
     refused = mine[mine["outcome"].isin(("refused", "bad input"))]
-    assert (refused["reason"].str.len() > 10).all()
+    assert (refused["reason"].astype(str).str.len() > 10).all()
     assert (mine["outcome"] == "right").sum() > 0.3 * len(mine)  # a model that refuses all is no use
 
 
