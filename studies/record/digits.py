@@ -57,13 +57,14 @@ def differing(
     Words, truth values and whole numbers must be equal, other numbers within `NUMBERS`, unless `digits` or
     `BY_NAME` has an entry for the column.
     """
-    known = BY_NAME | digits
+    known = {**BY_NAME, **digits}
     one, other = read_csv(as_csv(stored)), read_csv(as_csv(found))
     if list(one) != list(other):
-        return sorted(set(one) ^ set(other)) or ["order of columns"]
+        return sorted(map(str, set(one) ^ set(other))) or ["order of columns"]
     if len(one) != len(other):
         return [f"{len(other)} rows, stored {len(one)}"]
-    tolerances = {name: known.get(f"{table}.{name}", known.get(name, NUMBERS)) for name in one}
+    names = map(str, one)
+    tolerances = {name: known.get(f"{table}.{name}", known.get(name, NUMBERS)) for name in names}
     return [name for name, own in tolerances.items() if own and not _reproduced(one, other, name, own)]
 
 
