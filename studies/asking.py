@@ -13,7 +13,6 @@ import pandas as pd
 
 from studies.engine import Answer, Part, Study
 from studies.kinds import Progress
-from studies.record.progress import silent
 from studies.registry import study_at
 
 #: Part and place of a point in a study.
@@ -50,17 +49,7 @@ class Asking:
         return self.study.tables(self.found[key][0] for key in self.points)
 
 
-def answered(study: Study, progress: Progress = silent) -> dict[str, pd.DataFrame]:
-    """Return the tables of one study, its points asked here, one after the other."""
-    asking = Asking(study)
-    for _ in whole({"": asking}, progress):
-        pass
-    return asking.tables()
-
-
-def whole(
-    askings: Mapping[str, Asking], progress: Progress = silent, pool: Executor | None = None
-) -> Iterator[str]:
+def whole(askings: Mapping[str, Asking], progress: Progress, pool: Executor | None = None) -> Iterator[str]:
     """Ask all points, and yield each study as soon as it is whole.
 
     Args:

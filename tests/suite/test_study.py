@@ -5,8 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pandas as pd
 import pytest
 
-from studies.asking import Asking, answered, processes, whole
+from studies.asking import Asking, processes, whole
 from studies.engine import Claim, Part, Study, finding
+from studies.record.progress import silent
 
 ASKED: list[int] = []
 
@@ -20,6 +21,13 @@ def squared(number):
 def study(numbers=(1, 2), **given):
     """Squares, with what follows from them."""
     return Study(cases=(), parts=(Part(at=lambda: numbers, ask=squared),), figures={}, **given)
+
+
+def answered(declared, progress=silent):
+    """The tables of a study, its points asked one after the other."""
+    asking = Asking(declared)
+    assert [*whole({"": asking}, progress)] == [""]
+    return asking.tables()
 
 
 STUDY = study(numbers=(1, 2, 4))
@@ -84,7 +92,7 @@ def test_what_must_be_alone_comes_after_all_others():
     askings = {place: Asking(TWO_PARTS), __name__: Asking(STUDY)}
     ASKED.clear()
     with ThreadPoolExecutor(1) as pool:
-        assert [*whole(askings, pool=pool)] == [__name__, place]
+        assert [*whole(askings, silent, pool)] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
     assert all(asking.seconds > 0.0 for asking in askings.values())
 
@@ -94,7 +102,7 @@ def test_processes_give_the_same_tables():
     """Points answered beside each other stand where they do one after the other."""
     asking = Asking(STUDY)
     with processes(2) as pool:
-        assert [*whole({__name__: asking}, pool=pool)] == [__name__]
+        assert [*whole({__name__: asking}, silent, pool)] == [__name__]
     beside = asking.tables()
     for name, table in answered(STUDY).items():
         pd.testing.assert_frame_equal(beside[name], table)
