@@ -1,11 +1,12 @@
 # `make` alone lists the targets. Everything happens in .venv, which `make setup` creates.
 .DEFAULT_GOAL := help
-.PHONY: help setup figures results report interactive test test-all mutate bench docs lint size clean
+.PHONY: help setup figures results verify report interactive test test-all mutate bench docs lint size clean
 
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/installed
 EXTRA := .venv/interactive
+STUDIES := paper convergence
 
 # One thread: the matrices are small, and timings must not depend on what else runs.
 export OMP_NUM_THREADS := 1
@@ -32,6 +33,9 @@ figures: $(STAMP)  ## compute the paper's figures and the convergence studies an
 results: $(STAMP)  ## compute all studies anew (10 minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
+
+verify: $(STAMP)  ## compute STUDIES="paper convergence" again and compare them with the stored results
+	$(BIN)/python -m studies verify $(STUDIES) --fresh-too
 
 report: $(STAMP)  ## compile report/validation.pdf from the stored results
 	$(BIN)/python -m report.build

@@ -1,21 +1,18 @@
-"""Ask studies: points beside each other in other processes, and on from where it was interrupted."""
+"""Ask studies: points beside each other in other processes."""
 
 import os
-import pickle
 import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from functools import cache
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from studies.engine import Answer, Part, Study
 from studies.kinds import Progress
-from studies.record.progress import silent
 from studies.registry import study_at
 
 #: Part and place of a point in a study.
@@ -24,50 +21,19 @@ Key = tuple[int, int]
 Timed = tuple[Answer, float]
 
 
-class Kept:
-    """Answers kept in a file as they come, so that an interrupted study goes on from there."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        path.parent.mkdir(parents=True, exist_ok=True)
-
-    def read(self) -> dict[Key, Timed]:
-        """Return what is there; a last answer that was cut off is left out."""
-        found: dict[Key, Timed] = {}
-        if self._path.is_file():
-            with self._path.open("rb") as stream:
-                try:
-                    while True:
-                        key, answer = pickle.load(stream)
-                        found[key] = answer
-                except (EOFError, pickle.UnpicklingError):
-                    pass
-        return found
-
-    def add(self, key: Key, answer: Timed) -> None:
-        """Keep one more answer."""
-        with self._path.open("ab") as stream:
-            stream.write(pickle.dumps((key, answer)))
-
-    def forget(self) -> None:
-        """Remove all, once they are stored as tables."""
-        self._path.unlink(missing_ok=True)
-
-
 class Asking:
     """A study that is asked point by point.
 
     Attributes:
         study: the declaration.
         points: part and point, by their key, in the order of the answers.
-        found: the answers by now, those that were kept among them.
+        found: the answers by now.
     """
 
-    def __init__(self, study: Study, kept: Kept | None = None) -> None:
+    def __init__(self, study: Study) -> None:
         self.study = study
         self.points = _points(study)
-        self.found = kept.read() if kept else {}
-        self._kept = kept
+        self.found: dict[Key, Timed] = {}
 
     @property
     def seconds(self) -> float:
@@ -78,34 +44,13 @@ class Asking:
         """Return the points without an answer, and whether nothing may run beside them."""
         return {key: part.alone for key, (part, _) in self.points.items() if key not in self.found}
 
-    def note(self, key: Key, answer: Timed) -> None:
-        """Take and keep the answer of one point."""
-        self.found[key] = answer
-        if self._kept:
-            self._kept.add(key, answer)
-
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return the tables of the study, all points of which are answered."""
         return self.study.tables(self.found[key][0] for key in self.points)
 
-    def forget(self) -> None:
-        """Keep the answers no longer, once they are stored as tables."""
-        if self._kept:
-            self._kept.forget()
 
-
-def answered(study: Study, progress: Progress = silent, kept: Kept | None = None) -> dict[str, pd.DataFrame]:
-    """Return the tables of one study, its points asked here, one after the other."""
-    asking = Asking(study, kept)
-    for _ in whole({"": asking}, progress):
-        pass
-    return asking.tables()
-
-
-def whole(
-    askings: Mapping[str, Asking], progress: Progress = silent, pool: Executor | None = None
-) -> Iterator[str]:
-    """Ask all points that are open, and yield each study as soon as it is whole.
+def whole(askings: Mapping[str, Asking], progress: Progress, pool: Executor | None = None) -> Iterator[str]:
+    """Ask all points, and yield each study as soon as it is whole.
 
     Args:
         askings: by the place of their study, as of `study_at`, where other processes find it.
@@ -126,19 +71,16 @@ def whole(
         if pool and not alone
     }
     rest = dict(askings)
-    for place in [place for place, asking in rest.items() if not asking.open()]:
-        del rest[place]
-        yield place
     for future in as_completed(waiting):
         place, key = waiting[future]
-        askings[place].note(key, future.result())
+        askings[place].found[key] = future.result()
         tell()
         if not askings[place].open():
             del rest[place]
             yield place
     for place, asking in rest.items():
         for key in asking.open():
-            asking.note(key, _timed(*asking.points[key]))
+            asking.found[key] = _timed(*asking.points[key])
             tell()
         yield place
 

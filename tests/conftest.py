@@ -1,13 +1,11 @@
-"""For all tests: no kernel of a source which is gone, one hash a source, and what a refusal looks like."""
+"""For all tests: no kernel of a source which is gone, and what a refusal looks like."""
 
 import gc
-from collections.abc import Callable, Iterator
-from functools import cache
+from collections.abc import Callable
 
 import pytest
 
 from studies.__main__ import main
-from studies.record import store
 from studies.record.files import forget_stale
 
 
@@ -21,14 +19,6 @@ def pytest_collection_finish() -> None:
     """Keep what was imported and collected out of every later collection of garbage."""
     gc.collect()
     gc.freeze()
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _hashed_once() -> Iterator[None]:
-    """Every study's source is hashed once in a process: no test changes it."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(store, "source_hash", cache(store.source_hash))
-        yield
 
 
 @pytest.fixture

@@ -22,7 +22,8 @@ from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.stability.maps import lines
+from studies.registry import STUDIES
+from studies.stability.family import DEFAULT, OUTCOMES
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
 PAPER = "spline, {} control points, as the paper integrates it"
@@ -225,6 +226,19 @@ def _cost(row: Mapping[str, Any]) -> str:
     return f"{_time(row['peer_s'])} (× {ratio:g})"
 
 
+def _hard_cases(store: Store) -> Iterator[str]:
+    """Yield the counts of outcomes: a row a family, a column a model, "right / refused / wrong / bad input" a
+    cell."""
+    cells: dict[str, dict[Any, str]] = {}
+    for study in (each for each in STUDIES if each.startswith("stability/")):
+        counts = _stored(store, study, "counts").set_index("model")[list(OUTCOMES)]
+        cells[study.partition("/")[2]] = counts.astype(str).agg(" / ".join, axis=1).to_dict()
+    models = list(dict.fromkeys((DEFAULT, *(model for row in cells.values() for model in row))))
+    yield markdown_head("family", *models)
+    for family, row in cells.items():
+        yield f"| {family} | " + " | ".join(row.get(model, "") for model in models) + " |"
+
+
 def _time(seconds: float) -> str:
     return f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
 
@@ -241,7 +255,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "swings": _swings,
         "claims": _claims,
         "costs": _costs,
-        "hard cases": lines,
+        "hard cases": _hard_cases,
         "sized": _sized,
     },
     ROOT / "docs" / "cases.md": {name: _of_page(name) for name in PAGE},

@@ -5,19 +5,17 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from studies.asking import Asking, Kept, cores, processes, whole
+from studies.asking import Asking, cores, processes, whole
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
 from studies.engine import Study, Tables
 from studies.errors import BadInput
 from studies.record import style
+from studies.record.digits import differing
 from studies.record.progress import Bar
-from studies.record.source import ROOT, source_hash
-from studies.record.store import Store, same
+from studies.record.store import Store
 from studies.registry import STUDIES, selected, study_of
 
-#: Where the answers of interrupted studies by the present source are kept; not a result.
-KEPT = ROOT / ".cache" / "answers"
 DIFFERS = 1
 PROCESSES = Argument(
     "--processes N",
@@ -25,6 +23,7 @@ PROCESSES = Argument(
     whole_number(1),
     default=cores(),
 )
+FRESH_TOO = Argument("--fresh-too", "compute fresh results as well")
 
 
 @command(NAMES, RESULTS, PROCESSES)
@@ -35,10 +34,12 @@ def run(arguments: argparse.Namespace) -> int:
         python -m studies run paper convergence --processes 1
 
     A name is a study, its last part, a group of studies or "all". Tables and their provenance go to
-    results/data, figures to results/figures. A study that this machine cannot compute, for want of a
-    browser, a cluster or the other codes that it is about (pip install ".[peers]"), says so and keeps its
-    stored result. One that was interrupted goes on from there. Exit code 0: done; 2: bad input, for example
-    a folder that cannot be written to.
+    results/data, figures to results/figures. A stored table stays as it is if every number of the new one
+    is within its tolerance (docs/data.md). Figures are drawn if a table or the source changed, so that
+    another machine changes times only. A study that this machine cannot compute, for want of a browser, a
+    cluster or other codes (pip install ".[peers]"), is named and keeps its stored result. Each study is
+    stored as soon as it is computed. Exit code 0: done; 2: bad input, for example a folder that cannot be
+    written to.
     """
     store = Store(arguments.results)
     store.require_writable()
@@ -48,20 +49,24 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"{name}: left as it is: {reason}", file=sys.stderr)
         else:
             names.append(name)
-    for name, asking, bar in _whole(names, arguments.processes, keep=True):
-        study = asking.study
-        store.save_tables(
+    for name, asking, bar in _whole(names, arguments.processes):
+        study, tables = asking.study, asking.tables()
+        stored = _stored(store, name)
+        other = _differing(stored, tables, study)
+        kept = {each: stored[each] for each in stored if each not in other and not study.varies(each)}
+        changed = store.save_tables(
             name,
-            asking.tables(),
+            {**tables, **kept},
             module=STUDIES[name],
             cases=study.cases,
             command=f"python -m studies run {name}",
             elapsed=asking.seconds,
         )
-        asking.forget()
-        with style.applied():
-            store.save_figures(name, study.draw(store.load_tables(name)))
-        bar.say(f"{name}: {asking.seconds:.1f} s: {store.data(name)}, figures in {store.figures}")
+        if changed:
+            with style.applied():
+                store.save_figures(name, study.draw(store.load_tables(name)))
+        said = f"changed: {', '.join(other.values())}" if stored and other else "stored"
+        bar.say(f"{name}: {asking.seconds:.1f} s: {said}: {store.data(name)}, figures in {store.figures}")
     return 0
 
 
@@ -76,47 +81,43 @@ def draw(arguments: argparse.Namespace) -> int:
     """
     store = Store(arguments.results)
     for name in selected(arguments.names):
-        try:
-            tables = store.load_tables(name)
-        except FileNotFoundError:
-            raise BadInput(
-                f"{name}: got no stored tables, expected those of `python -m studies run {name}`"
-            ) from None
+        if not (tables := _stored(store, name)):
+            raise BadInput(f"{name}: got no stored tables, expected those of `python -m studies run {name}`")
         with style.applied():
             store.save_figures(name, study_of(name).draw(tables))
         print(f"{name}: figures in {store.figures}", file=sys.stderr)
     return 0
 
 
-@command(NAMES, RESULTS, PROCESSES)
+@command(NAMES, RESULTS, PROCESSES, FRESH_TOO)
 def verify(arguments: argparse.Namespace) -> int:
-    """Compute stale studies anew and call them fresh where every table comes out as it is stored.
+    """Compute stale studies again and mark them as fresh if every table is reproduced.
 
         python -m studies verify convergence/elements
+        python -m studies verify paper convergence --fresh-too
 
-    A name is a study, its last part, a group of studies or "all". Tables that differ from run to run, as
-    times do, are not compared, and columns that other work on the machine changes only to the digits that the
-    study states. Nothing is drawn: only the note of the source that the results are of is renewed. A study
-    with another table is named and keeps what is stored. Exit code 0: all that could be
-    computed here is fresh; 1: a table differs; 2: bad input.
+    A name is a study, its last part, a group of studies or "all". Numbers are compared within the tolerance
+    of their column (docs/data.md), words and whole numbers exactly, and tables that differ from run to run,
+    such as times, not at all. No table and no figure is written, only the hash of the source in the
+    provenance. A study that differs is named with its columns and keeps what is stored. Exit code 0: all
+    that could be computed here is fresh; 1: a study differs; 2: bad input.
     """
-    store, code, stale = Store(arguments.results), 0, []
+    store, code, asked = Store(arguments.results), 0, []
     for name in selected(arguments.names):
         study = study_of(name)
         said = study.missing() or store.state(name, module=STUDIES[name], cases=study.cases).kind
-        if said == "stale":
-            stale.append(name)
+        if said == "stale" or (said == "fresh" and arguments.fresh_too):
+            asked.append(name)
         else:
             print(f"{name}: {said}", file=sys.stderr)
-    for name, asking, bar in _whole(stale, arguments.processes):
+    for name, asking, bar in _whole(asked, arguments.processes):
         known: dict[str, Any] = {"module": STUDIES[name], "cases": asking.study.cases}
-        differing = _differing(store.load_tables(name), asking.tables(), asking.study)
-        if differing:
-            code = DIFFERS
-            bar.say(f"{name}: differs: {', '.join(differing)}")
-        else:
+        other = _differing(store.load_tables(name), asking.tables(), asking.study)
+        if not other:
             store.renew(name, **known)
-            bar.say(f"{name}: the same, {store.state(name, **known).kind}")
+        kind = store.state(name, **known).kind
+        bar.say(f"{name}: " + (f"differs: {', '.join(other.values())}" if other else f"the same, {kind}"))
+        code = DIFFERS if other or kind != "fresh" else code
     return code
 
 
@@ -137,20 +138,32 @@ def status(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _whole(names: list[str], count: int, *, keep: bool = False) -> Iterator[tuple[str, Asking, Bar]]:
+def _whole(names: list[str], count: int) -> Iterator[tuple[str, Asking, Bar]]:
     """Yield studies as their points are all answered, by so many processes, while a bar shows how far they
-    are; answers are kept from an interrupted run to the next where asked for."""
-    askings, names_at = {}, {STUDIES[name]: name for name in names}
-    for place, name in names_at.items():
-        file = KEPT / f"{name.replace('/', '_')}_{source_hash(place)[:16]}.pickle"
-        askings[place] = Asking(study_of(name), Kept(file) if keep else None)
+    are."""
+    names_at = {STUDIES[name]: name for name in names}
+    askings = {place: Asking(study_of(name)) for place, name in names_at.items()}
     with processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
         for place in whole(askings, bar, pool):
             yield names_at[place], askings[place], bar
 
 
-def _differing(stored: Tables, found: Tables, study: Study) -> list[str]:
-    """Return the tables that are not as stored, of those that do not differ from run to run."""
-    names = [name for name in {**stored, **found} if not study.varies(name)]
-    both = {name for name in stored if name in found}
-    return [name for name in names if name not in both or not same(stored[name], found[name], study.digits)]
+def _stored(store: Store, name: str) -> Tables:
+    """Return the stored tables of a study; none if it was never run."""
+    try:
+        return store.load_tables(name)
+    except FileNotFoundError:
+        return {}
+
+
+def _differing(stored: Tables, found: Tables, study: Study) -> dict[str, str]:
+    """Return the tables that are not reproduced, each with its columns, of those that are to be compared."""
+    others: dict[str, str] = {}
+    for name in sorted({*stored, *found}):
+        if study.varies(name):
+            continue
+        if name not in stored or name not in found:
+            others[name] = f"{name} (only {'stored' if name in stored else 'computed'})"
+        elif columns := differing(name, stored[name], found[name], study.digits):
+            others[name] = f"{name} ({', '.join(columns)})"
+    return others

@@ -21,6 +21,7 @@ from studies.convergence.sweep import reaching, spline_row
 from studies.engine import Answer, Claim, Part, Study, Tables, percent
 from studies.paper import formulations
 from studies.paper.formulations import refined
+from studies.record.digits import Digits
 from studies.record.marks import Doubt
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Panel, sheet
 from studies.record.style import BASES, BLACK, COUNT_COLOURS, STRETCH, Look, page
@@ -242,6 +243,7 @@ SLIDE_STUDY = Study(
             ("motion", "error_rotation_rad", "rotation in motion"),
         )
     ),
+    digits={"findings.value": Digits(relative=1e-5)},  # places of a search
     figures={"slide_stiffness": _slides},
 )
 """Errors against the slide stiffness: that of the strains which the axial-force modes do not see.

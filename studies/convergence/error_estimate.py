@@ -26,6 +26,7 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Slope, Words
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, Look
@@ -272,6 +273,15 @@ JUDGED = (
     ("The true error is below what was asked for", "the share of errors that are", "met", 1.0),
 )
 
+#: Errors of a few units of round-off, and so which of them count, differ between processors.
+DIGITS: dict[str, Digits | None] = {
+    "counts": Digits(rows="true_error > 1e-11"),
+    "effectivity": Digits(relative=1e-2, rows="true_error > 1e-9"),
+    **dict.fromkeys(("stress.true_error", "stress.uncertainty"), Digits(floor=1e-11)),
+    "findings.formulation": None,
+    "findings.value": Digits(relative=0.05),
+}
+
 STUDY = Study(
     parts=(
         Part(at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)), ask=_static),
@@ -292,5 +302,6 @@ STUDY = Study(
         )
         for claim, quantity, value, least in JUDGED
     ),
+    digits=DIGITS,
     figures={"error_estimate": _figure},
 )

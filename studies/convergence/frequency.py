@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from studies.convergence.swing_sweep import MODES, PARTS
 from studies.engine import Claim, Study, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Doubt, Level
 from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
 from studies.record.style import BLACK, BLUE, LOOKS, Look
@@ -182,5 +183,6 @@ STUDY = Study(
             most=ALIKE,
         ),
     ),
+    digits={"findings.value": Digits(floor=1e-7), "modes.uncertainty": Digits(floor=1e-9)},
     figures={"frequency": _shifts, "backbone": _backbone},
 )

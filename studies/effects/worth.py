@@ -17,6 +17,7 @@ from studies.effects.audit import audit
 from studies.effects.beyond import ALL, SHEAR, prices
 from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
 from studies.engine import Answer, Claim, Part, Study, Tables, records
+from studies.record.digits import Digits
 from studies.record.marks import Level, Slope, Words
 from studies.record.panels import CONTROL_POINTS, Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
@@ -278,6 +279,7 @@ STUDY = Study(
         )
     ),
     varying=("cheapest",),
+    digits=dict.fromkeys(("beyond.first_mode", "beyond.largest"), Digits(floor=1e-7)),
     figures={
         "effects_worth": _worth,
         "effects_savings": _savings,

@@ -1,16 +1,18 @@
 """What is kept on the disk: files written whole or not at all, and kernels while their source stands.
 
 
-numba compiles a kernel anew when its own file changes, but not when one changes that it calls, or a constant
+numba compiles a kernel again when its own file changes, but not when one changes that it calls, or a constant
 of another module: what is kept would then answer for a source that is gone.
 """
 
+import json
 import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -114,47 +116,44 @@ COMPILED = ("spline_model", "fe_reference")
 KERNEL = re.compile(r"^@(?:numba\.)?(?:njit|kernel|called|lane|part)\b", flags=re.MULTILINE)
 
 
-def forget(root: Path = ROOT) -> int:
-    """Remove all compiled kernels; return how many files that were."""
+def forget(root: Path = ROOT, keep: Container[Path] = ()) -> int:
+    """Remove the compiled kernels of all files but those to `keep`; return how many that were."""
     kept = [file for package in COMPILED for file in (root / package).rglob("*.nb[ci]")]
-    for file in kept:
+    old = [file for file in kept if file.parents[1] / f"{file.name.partition('.')[0]}.py" not in keep]
+    for file in old:
         file.unlink(missing_ok=True)
-    return len(kept)
+    return len(old)
 
 
 def forget_stale(root: Path = ROOT) -> bool:
-    """Remove the compiled kernels if the code they were made of has changed since; return whether it had.
+    """Remove the compiled kernels whose code has changed since; return whether there were any.
 
-    Two marks are kept beside the kernels: places, times and sizes of all source files, which cost some
-    milliseconds to compare, and where these differ a hash of the code of the modules with kernels and of all
-    they import. Where there are no marks, what is kept is of unknown source and removed. Nothing happens
-    where nothing may be written: numba then keeps its kernels elsewhere, by the place of the source.
+    A mark beside the kernels holds places, times and sizes of all source files, which cost some milliseconds
+    to compare, and where these differ a hash of each file with kernels and of all it imports. Where there is
+    no mark, what is kept is of unknown source and removed. Nothing happens where nothing may be written:
+    numba then keeps its kernels elsewhere, by the place of the source.
     """
-    mark = root / COMPILED[0] / "__pycache__" / "kernels.txt"
+    mark = root / COMPILED[0] / "__pycache__" / "kernels.json"
     files = [file for package in COMPILED for file in sorted((root / package).rglob("*.py"))]
-    stats = "\n".join(_marked(file, root) for file in files)
-    text = mark.read_text(encoding="utf-8") if mark.is_file() else ""
-    former, _, former_stats = text.partition("\n")
-    if stats == former_stats:
+    stats = [_marked(file, root) for file in files]
+    former = json.loads(mark.read_bytes()) if mark.is_file() else {"stats": [], "sources": {}}
+    if stats == former["stats"]:
         return False
-    present = _code_hash(files, root)
+    sources = {name: source_hash(name, root=root) for name in map(partial(_kernels, root), files) if name}
+    same = [name for name, source in sources.items() if former["sources"].get(name) == source]
     try:
-        removed = forget(root) if present != former else 0
+        removed = forget(root, {root.joinpath(*name.split(".")).with_suffix(".py") for name in same})
         mark.parent.mkdir(exist_ok=True)
-        write_whole(mark, f"{present}\n{stats}".encode())
+        write_whole(mark, json.dumps({"stats": stats, "sources": sources}).encode())
     except (OSError, OutputError):
         return False
     return removed > 0
 
 
-def _code_hash(files: list[Path], root: Path) -> str:
-    """Return one hash of the code of every module among `files` that holds kernels, with what it imports."""
-    modules = [
-        ".".join(file.relative_to(root).with_suffix("").parts)
-        for file in files
-        if KERNEL.search(file.read_text(encoding="utf-8"))
-    ]
-    return " ".join(source_hash(module, root=root)[:16] for module in modules)
+def _kernels(root: Path, file: Path) -> str:
+    """Return the name of a module that holds kernels, and nothing for any other."""
+    holds = KERNEL.search(file.read_text(encoding="utf-8"))
+    return ".".join(file.relative_to(root).with_suffix("").parts) if holds else ""
 
 
 def _marked(file: Path, root: Path) -> str:

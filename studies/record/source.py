@@ -1,143 +1,107 @@
-"""Which source a result depends on: the definitions that its study reaches by name, and a hash of their code.
+"""The source of a result: the modules of this repository that a study imports, and a hash of their code."""
 
-A definition is a function, a class or a constant of a module. A study reaches all of its own module, what
-that names, and so on. What stands beside in a module and is not named does not count, and neither does a
-method whose name is nowhere said.
-"""
-
+import ast
 import hashlib
-from itertools import accumulate
+from collections.abc import Iterator
+from functools import cache
+from importlib.util import resolve_name
 from pathlib import Path
-
-from studies.record.definitions import BODY, PACKAGES, WORD, Definition, Module, analysed
+from typing import Any
 
 ROOT = Path(__file__).parents[2]
-#: Modules that move or draw numbers and cannot change them, so that results stay fresh when these are edited.
-WITHOUT_INFLUENCE = ("studies.record", "studies.pictures")
-#: Tables of effects by name, read by the name alone: an entry counts where its name is said, in a case of the
-#: study or in the code that is reached, so that an effect more leaves alone what does not name it.
-BY_NAME = ("spline_model.effects.registry:REGISTRY", "fe_reference.effects:KNOWN")
+PACKAGES = ("spline_model", "fe_reference", "studies", "report")
+#: Modules that only move or draw numbers: results stay fresh when these change.
+WITHOUT_INFLUENCE = ("studies.record", "studies.pictures", "studies.commands")
+#: Fields of a syntax tree that differ between versions of Python.
+_VERSIONED = {"ctx", "kind", "type_comment", "type_params"}
 
 
-def source_hash(module: str, *, said: str | None = None, root: Path = ROOT) -> str:
-    """Return the SHA-256 of the code of `module` and of all definitions of this repository that it reaches.
+def source_hash(module: str, *, root: Path = ROOT) -> str:
+    """Return the SHA-256 of the code of `module` and of all modules below `root` that it imports.
 
-    The code is the syntax tree without docstrings, comments and layout; imports inside functions count too.
-
-    Args:
-        module: its full name, or module:constant for what that constant reaches.
-        said: text in which an effect's name is looked for, as that of case files; None counts all effects.
-        root: folder of the packages.
+    The code is the syntax tree without docstrings, comments and layout.
     """
-    found = sorted(_Reach(module, said, root).found.items())
-    return hashlib.sha256("".join(f"{place}\n{code}\n" for place, code in found).encode()).hexdigest()
+    codes = (f"{name} {_read(name, root)[0]}\n" for name in reached(module, root=root))
+    return hashlib.sha256("".join(codes).encode()).hexdigest()
 
 
-def reached(module: str, *, said: str | None = None, root: Path = ROOT) -> list[str]:
-    """Return the places `module:name` of the definitions that `source_hash` takes in, sorted.
+def reached(module: str, *, root: Path = ROOT) -> list[str]:
+    """Return the modules that `module` imports directly or through others, with the packages around them.
+
+    Imports inside functions count. A package counts with all its imports only if it is itself imported.
 
     Raises:
         FileNotFoundError: no such module in this repository.
     """
-    return sorted(_Reach(module, said, root).found)
+    if not _file(module, root):
+        raise FileNotFoundError(f"module {module}: no such module in this repository")
+    found: set[str] = set()
+    waiting = {module}
+    while waiting:
+        name = waiting.pop()
+        found.add(name)
+        waiting |= {each for each in imported(name, root) if not each.startswith(WITHOUT_INFLUENCE)} - found
+    return sorted(found.union(*map(_outer, found)))
 
 
-class _Reach:
-    """A walk from a module along names: `found` has the code of every definition it came to, by its place."""
+@cache
+def imported(module: str, root: Path = ROOT) -> set[str]:
+    """Return the modules of this repository that a module imports, those for type checking included."""
+    return {name for full in _read(module, root)[1] if (name := _longest(full, root))} - {module}
 
-    def __init__(self, module: str, said: str | None, root: Path) -> None:
-        self.modules: dict[str, Module | None] = {}
-        self.root = root
-        self.found: dict[str, str] = {}
-        self.said = set(WORD.findall(said or ""))
-        self.by_name = BY_NAME if said is not None else ()
-        self.tables: dict[str, dict[str, Definition]] = {}
-        self.waiting: list[Definition] = []
-        self.named: set[tuple[str, str]] = set()
-        module, _, constant = module.partition(":")
-        if self._module(module) is None:
-            raise FileNotFoundError(f"module {module}: no such module in this repository")
-        if constant:
-            self._define(module, constant)
-        else:
-            self._whole(module)
-        while self.waiting or self._entries():
-            definition = self.waiting.pop()
-            self.said |= definition.said
-            for name in {(definition.module, chain) for chain in definition.chains} - self.named:
-                self.named.add(name)
-                self._name(*name)
 
-    def _module(self, name: str) -> Module | None:
-        """Return a module of this repository that can influence numbers; None for any other name."""
-        if name not in self.modules:
-            self.modules[name] = self._read(name)
-        return self.modules[name]
+def imports(tree: ast.Module, module: str, *, package: bool) -> Iterator[str]:
+    """Yield the full name of everything that the code of `module` imports."""
+    outer = module if package else module.rpartition(".")[0]
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = resolve_name("." * node.level + (node.module or ""), outer)
+            yield from (f"{base}.{alias.name}" for alias in node.names)
 
-    def _read(self, name: str) -> Module | None:
-        around = self._module(outer) if (outer := name.rpartition(".")[0]) else None
-        if name.startswith(WITHOUT_INFLUENCE) or not (name in PACKAGES or (around and around.package)):
-            return None
-        path = self.root.joinpath(*name.split("."))
-        file = next(filter(Path.is_file, (path.with_suffix(".py"), path / "__init__.py")), None)
-        return analysed(file.read_text(encoding="utf-8"), name, file.name == "__init__.py") if file else None
 
-    def _entries(self) -> bool:
-        """Take entries of tables and methods whose name was said by now; return whether there were any."""
-        for place, entries in self.tables.items():
-            for key in entries.keys() & self.said:
-                self._take(f"{place}[{key}]", entries.pop(key))
-        return bool(self.waiting)
+@cache
+def _read(module: str, root: Path) -> tuple[str, list[str]]:
+    """Return the hash of a module's code and the names that it imports."""
+    file: Any = _file(module, root)
+    tree = ast.parse(file.read_bytes())
+    names = sorted(set(imports(tree, module, package=file.name == "__init__.py")))
+    return hashlib.sha256(repr(_code(tree)).encode()).hexdigest(), names
 
-    def _whole(self, name: str) -> None:
-        module = self._module(name)
-        for each in module.definitions if module else ():
-            self._define(name, each)
 
-    def _define(self, module: str, name: str) -> None:
-        """Take one definition, with what its module and the packages around it do on import."""
-        place = f"{module}:{name}"
-        known = self._module(module)
-        if place in self.found or known is None:
-            return
-        if f"{module}:" not in self.found:
-            for outer in accumulate(module.split("."), "{}.{}".format):
-                if around := self._module(outer):
-                    self._take(f"{outer}:", around.definitions[BODY])
-        definition = known.definitions[name]
-        if place in self.by_name or definition.is_class:
-            self.tables[place] = dict(definition.entries)
-        if definition.is_open:
-            self.said |= definition.entries.keys()
-        if place in self.by_name:
-            self.found[place] = ""
-        else:
-            self._take(place, definition)
+def _code(node: Any) -> Any:
+    """Return a syntax tree as tuples that are the same in every version of Python, without docstrings."""
+    if isinstance(node, list):
+        return [_code(each) for each in node if not _docstring(each)]
+    if not isinstance(node, ast.AST):
+        return node
+    fields = ((name, _code(value)) for name, value in ast.iter_fields(node) if name not in _VERSIONED)
+    return type(node).__name__, [(name, value) for name, value in fields if value not in (None, [])]
 
-    def _take(self, place: str, definition: Definition) -> None:
-        if place not in self.found:
-            self.found[place] = definition.code
-            self.waiting.append(definition)
 
-    def _name(self, module: str, chain: str) -> None:
-        """Take what a dotted name of `module` means, if that is of this repository."""
-        head, _, rest = chain.partition(".")
-        known = self._module(module)
-        if known is None:
-            return
-        if head in known.definitions:
-            self._define(module, head)
-        for target in known.aliases.get(head, ()):
-            self._target(f"{target}.{rest}" if rest else target)
+def _docstring(node: object) -> bool:
+    value = node.value if isinstance(node, ast.Expr) else None
+    return isinstance(value, ast.Constant) and isinstance(value.value, str)
 
-    def _target(self, dotted: str) -> None:
-        """Take what a full name means: a definition of a module, or the whole module where none is named."""
-        parts = dotted.split(".")
-        for count in range(len(parts), 0, -1):
-            module, rest = ".".join(parts[:count]), parts[count:]
-            if known := self._module(module):
-                if rest and (rest[0] in known.definitions or rest[0] in known.aliases):
-                    self._name(module, ".".join(rest))
-                else:
-                    self._whole(module)
-                return
+
+def _longest(full: str, root: Path) -> str:
+    """Return the module that a full name is, or is a name of; nothing for another library."""
+    while full and not _file(full, root):
+        full = full.rpartition(".")[0]
+    return full
+
+
+def _outer(module: str) -> set[str]:
+    """Return the packages around a module."""
+    parts = module.split(".")
+    return {".".join(parts[:count]) for count in range(1, len(parts))}
+
+
+@cache
+def _file(module: str, root: Path) -> Path | None:
+    """Return the file of a module of this repository."""
+    if module.split(".")[0] not in PACKAGES:
+        return None
+    path = root.joinpath(*module.split("."))
+    return next(filter(Path.is_file, (path.with_suffix(".py"), path / "__init__.py")), None)

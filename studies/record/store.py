@@ -5,7 +5,6 @@ Provenance says what a stored result was made from, and whether it still stands.
 
 import datetime
 import importlib.metadata
-import io
 import json
 import os
 import platform
@@ -15,12 +14,12 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.cases.design import FOLDER, fingerprint, named_design
 from studies.cases.document import parsed
+from studies.record.digits import as_csv, read_csv
 from studies.record.files import replace_folder, require_writable_folder, write_whole
 from studies.record.source import ROOT, source_hash
 from studies.record.style import rendered
@@ -39,10 +38,8 @@ class _State:
 
 def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
     """Return the hashes of what a study is made from: its source and its cases."""
-    cases = tuple(cases)
-    said = "\n".join(_file(name).read_text(encoding="utf-8") for name in cases)
     return {
-        "source_sha256": source_hash(module, said=said),
+        "source_sha256": source_hash(module.partition(":")[0]),
         "cases": {name: _fingerprint(name) for name in cases},
     }
 
@@ -112,26 +109,32 @@ class Store:
         cases: Iterable[str],
         command: str,
         elapsed: float,
-    ) -> None:
-        """Store the tables of `study` in place of former ones, with the provenance of what they came from."""
+    ) -> bool:
+        """Store the tables of `study` in place of former ones, with the provenance of what they came from.
+
+        Return whether its figures are to be drawn: nothing is written if a fresh result with the same tables
+        is stored.
+        """
         contents = {f"{name}.csv": as_csv(table) for name, table in tables.items()}
+        fresh = self.state(study, module=module, cases=cases).kind == "fresh"
+        if fresh and self.record(study)["tables"] == _hashes(contents):
+            return False
         record = {
             "study": study,
             "command": command,
             "inputs": inputs(module, cases),
             "tables": _hashes(contents),
+            "figures": None,
             "elapsed_s": round(elapsed, 2),
             **_surroundings(),
         }
         replace_folder(self.data(study), {**contents, PROVENANCE: _as_json(record)})
+        return True
 
     def load_tables(self, study: str) -> dict[str, pd.DataFrame]:
         """Return the stored tables of `study`; FileNotFoundError when there are none."""
-        record = self.record(study)
-        return {
-            Path(name).stem: pd.read_csv(self.data(study) / name, keep_default_na=False, na_values=[""])
-            for name in record["tables"]
-        }
+        names = self.record(study)["tables"]
+        return {Path(name).stem: read_csv((self.data(study) / name).read_bytes()) for name in names}
 
     def save_figures(self, study: str, figures: Mapping[str, Figure]) -> None:
         """Store the figures of `study` as SVG and PNG and note them in its provenance."""
@@ -142,7 +145,7 @@ class Store:
         }
         record = self.record(study)
         require_writable_folder(self.figures)
-        for name in set(record.get("figures", {})) - set(contents):
+        for name in set(record["figures"] or ()) - set(contents):
             (self.figures / name).unlink(missing_ok=True)
         for name, content in contents.items():
             write_whole(self.figures / name, content)
@@ -167,54 +170,20 @@ class Store:
             record = self.record(study)
         except FileNotFoundError:
             return _State(kind="missing", reason="never run")
-        if "figures" not in record:
-            return _State(kind="missing", reason="its figures were not drawn")
         for folder, kind in ((self.data(study), "tables"), (self.figures, "figures")):
-            for name, digest in record[kind].items():
+            for name, digest in (record[kind] or {}).items():
                 path = folder / name
                 if not path.is_file():
                     return _State(kind="missing", reason=f"{name} does not exist")
                 if sha256(path.read_bytes()).hexdigest() != digest:
                     return _State(kind="stale", reason=f"{name} was changed after it was made")
+        if record["figures"] is None:
+            return _State(kind="missing", reason="no figure was drawn")
         now = inputs(module, cases)
         for part, said in (("cases", "a case"), ("source_sha256", "the source")):
             if record["inputs"][part] != now[part]:
                 return _State(kind="stale", reason=f"{said} was changed")
         return _State(kind="fresh")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Digits:
-    """How far a column of numbers comes out again: to a part of itself [1], or to a floor in its unit.
-
-    Sums of floating point numbers depend on their order, and so on what else keeps the cores busy.
-    """
-
-    relative: float = 0.0
-    floor: float = 0.0
-
-
-def same(stored: pd.DataFrame, found: pd.DataFrame, digits: Mapping[str, Digits]) -> bool:
-    """Return whether two tables are the same: to the letter, columns with `digits` to these."""
-    if list(stored.columns) != list(found.columns) or len(stored) != len(found):
-        return False
-    one, other = (pd.read_csv(io.BytesIO(as_csv(table)), dtype=str) for table in (stored, found))
-    exact = [name for name in one.columns if name not in digits]
-    return one[exact].equals(other[exact]) and all(
-        np.allclose(
-            one[name].to_numpy(float), other[name].to_numpy(float), each.relative, each.floor, equal_nan=True
-        )
-        for name, each in digits.items()
-        if name in one.columns
-    )
-
-
-def as_csv(table: pd.DataFrame) -> bytes:
-    """Return `table` as CSV: 12 significant digits, rows sorted by the columns from left to right."""
-    ordered = table.sort_values(list(table.columns), kind="stable")
-    text = io.StringIO()
-    ordered.to_csv(text, index=False, float_format="%.12g", lineterminator="\n")
-    return text.getvalue().encode()
 
 
 def _as_json(record: Mapping[str, Any]) -> bytes:

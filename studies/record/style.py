@@ -1,16 +1,13 @@
 """How every figure looks: a fixed colour for each formulation, files equal byte by byte."""
 
 import io
-import re
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from PIL import Image
 
 #: Colours that remain apart for colour-blind readers (Okabe and Ito, Color Universal Design, 2008).
 BLACK, GREY, ORANGE, SKY = "#000000", "#808080", "#e69f00", "#56b4e9"
@@ -18,9 +15,6 @@ GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "
 
 #: Width of a page's text [inch].
 PAGE_WIDTH = 160.0 / 25.4
-
-#: Colours of a figure in pixels, and in how many steps each of the above goes over into white there.
-COLOURS, SHADES = 256, 12
 
 SETTINGS: Any = {
     "font.family": "DejaVu Sans",
@@ -45,7 +39,7 @@ SETTINGS: Any = {
     "svg.fonttype": "path",
     # a line may leave out points that move it by less than this [1/72 inch]
     "path.simplify_threshold": 0.8,
-    "savefig.dpi": 180,
+    "savefig.dpi": 120,
 }
 
 
@@ -132,18 +126,8 @@ def page(width: float, height: float) -> Figure:
     return Figure(figsize=(share * width, (0.1 + 0.9 * share) * height), layout="constrained")
 
 
-def rendered(figure: Figure, kind: str) -> bytes:
-    """Return `figure` as "svg" or "png", as small as it looks the same: equal bytes for an equal figure."""
-    return {"svg": _short, "png": _in_palette}[kind](_saved(figure, kind))
-
-
-def printed(figure: Figure, kind: str) -> bytes:
-    """Return a picture at the width of a page as one of `PICTURES`: the same bytes for the same figure."""
-    return _saved(figure, kind, **PRINTED)
-
-
-def _saved(figure: Figure, kind: str, **settings: Any) -> bytes:
-    """Return `figure` in a format, without what differs from one day or machine to the next."""
+def rendered(figure: Figure, kind: str, **settings: Any) -> bytes:
+    """Return `figure` as "svg", "png" or "pdf", without what differs from one day or machine to the next."""
     stream = io.BytesIO()
     for said in figure.findobj(Text):
         for given, written in WRITTEN.items():
@@ -153,37 +137,6 @@ def _saved(figure: Figure, kind: str, **settings: Any) -> bytes:
     return stream.getvalue()
 
 
-#: Names that matplotlib makes of the last digit of places, where processors differ.
-NAMED = re.compile(rb'(?<=[#"])([mp])[0-9a-f]{10}(?=[")])')
-
-
-def _short(svg: bytes) -> bytes:
-    """Return `svg` a quarter smaller: no indentation, paths to a hundredth of a point, names in order."""
-    names: dict[bytes, bytes] = {}
-
-    def shorter(path: re.Match[bytes]) -> bytes:
-        return re.sub(rb"(\.\d\d)\d+", rb"\1", path[0])
-
-    def numbered(name: re.Match[bytes]) -> bytes:
-        return names.setdefault(name[0], b"%s%d" % (name[1], len(names)))
-
-    return NAMED.sub(numbered, re.sub(rb' d="[^"]*"', shorter, re.sub(rb"\n +", rb"\n", svg)))
-
-
-def _in_palette(png: bytes) -> bytes:
-    """Return `png` in a palette of the style's own colours, their soft edges and what else there is most of.
-
-    It is a third as large, and no colour of a line becomes that of another one.
-    """
-    own = [to_rgb(each) for each in (BLACK, GREY, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE)]
-    shades = [1.0 - (1.0 - part) * step / SHADES for rgb in own for step in range(SHADES + 1) for part in rgb]
-    fixed = [round(255.0 * part) for part in shades]
-    stream = io.BytesIO()
-    with Image.open(io.BytesIO(png)) as picture:
-        drawn = picture.convert("RGB")
-        left = COLOURS - len(fixed) // 3
-        more = drawn.quantize(left, dither=Image.Dither.NONE).getpalette() or []
-        palette = Image.new("P", (1, 1))
-        palette.putpalette((fixed + more[: 3 * left])[: 3 * COLOURS])
-        drawn.quantize(palette=palette, dither=Image.Dither.NONE).save(stream, "png", optimize=True)
-    return stream.getvalue()
+def printed(figure: Figure, kind: str) -> bytes:
+    """Return a picture at the width of a page as one of `PICTURES`: the same bytes for the same figure."""
+    return rendered(figure, kind, **PRINTED)

@@ -18,6 +18,7 @@ from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published
+from studies.record.digits import Digits
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
 from studies.stability import family, questions
 from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
@@ -183,10 +184,21 @@ def _pivot(panel: Axes, branches: pd.DataFrame) -> None:
     panel.legend(loc="upper left")
 
 
+#: The branch beyond 10 mm amplifies round-off, and where on a curve a state lies is up to the arc length.
+DIGITS: dict[str, Digits | None] = {
+    **dict.fromkeys(("curves.load", "curves.deflection"), Digits(relative=0.1, scale=0.01)),
+    **dict.fromkeys(("reached_mm", "turn_deg", "energy_J"), Digits(relative=1e-3, scale=1e-5)),
+    "outcomes.found": Digits(relative=1e-5, floor=1e-5, rows="outcome == 'right'"),
+    "outcomes.error": Digits(relative=0.05, floor=1e-8, rows="outcome == 'right'"),
+    "largest_right_error": Digits(relative=0.05),
+    "warned": None,
+}
+
 STUDY = family.study(
     questions.ASKED,
     Part(ask=lambda: {"curves": _elastica()}),
     Part(at=lambda: product((questions.COLUMN, questions.TOGGLE, questions.LEE), DRAWN), ask=_curve),
     Part(at=lambda: product(sorted({*questions.DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
+    digits=DIGITS,
     figures={"stability_buckling": _figure},
 )

@@ -17,7 +17,7 @@ from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
-from studies.record.store import Digits
+from studies.record.digits import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
@@ -150,12 +150,12 @@ def _outcome(found: Found, tolerance: float, *, limited: bool) -> str:
     return REFUSED if limited else WRONG
 
 
-#: What comes out again of a column: balances to their floor, distances to six digits, work to a per cent.
-_DISTANCE = Digits(relative=1e-6, floor=1e-9)
-DIGITS = {
-    "iterations": Digits(relative=0.01, floor=2.0),
-    **dict.fromkeys(("energy_gain", "energy_change", "constraint_residual_m"), Digits(floor=1e-12)),
-    **dict.fromkeys(("error", "largest_right_error", "refinement", "independent", "period_s"), _DISTANCE),
+#: Distances reproduce to six digits where the answer is right. Other answers end where round-off leads them.
+_DISTANCE = Digits(floor=1e-9)
+_RIGHT = Digits(floor=1e-9, rows=f"outcome == '{RIGHT}'")
+DIGITS: dict[str, Digits | None] = {
+    **dict.fromkeys(("largest_right_error", "refinement", "independent", "period_s"), _DISTANCE),
+    **dict.fromkeys(("outcomes.error", "outcomes.found", "stopped", "warned"), _RIGHT),
 }
 
 #: A case of one model: name, model, what is asked, and the largest error that is right [1].
@@ -163,9 +163,13 @@ Task = tuple[str, str, Callable[[], Found], float]
 
 
 def study(*parts: Part, **declared: Any) -> Study:
-    """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it."""
+    """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it.
+
+    `digits` of its own come before `DIGITS`.
+    """
     counts = {"counts": lambda tables: _counted(tables["outcomes"])}
-    return Study(parts=parts, made=counts, digits=DIGITS, **declared)
+    digits = DIGITS | declared.pop("digits", {})
+    return Study(parts=parts, made=counts, digits=digits, **declared)
 
 
 def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:

@@ -8,12 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.record.store import Store
 from studies.record.style import GREEN, GREY, RED, YELLOW, Look, page
-from studies.registry import STUDIES
-from studies.stability.family import BAD_INPUT, DEFAULT, ORDER, OUTCOMES, REFUSED, RIGHT, WRONG
-
-GROUP = "stability/"
+from studies.stability.family import BAD_INPUT, ORDER, REFUSED, RIGHT, WRONG
 
 #: Looks of the outcomes, the same in every map.
 LOOKS = {
@@ -84,20 +80,3 @@ def _grid(count: int) -> tuple[Figure, list[Axes], int]:
 def _broken(model: str) -> str:
     """Return the model's name in two lines, to stand below a column."""
     return model.replace(", ", ",\n")
-
-
-def lines(store: Store) -> list[str]:
-    """Return the stored counts of all families that were run as lines of a Markdown table: a row a family, a
-    column a model, "right / refused / wrong / bad input" a cell."""
-    cells: dict[str, dict[Any, str]] = {}
-    for study in (each for each in STUDIES if each.startswith(GROUP)):
-        try:
-            counts = store.load_tables(study)["counts"].set_index("model")[list(OUTCOMES)]
-        except FileNotFoundError:
-            continue
-        cells[study.removeprefix(GROUP)] = counts.astype(str).agg(" / ".join, axis=1).to_dict()
-    models = list(dict.fromkeys((DEFAULT, *(model for row in cells.values() for model in row))))
-    found = ["| family | " + " | ".join(models) + " |", "|---" * (len(models) + 1) + "|"]
-    for family, row in cells.items():
-        found.append(f"| {family} | " + " | ".join(row.get(model, "") for model in models) + " |")
-    return found

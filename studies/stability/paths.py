@@ -15,6 +15,7 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Part
+from studies.record.digits import Digits
 from studies.stability import family, maps
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
@@ -160,6 +161,7 @@ SLENDERNESS = family.study(
     Part(at=_slender_cases, ask=family.outcomes_of),
     # the approach of six control points to the inextensible strip
     Part(ask=lambda: {"limit": _limit_table(family.PATHS[family.SIX])}),
+    digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
     figures={
         "stability_slenderness": lambda tables: maps.outcome_map(
             tables["outcomes"],

@@ -23,6 +23,7 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine import Answer, Part, Row, Tables
+from studies.record.digits import Digits
 from studies.record.marks import Level, Slope
 from studies.record.panels import STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
@@ -239,5 +240,8 @@ def _outcomes_of_ratio(case: str, kind: str, factor: float, design: Design) -> A
     return {"outcomes": rows, "references": {**known, "settled": "yes" if settled else "no"}}
 
 
-RATIOS = family.study(Part(at=_ratios, ask=_outcomes_of_ratio))
+RATIOS = family.study(
+    Part(at=_ratios, ask=_outcomes_of_ratio),
+    digits={"outcomes.error": Digits(relative=0.05, floor=1e-9, rows="outcome == 'right'")},
+)
 """Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""

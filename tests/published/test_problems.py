@@ -8,7 +8,6 @@ import pandas as pd
 import pytest
 
 from studies.answers.settings import SplineSettings
-from studies.asking import answered
 from studies.cases.document import CaseError
 from studies.commands import readme
 from studies.published import problems
@@ -23,6 +22,7 @@ from studies.published.case import (
     read_published,
 )
 from studies.published.problems import ours
+from studies.record.store import Store
 from studies.stability.questions import load_ratio
 from tests import gates
 
@@ -135,10 +135,9 @@ def test_gate_of_the_column_has_teeth():
         gates.check("published_column", error_of_the_column(**gates.teeth("published_column")))
 
 
-@pytest.mark.slow
 def test_all_values_are_met():
     """Requirement: every value in print is met by every model that is asked, and the check has teeth."""
-    values = answered(problems.STUDY)["values"]
+    values = Store().load_tables("published/problems")["values"]
     missed = values[values["within"] != "yes"]
     assert missed.empty, missed[["case", "model", "answer", "quantity", "published", "found"]].to_string()
     solids = values[(values["case"] == "parallelogram") & (values["answer"] == "beam")]

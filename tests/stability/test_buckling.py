@@ -1,23 +1,17 @@
 """Beyond the critical points: which branch is stable, and that both models find it."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 
-from studies.asking import answered
-from studies.stability import buckling
+from studies.record.store import Store
 from studies.stability.buckling import OTHER, PRIMARY
 from studies.stability.family import DEFAULT, FE, PAPER, TWELVE
 from tests import gates
 
-pytestmark = pytest.mark.slow
 
-
-@cache
 def tables():
-    """Return the tables of the study, computed once."""
-    return answered(buckling.STUDY)
+    """Return the stored tables of the study."""
+    return Store().load_tables("stability/buckling")
 
 
 def on(branch, model):

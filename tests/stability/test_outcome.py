@@ -8,11 +8,9 @@ import pytest
 from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
-from studies.record.store import Store
 from studies.stability import family as columns
 from studies.stability import maps
 from studies.stability.family import OUTCOMES, Found, judged
-from studies.stability.maps import lines
 
 
 def raising(error):
@@ -72,19 +70,3 @@ def test_map_draws_every_model_and_outcome():
     figure = maps.outcome_map(pd.DataFrame(rows), title="t", xlabel="x", ylabel="y")
     assert len(figure.axes) == 2
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["right", "wrong"]
-
-
-def test_summary_reads_the_stored_counts(tmp_path):
-    """The summary has a line a family that was run, and none where nothing was."""
-    store = Store(tmp_path)
-    assert len(lines(store)) == 2
-    rows = [{"model": columns.DEFAULT, "outcome": name, "error": 0.1} for name in ("right", "refused")]
-    store.save_tables(
-        "stability/geometry",
-        {"counts": columns._counted(pd.DataFrame(rows))},
-        module="studies.stability.choices:GEOMETRY",
-        cases=("cross_axis_pivot",),
-        command="test",
-        elapsed=0.0,
-    )
-    assert lines(store)[-1] == "| geometry | 1 / 1 / 0 / 0 |"

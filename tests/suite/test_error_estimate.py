@@ -7,9 +7,9 @@ import pytest
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
-from studies.asking import answered
 from studies.cases.problem import named_case
 from studies.convergence import error_estimate
+from studies.record.store import Store
 from tests import gates
 
 
@@ -44,10 +44,9 @@ def test_the_stress_has_an_estimate_of_its_own():
         gates.check("spline_stress_accuracy_optimism", optimism(coarse.max_stress))
 
 
-@pytest.mark.slow
 def test_estimates_of_all_designs_are_within_their_band():
     """Over 36 designs and six accuracies, and some swings: 0.3 to 10 for 90 %, none below a third."""
-    tables = answered(error_estimate.STUDY)
+    tables = Store().load_tables("convergence/error_estimate")
     rows = tables["estimates"]
     assert rows[rows["problem"] == "statics"]["design"].nunique() >= 30
     least = rows["accuracy"] == rows["accuracy"].min()  # there stresses may end at round-off, and say so

@@ -20,6 +20,7 @@ QUICK = ("solve", "modes", "export", "case", "markers", "list")
 #: Examples, by how they begin, that are parsed and not run, and why.
 PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
+    "verify paper": "takes minutes, and `make verify` runs it",
     "interactive": "serves until it is stopped; tests/interactive runs it",
     "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_cluster.py has one",
     "calibrate": "needs a camera; tests/interactive gives it a film",

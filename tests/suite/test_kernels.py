@@ -1,5 +1,7 @@
 """Compiled kernels on the disk are dropped when their code has changed, and only then."""
 
+import shutil
+
 import pytest
 
 from studies.record.files import forget_stale
@@ -9,6 +11,7 @@ SOURCES = {
     "spline_model/numbers.py": '"""Numbers."""\n\nHALF = 0.5\n',
     "spline_model/kernel.py": "from numba import njit\nfrom spline_model.numbers import HALF\n\n\n"
     "@njit(cache=True)\ndef halved(x):\n    return HALF * x\n",
+    "spline_model/apart.py": "from numba import njit\n\n\n@njit\ndef same(x):\n    return x\n",
     "spline_model/plain.py": "THIRD = 1.0 / 3.0\n",
     "fe_reference/__init__.py": "",
 }
@@ -16,7 +19,7 @@ SOURCES = {
 
 @pytest.fixture
 def root(tmp_path):
-    """A checkout of five files whose kernel was compiled, and marked."""
+    """A checkout of six files whose kernel was compiled, and marked."""
     for name, text in SOURCES.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
@@ -29,6 +32,15 @@ def root(tmp_path):
 def compiled(root):
     """Return what stands for the compiled kernel."""
     return root / "spline_model" / "__pycache__" / "kernel.halved-6.py311.1.nbc"
+
+
+def changed(root, name, old, new):
+    """Return a copy of the checkout with one file changed: a process reads each file once."""
+    copy = root.with_name(f"{root.name}_changed")
+    shutil.copytree(root, copy)
+    path = copy / "spline_model" / name
+    path.write_text(path.read_text().replace(old, new))
+    return copy
 
 
 def test_kernels_of_the_present_source_stay(root):
@@ -44,8 +56,7 @@ def test_kernels_of_the_present_source_stay(root):
 )
 def test_kernels_of_another_code_are_dropped_once(root, name, old, new):
     """Requirement: a change of the kernel's code, or of what it imports, drops it; the next look does not."""
-    path = root / "spline_model" / name
-    path.write_text(path.read_text().replace(old, new))
+    root = changed(root, name, old, new)
     assert forget_stale(root)
     assert not compiled(root).exists()
     assert not forget_stale(root)
@@ -53,19 +64,22 @@ def test_kernels_of_another_code_are_dropped_once(root, name, old, new):
 
 @pytest.mark.parametrize(
     ("name", "old", "new"),
-    [("numbers.py", "Numbers.", "A number."), ("plain.py", "3.0", "4.0")],
-    ids=["a docstring", "a module that no kernel imports"],
+    [
+        ("numbers.py", "Numbers.", "A number."),
+        ("plain.py", "3.0", "4.0"),
+        ("apart.py", "return x", "return -x"),
+    ],
+    ids=["a docstring", "a module that no kernel imports", "another kernel"],
 )
 def test_what_changes_no_kernel_drops_none(root, name, old, new):
     """Requirement: words, and code that no kernel sees, cost no compilation."""
-    path = root / "spline_model" / name
-    path.write_text(path.read_text().replace(old, new))
+    root = changed(root, name, old, new)
     assert not forget_stale(root)
     assert compiled(root).exists()
 
 
 def test_kernels_of_an_unknown_source_are_dropped(root):
     """Requirement: without a mark nobody knows what they were compiled from."""
-    (root / "spline_model" / "__pycache__" / "kernels.txt").unlink()
+    (root / "spline_model" / "__pycache__" / "kernels.json").unlink()
     assert forget_stale(root)
     assert not compiled(root).exists()

@@ -1,27 +1,33 @@
-"""The engine of studies: tables, findings, points beside each other, and on from where it was interrupted."""
+"""The engine of studies: tables, findings, and points beside each other."""
 
 from concurrent.futures import ThreadPoolExecutor
 
 import pandas as pd
 import pytest
 
-from studies.asking import Asking, Kept, answered, processes, whole
+from studies.asking import Asking, processes, whole
 from studies.engine import Claim, Part, Study, finding
+from studies.record.progress import silent
 
 ASKED: list[int] = []
 
 
 def squared(number):
-    """A row and its neighbour in a table of its own; 3 has no answer."""
+    """A row and its neighbour in a table of its own."""
     ASKED.append(number)
-    if number == 3:
-        raise ArithmeticError("three")
     return {"squares": {"number": number, "square": number**2}, "next": [{"number": number + 1}]}
 
 
 def study(numbers=(1, 2), **given):
     """Squares, with what follows from them."""
     return Study(cases=(), parts=(Part(at=lambda: numbers, ask=squared),), figures={}, **given)
+
+
+def answered(declared, progress=silent):
+    """The tables of a study, its points asked one after the other."""
+    asking = Asking(declared)
+    assert [*whole({"": asking}, progress)] == [""]
+    return asking.tables()
 
 
 STUDY = study(numbers=(1, 2, 4))
@@ -80,27 +86,13 @@ def test_progress_is_told_of_every_point():
     assert told == [(0, 2), (1, 2), (2, 2)]
 
 
-def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
-    """Points that were answered are not asked again, and a last answer that was cut off is."""
-    kept = Kept(tmp_path / "kept.pickle")
-    with pytest.raises(ArithmeticError):
-        answered(study(numbers=(1, 2, 3)), kept=kept)
-    file = tmp_path / "kept.pickle"
-    file.write_bytes(file.read_bytes()[:-5])
-    ASKED.clear()
-    assert len(answered(study(numbers=(1, 2, 4)), kept=kept)["squares"]) == 3
-    assert ASKED == [2, 4]
-    kept.forget()
-    assert not kept.read()
-
-
 def test_what_must_be_alone_comes_after_all_others():
     """A study is whole as soon as its points are answered; those that must be alone are asked last."""
     place = f"{__name__}:TWO_PARTS"
     askings = {place: Asking(TWO_PARTS), __name__: Asking(STUDY)}
     ASKED.clear()
     with ThreadPoolExecutor(1) as pool:
-        assert [*whole(askings, pool=pool)] == [__name__, place]
+        assert [*whole(askings, silent, pool)] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
     assert all(asking.seconds > 0.0 for asking in askings.values())
 
@@ -110,7 +102,7 @@ def test_processes_give_the_same_tables():
     """Points answered beside each other stand where they do one after the other."""
     asking = Asking(STUDY)
     with processes(2) as pool:
-        assert [*whole({__name__: asking}, pool=pool)] == [__name__]
+        assert [*whole({__name__: asking}, silent, pool)] == [__name__]
     beside = asking.tables()
     for name, table in answered(STUDY).items():
         pd.testing.assert_frame_equal(beside[name], table)
