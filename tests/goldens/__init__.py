@@ -1,0 +1,1 @@
+"""Stored answers of every command on every shipped case and published problem, and their comparison."""
