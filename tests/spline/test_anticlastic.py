@@ -56,9 +56,7 @@ def test_anticlastic_bending_in_a_roll_up():
         wrong = (0.3 / poisson_ratio) ** 2 - 1.0
         return np.abs(np.array(found) - 1.0 - (1.0 + wrong) * (np.array(ASHWELL)[:, 1:] - 1.0)).max()
 
-    gates.check("spline_anticlastic", error())
-    with pytest.raises(AssertionError):
-        gates.check("spline_anticlastic", error(**gates.teeth("spline_anticlastic")))
+    gates.hold("spline_anticlastic", error)
 
 
 def test_roll_up_reports_the_moment_that_bends_it():
