@@ -15,7 +15,6 @@ from spline_model import (
     solve_mechanism,
     solve_statics,
 )
-from spline_model.effects.plate import profile_of
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -85,35 +84,6 @@ def test_plate_factors_are_those_of_the_literature():
         return np.abs(np.array(found) - np.array(KNOWN)[:, 2:]).max()
 
     gates.hold("spline_plate_factors", error)
-
-
-def test_plate_factors_are_converged(monkeypatch):
-    """More functions across and along change the factors by less than a digit that anything here shows."""
-
-    def error(across=16, cells=26):
-        found = [[plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)]]
-        with monkeypatch.context() as finer:
-            finer.setattr("spline_model.effects.plate.ACROSS", across)
-            finer.setattr("spline_model.effects.plate.CELLS", cells)
-            found.append([plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)])
-        return np.abs(np.subtract(*found)).max()
-
-    gates.hold("spline_plate_ritz", error)
-
-
-@pytest.mark.parametrize("ratio", [0.05, 0.118, 0.5, 2.0])
-@pytest.mark.parametrize("nu", [0.25, 0.45])
-def test_profile_has_both_factors(ratio, nu):
-    """The rigidity along the strip is EI/(1 - nu^2) at a clamp, smooth there, and has both plate factors."""
-    profile, factors = profile_of(ratio, nu), plate_factors(ratio, nu)
-    s, weight = np.polynomial.legendre.leggauss(400)
-    s, weight = 0.5 * (s + 1.0), 0.5 * weight
-    c = profile.compliance(s)
-    assert 1.0 / (weight @ c) == pytest.approx(factors.constant, rel=1e-10)
-    assert 1.0 / (12.0 * weight @ (c * (s - 0.5) ** 2)) == pytest.approx(factors.linear, rel=1e-10)
-    ends = np.array([0.0, 1.0])
-    assert np.abs(profile.share(ends)).max() < 1e-12
-    assert np.abs(profile.share(ends + np.array([1e-6, -1e-6]))).max() < 1e-6
 
 
 @pytest.mark.parametrize("crossing_ratio", [0.5, 0.3, 0.873])
