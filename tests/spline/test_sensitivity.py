@@ -210,18 +210,6 @@ def test_largest_stress_has_the_derivative_of_its_point():
     gates.check("sensitivities", abs(error - 1.0))
 
 
-def test_mirrored_rotation():
-    """A path to the other side has equal shifts and derivatives of stiffness, and those of torque negated."""
-    design = TABLE_ONE | {"crossing_ratio": 0.4}  # at 0.5 nothing depends on it, to first order
-    right, left = (exact(design, PARAMETERS, sign * 1.1, {}) for sign in (1.0, -1.0))
-    scale = np.abs(right.stiffness.derivative).max(axis=0)
-    assert (np.abs(right.stiffness.derivative - left.stiffness.derivative) / scale).max() < 1e-7
-    scale = np.abs(right.torque.derivative).max(axis=0)
-    assert (np.abs(right.torque.derivative + left.torque.derivative) / scale).max() < 1e-7
-    one, other = (np.hypot(*found.centre_shift.value.T) for found in (right, left))
-    np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-14)
-
-
 def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
     """Work is counted: a factorisation a state, a back-substitution a parameter and one for the rate."""
     pivot = cross_axis_pivot(**SIX)
