@@ -18,13 +18,13 @@ def frequencies(count, *effects, **made):
     return 2 * math.pi * modes.frequency / np.sqrt(RIGIDITY) * LENGTH**2
 
 
-def cantilever_error(control_points):
+def cantilever_error(control_points=14):
     """Largest relative error of the first four cantilever frequencies."""
     exact = CANTILEVER_ROOTS[:4] ** 2
     return np.abs(frequencies(4, control_points=control_points) / exact - 1).max()
 
 
-def end_body_error(control_points):
+def end_body_error(control_points=14):
     """Largest relative error of the first three frequencies with a heavy and with an extended end body."""
     errors = []
     for tip in ((1.0, 1e-9), (1.0, 0.1), (0.2, 0.5)):
@@ -40,14 +40,7 @@ CHECKS = {"spline_cantilever_frequencies": cantilever_error, "spline_end_body_fr
 @pytest.mark.parametrize("gate", CHECKS)
 def test_frequencies_are_the_characteristic_roots(gate):
     """Requirement: cantilever and end-body frequencies are those of the Euler-Bernoulli beam."""
-    gates.check(gate, CHECKS[gate](control_points=14))
-
-
-@pytest.mark.parametrize("gate", CHECKS)
-def test_frequency_gates_have_teeth(gate):
-    """Requirement: the same checks fail with fewer control points."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(gate, CHECKS[gate](**gates.teeth(gate)))
+    gates.hold(gate, CHECKS[gate])
 
 
 def test_modes_about_a_bent_state():

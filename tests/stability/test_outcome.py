@@ -45,14 +45,6 @@ def test_every_ending_has_its_outcome(attempt, outcome):
     assert outcome in OUTCOMES
 
 
-def test_counts_add_up():
-    """A row a model: the outcomes add up to the cases tried."""
-    rows = [{"model": columns.DEFAULT, "outcome": name, "error": 0.1} for name in ("right", "right", "wrong")]
-    table = columns._counted(pd.DataFrame(rows))
-    assert table.loc[0, "tried"] == 3
-    assert [int(table.loc[0, name]) for name in OUTCOMES] == [2, 0, 1, 0]
-
-
 def test_columns_are_what_they_say():
     """The default is the model's own default, and the paper's choices are those of the paper's figures."""
     assert columns.COLUMNS[columns.DEFAULT] == SplineSettings()

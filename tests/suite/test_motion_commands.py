@@ -57,16 +57,6 @@ def test_a_release_keeps_the_pace_of_its_design(length, case, command):
     assert (answer["status"], answer["resolution"]) == ("converged", "")
 
 
-def test_both_models_swing_alike(case, command):
-    """Six control points and ten elements are together to half a percent of the amplitude after 10 ms."""
-    words = ["--rotation-deg", 45, "--duration", 0.01, "--json", "-"]
-    ends = [
-        json.loads(command("release", case(), "--model", *model, *words).out)["rotation_rad"][-1]
-        for model in (["spline"], ["fe", "--elements", 10])
-    ]
-    assert ends[0] == pytest.approx(ends[1], abs=0.005 * math.radians(45.0))
-
-
 def test_options_of_the_motion_reach_the_model(case, command):
     """Integrator, step and slide stiffness stand in the answer's settings; accuracy replaces the step."""
     words = ["release", case(), "--model", "spline", "--control-points", 4, "--duration", 1e-3, "--json", "-"]
