@@ -48,11 +48,9 @@ def test_absurd_poses_are_left_out(pose):
     [
         ({"do": "pose", "pose": [0, 0, math.nan]}, "pose: got nan, expected a finite number"),
         ({"do": "pose", "pose": [0, 0]}, r"pose: got \[0, 0\], expected three finite numbers"),
-        ({"do": "pose"}, "pose: got None"),
         ({"do": "seen", "marker": "here"}, "marker: got 'here'"),
         ({"do": "seen", "marker": [0, 0, 0], "faults": 3}, "faults: got 3, expected a list of texts"),
         ({"do": "dance"}, "do: got 'dance', expected one of"),
-        ({"do": ["pose"]}, "do: got "),
         ({}, "do: got None"),
         ({"do": "tick", "t": math.inf}, "t: got inf"),
         (
@@ -60,11 +58,9 @@ def test_absurd_poses_are_left_out(pose):
             "thickness: got -1000, expected 0.1 to 8 mm",
         ),
         ({"do": "parameter", "name": "colour", "value": 1.0}, "parameter: got 'colour'"),
-        ({"do": "parameter", "name": "length", "value": "long"}, "length: got 'long'"),
         ({"do": "preset", "name": "rubber"}, "preset: got 'rubber', expected one of polymer"),
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
         ({"do": "drive", "by": "will"}, "by: got 'will'"),
-        ({"do": "solver", "name": 7}, "name: got 7"),
         (
             {"do": "solver", "name": "printed", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",

@@ -2,18 +2,15 @@
 
 import json
 import math
-from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 import pytest
 
-from studies.baselines.answer import BaselineFailed, SolvedPath
+from studies.baselines.answer import BaselineFailed
 from studies.baselines.variant import Baseline, grid
-from studies.cases.problem import FOLDER, named_case
+from studies.cases.problem import FOLDER
 from studies.work_precision import advice, series
 from studies.work_precision.equal_error import cheapest, coarsest, kept
-from studies.work_precision.limits import path_errors
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -45,37 +42,6 @@ def test_cheapest_at_equal_error():
     assert loose.loc["b", "ratio"] == 10.0 / 2.0
     assert tight.loc["spline", "setting"] == "spline2"
     assert tight.loc["b", "setting"] == "" and math.isnan(tight.loc["b", "ratio"])
-
-
-def exact_path(problem, offset=0.0):
-    """A made-up path of the problem, off by `offset` of its own size."""
-    turns = np.linspace(0.0, problem.rotation, problem.increments + 1)
-    return SolvedPath(
-        status="converged",
-        message="",
-        rotation=turns,
-        centre=np.column_stack((np.sin(turns), turns)) * (1.0 + offset),
-        torque=turns * (1.0 + offset),
-        stiffness=np.ones_like(turns),
-        max_stress=turns * (1.0 + 2.0 * offset),
-        solve_s=1e-3 / max(offset, 1e-9),
-        wall_s=1.0,
-        work={},
-    )
-
-
-def test_errors_of_a_path_relate_to_its_reference():
-    """A path one per cent too large has that error everywhere but in what it does not scale."""
-    problem = named_case("cross_axis_pivot")
-    found = path_errors(exact_path(problem, 0.01), exact_path(problem))
-    assert found["error_torque"] == pytest.approx(0.01, rel=1e-9)
-    assert found["end_trajectory"] == pytest.approx(0.01, rel=1e-9)
-    assert found["error_stiffness"] == 0.0
-    assert (found["error_stress"], found["end_stress"]) == pytest.approx((0.02, 0.02), rel=1e-9)
-    silent = path_errors(replace(exact_path(problem), max_stress=None), exact_path(problem))
-    assert math.isnan(silent["error_stress"]) and silent["error_torque"] == 0.0
-    stopped = replace(exact_path(problem), status="not_converged")
-    assert all(math.isnan(value) for value in path_errors(stopped, exact_path(problem)).values())
 
 
 @pytest.fixture

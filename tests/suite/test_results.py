@@ -69,8 +69,6 @@ def test_every_formulation_has_its_look_and_its_meaning():
     assert len(colours) == len(set(colours))
 
 
-
-
 @pytest.mark.parametrize("page", readme.BLOCKS, ids=lambda page: page.name)
 def test_pages_agree_with_the_results(page):
     """The tables of README.md and of docs/findings.md are those of the stored results."""
