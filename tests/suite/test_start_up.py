@@ -28,7 +28,7 @@ def _loaded_by(words: list[str]) -> set[str]:
     return set(done.stdout.splitlines()[-1].split()[1:])
 
 
-@pytest.mark.parametrize("words", [["--help"], [], ["list"]])
+@pytest.mark.parametrize("words", [["--help"], [], ["list"], ["sweep", "--help"]])
 def test_overview_imports_nothing_heavy(words):
     """Help and lists load no numerical package."""
     assert _loaded_by(words) == set()
