@@ -8,8 +8,6 @@ from functools import cache
 from itertools import chain
 from typing import Any
 
-import pandas as pd
-
 from report.content.hard_cases import DEFAULT, WARNED, kinds
 from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
 from report.forms import Form, count, degrees, digits, percent, power, seconds, significant, times, unit
@@ -19,11 +17,11 @@ from studies.registry import STUDIES, question_of
 
 STATICS = Stored("convergence/control_points", "reference")
 RELEASE = Stored("paper/fig06_release", "reference")
-FINE = Stored("work_precision/dynamics", "reference")
+FINE = Stored("work_precision/references", "swings")
 SHEAR = {"what": "difference of the theories"}
 TORQUE = Stored("baselines/peers", "theories", **SHEAR)
 SWING = Stored("baselines/peers", "swing_theories", **SHEAR)
-SPATIAL = Stored("work_precision/statics", "reference", theory="spatial")
+SPATIAL = Stored("work_precision/references", "paths", theory="spatial")
 AT_REST = Stored("paper/fig05_stiffness", "curves", formulation="FE refined", rotation_rad=0.0)
 
 
@@ -114,13 +112,7 @@ def _(r: Results) -> Any:
 
 #: Gates beside each other in a row of their table; cases of a study that are named; letters of a hash.
 BESIDE, NAMED, HASH = 3, 3, 10
-#: Tables of the findings on cost.
-FINDINGS = (
-    ("work_precision/statics", "findings"),
-    ("work_precision/statics", "findings_of_time"),
-    ("work_precision/dynamics", "findings"),
-    ("work_precision/dynamics", "findings_of_time"),
-)
+FINDINGS = Stored("baselines/peers", "findings_of_time", holds="no")
 PLATE = Stored("model_form/plate", "paper")
 
 
@@ -150,10 +142,9 @@ def _gates(results: Results) -> Table:
 
 @listing("unmet")
 def _unmet(results: Results) -> Table:
-    """Return the findings that do not hold, if any."""
-    found = pd.concat([results.table(*each).query("holds == 'no'") for each in FINDINGS])
+    """Return the findings on cost that do not hold, if any."""
     yield ["claim that does not hold", "for", "measured"]
-    for row in found.to_dict("records"):
+    for row in FINDINGS.rows(results).to_dict("records"):
         measured = f"{row['quantity'].strip(' ,')}: {significant(row['value'])}"
         yield [row["claim"], row["formulation"], measured]
 

@@ -5,15 +5,13 @@ from dataclasses import replace
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from studies.convergence.swing_sweep import MODES, PARTS
+from studies.convergence.swing_sweep import PARTS
 from studies.engine import Claim, Study, Tables
 from studies.record.digits import Digits
 from studies.record.marks import Doubt, Level
-from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
+from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, LOOKS, Look
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
@@ -29,7 +27,7 @@ ALIKE = 1e-3
 
 
 def _shifts(tables: Tables) -> Figure:
-    """Draw the shifts of the swing (above) and the errors of the linear modes (below), by refinement."""
+    """Draw the shifts of the swing by refinement."""
     doubt = Doubt(float(tables["reference"]["uncertainty"].iloc[0]))
     size = Axis("shift", "|shift of the frequency| [1]", log=True)
     unnamed = replace(size, label="")
@@ -47,7 +45,7 @@ def _shifts(tables: Tables) -> Figure:
             title="Swing from 90°, n = 6", legend="upper left"
         ),
     )  # fmt: skip
-    return sheet(9.5, 6.6, (swing, _modes(tables["modes"])))
+    return sheet(9.5, 3.6, [swing])
 
 
 def _by_stretch(rows: pd.DataFrame) -> tuple[Curves, Curves]:
@@ -61,27 +59,6 @@ def _by_stretch(rows: pd.DataFrame) -> tuple[Curves, Curves]:
         Curves(rows, swung, by="stretch"),
         Curves(rows, predicted, by="stretch", y="shift_from_statics"),
     )
-
-
-def _modes(rows: pd.DataFrame) -> list[Drawn]:
-    """Return the errors of the linear modes over either refinement, a colour a mode, and their legend."""
-    looks = {}
-    for mode, look in zip(range(1, MODES + 1), LOOKS.values(), strict=False):
-        frequency = rows.loc[rows["mode"] == mode, "limit_Hz"].iloc[0]
-        looks[mode] = Look(label=f"mode {mode}: {frequency:.1f} Hz", colour=look.colour, marker="o")
-    y = Axis("error", "|error of the frequency| [1]", log=True, limits=(1e-11, None))
-    points, meshes = (
-        Panel(replace(x, column="count"), y, title="Small motion at rest",
-              marks=(Curves(rows[rows["model"] == model], looks, by="mode"),))
-        for x, model in ((CONTROL_POINTS, "spline"), (replace(MESH, each=2), "fe"))
-    )  # fmt: skip
-
-    def named(panel: Axes) -> None:
-        panel.set_axis_off()
-        handles = [Line2D([], [], **look.keywords()) for look in looks.values()]
-        panel.legend(handles=handles, loc="center left", title="small motion at rest")
-
-    return [points, replace(meshes, y=replace(y, label="")), named]
 
 
 def _backbone(tables: Tables) -> Figure:

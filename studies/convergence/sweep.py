@@ -17,7 +17,7 @@ from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
-from studies.record.marks import Doubt, Slope
+from studies.record.marks import Doubt
 from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
 from studies.record.progress import silent, watched
 from studies.record.style import ELEMENTS, LOOKS
@@ -138,17 +138,6 @@ def _refined(element: str) -> Answer:
     return {"meshes": rows, "limits": _limits(element, limit)}
 
 
-def _elements_figure(tables: Tables) -> Figure:
-    """Draw the errors over the number of elements, one panel a quantity, beside the slope of second order."""
-    rows, span, panels = tables["meshes"], (MESHES[0], MESHES[-1]), []
-    for quantity in QUANTITIES:
-        y = Axis(f"error_{quantity}", f"largest error of the {quantity} [1]", log=True)
-        start = (span[0], 0.5 * rows.sort_values("elements")[y.column].iloc[0])
-        order = Slope(through=start, power=-ORDER, span=span, label="order 2")
-        panels.append(Panel(replace(MESH, each=2), y, (Curves(rows, ELEMENTS, by="element"), order)))
-    return sheet(11.5, 3.9, [panels], legend=3)
-
-
 def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
     """Return the end values in the limit of refinement with their relative uncertainty."""
     values = {
@@ -204,6 +193,5 @@ ELEMENT_STUDY = Study(
             most=0.01,
         ),
     ),
-    figures={"elements": _elements_figure},
 )
 """Convergence of the finite elements with their number: errors, observed orders, limit and uncertainty."""

@@ -16,7 +16,7 @@ from studies.answers.settings import Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Part
 from studies.record.digits import Digits
-from studies.stability import family, maps
+from studies.stability import family
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
 INCREMENTS = (1, 2, 5, 20, 200)
@@ -162,19 +162,5 @@ SLENDERNESS = family.study(
     # the approach of six control points to the inextensible strip
     Part(ask=lambda: {"limit": _limit_table(family.PATHS[family.SIX])}),
     digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
-    figures={
-        "stability_slenderness": lambda tables: maps.outcome_map(
-            tables["outcomes"],
-            title="Driven in 20 increments: torque and path within 5 % of the refined answer",
-            xlabel="slenderness L/t [1]",
-            ylabel="rotation [deg]",
-            xscale="log",
-            xlim=(5.0, 2.0 * INEXTENSIBLE),
-            ylim=(0.0, 145.0),
-            xticks=(10.0, 1e3, 1e5, INEXTENSIBLE),
-            xticklabels=("10", "1e3", "1e5", "∞"),
-            yticks=list(SLENDER_ROTATIONS),
-        ),
-    },
 )
 """Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
