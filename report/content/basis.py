@@ -13,7 +13,7 @@ from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
 from report.forms import Form, count, degrees, digits, percent, power, seconds, significant, times, unit
 from studies.cases.problem import Problem, named_case
 from studies.record.source import ROOT
-from studies.registry import STUDIES, question_of
+from studies.registry import STUDIES
 
 STATICS = Stored("convergence/control_points", "reference")
 RELEASE = Stored("paper/fig06_release", "reference")
@@ -149,16 +149,6 @@ def _unmet(results: Results) -> Table:
         yield [row["claim"], row["formulation"], measured]
 
 
-@listing("further")
-def _further(results: Results) -> Table:
-    """Return the figures that no section shows, with what their studies ask."""
-    sections = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "report/sections").glob("*.typ"))
-    yield ["figure", "what it is about"]
-    for name, (study, _) in results.figures().items():
-        if f'#plot("{name}"' not in sections:
-            yield [_breakable(name), question_of(study)]
-
-
 @listing("provenance")
 def _provenance(results: Results) -> Table:
     yield ["study", "cases", "source", "tables", "computed in", "date"]
@@ -212,7 +202,6 @@ FACTS |= {
     ),
     "limits.plate.constant": PLATE.at("excess", percent, kind="constant"),
     "limits.plate.linear": PLATE.at("excess", percent, kind="linear"),
-    "limits.plate.ritz": Stored("model_form/plate", "ritz").largest("difference", power),
     "limits.unresolved": Stored("stability/step_size", "outcomes", model=DEFAULT).fact(
         lambda rows: (kinds(rows) == WARNED).sum(), count
     ),

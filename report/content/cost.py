@@ -175,7 +175,6 @@ FACTS |= {
     "surrogates.over": Stored(SURROGATES, "findings", quantity=OVER).at(
         "value", times, formulation=FOUR_POINTS["paper"]
     ),
-    "surrogates.swing": Stored(SURROGATES, "motion").largest("difference_rad", unit("rad"), model="four-bar"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Errors of the surrogate models over the whole range of rotation and of swings, against the refined spline.
+"""Errors of the surrogate models over the whole range of rotation, against the refined spline.
 
 The four-bar's link length and spring are fitted to the small-angle limit: its published coefficients were
 not found.
@@ -12,9 +12,8 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_static
-from studies.answers.reference import Swing, errors
+from studies.answers.reference import errors
 from studies.answers.response import Response
-from studies.answers.settings import SplineSettings
 from studies.baselines.answer import SolvedPath
 from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
 from studies.baselines.own import spline
@@ -32,12 +31,6 @@ REFINED, CHECK = 12, 10
 STATES = 91
 QUANTITIES = ("trajectory", "torque", "stiffness")
 LEVELS = (0.01, 0.05)
-
-DURATION = formulations.DURATION
-#: Step of the surrogates [s]: a hundredth of it moves their rotation by less than 1e-9 rad.
-STEP = 1e-5
-#: Spline that swings of less than the full amplitude are held against.
-SWING = SplineSettings(control_points=8)
 
 
 def _paths() -> Answer:
@@ -94,28 +87,6 @@ def _first_above(rotation: Array, error: Array, level: float) -> float:
     return float(rotation[before] + part * (rotation[after] - rotation[before]))
 
 
-def _released() -> Answer:
-    """Return the motions from the end of the path and the reference's uncertainty."""
-    problem = named_case()
-    limit, check = (
-        formulations.sampled(formulations.resolved(each), formulations.INSTANTS)
-        for each in (SplineSettings(control_points=10), SWING)
-    )
-    motions = [_motion("reference", limit.rotation, limit)]
-    for name, each in SURROGATES.items():
-        motion = each.release(problem, start=problem.rotation, duration=DURATION, step=STEP)
-        motions.append(_motion(name, np.interp(limit.time, motion.time, motion.rotation), limit))
-    apart = float(np.abs(check.rotation - limit.rotation).max())
-    uncertainty = {"quantity": "rotation", "unit": "rad", "uncertainty": apart}
-    return {"motion": pd.concat(motions), "reference": uncertainty}
-
-
-def _motion(name: str, rotation: Array, limit: Swing) -> pd.DataFrame:
-    """Return a rotation at the instants of the limit beside its difference to that."""
-    columns = {"time_s": limit.time, "rotation_rad": rotation, "difference_rad": rotation - limit.rotation}
-    return pd.DataFrame({"model": name, **columns})
-
-
 def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
     """Return the largest error of each spline and quantity over that of the best pseudo-rigid body."""
     largest = tables["errors"].set_index("model")[list(QUANTITIES)].abs().groupby("model").max().T
@@ -128,10 +99,7 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
 
 
 STUDY = Study(
-    parts=(
-        Part(ask=_paths),
-        Part(ask=_released),
-    ),
+    parts=(Part(ask=_paths),),
     made={"thresholds": _thresholds},
     claims=(
         Claim(

@@ -8,13 +8,15 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
-from itertools import product
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_modes, answer_release
+from studies.answers.metrics import observed_order
 from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
@@ -90,6 +92,11 @@ SWING = 0.012
 FEWEST, MOST = 15, 1200
 
 
+#: Steps of the table of orders and of its limit [s], and the duration of its motions [s].
+ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
+LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
+
+
 @cache
 def _reference(degrees: float) -> Motion:
     """Return the refined swing from a rotation."""
@@ -121,11 +128,27 @@ def _outcomes_of_step(degrees: float, step: float) -> Answer:
     return {"outcomes": [{**place, **_judged(name, given, reference, **known)} for name in SWINGING]}
 
 
+def _order_table() -> pd.DataFrame:
+    """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
+    problem, default = named_case(), family.COLUMNS[family.DEFAULT]
+
+    def swing(step: float) -> Motion:
+        return answer_release(problem, default, duration=ORDER_DURATION, step=step, records=5)
+
+    limit = swing(LIMIT_STEP).rotation
+    answers = [swing(step) for step in ORDER_STEPS]
+    errors = [float(np.abs(answer.rotation - limit).max()) for answer in answers]
+    orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
+    resolved = ["no" if answer.resolution else "yes" for answer in answers]
+    return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
+
+
 STEP_SIZE = family.study(
     Part(at=lambda: STARTS, ask=_settled),
     Part(at=lambda: product(STARTS, STEPS), ask=_outcomes_of_step),
+    Part(ask=lambda: {"order": _order_table()}),
 )
-"""Steps from 1e-7 to 1e-2 s: no gain of energy, and a warning where a step is too long."""
+"""Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
 FACTORS = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)
