@@ -112,7 +112,6 @@ def _(r: Results) -> Any:
 
 #: Gates beside each other in a row of their table; cases of a study that are named; letters of a hash.
 BESIDE, NAMED, HASH = 3, 3, 10
-FINDINGS = Stored("baselines/peers", "findings_of_time", holds="no")
 PLATE = Stored("model_form/plate", "paper")
 
 
@@ -138,15 +137,6 @@ def _gates(results: Results) -> Table:
     cells += [["", "", ""]] * (BESIDE * height - len(cells))
     yield ["limit of", "limit", "ratio"] * BESIDE
     yield from (list(chain.from_iterable(cells[k::height])) for k in range(height))
-
-
-@listing("unmet")
-def _unmet(results: Results) -> Table:
-    """Return the findings on cost that do not hold, if any."""
-    yield ["claim that does not hold", "for", "measured"]
-    for row in FINDINGS.rows(results).to_dict("records"):
-        measured = f"{row['quantity'].strip(' ,')}: {significant(row['value'])}"
-        yield [row["claim"], row["formulation"], measured]
 
 
 @listing("provenance")

@@ -133,29 +133,8 @@ ORDER, ALLOWANCE = 2.0, 0.1
 
 
 def _refined(element: str) -> Answer:
-    """Return the errors of every mesh of an element, and the limits."""
-    rows, limit = element_sweep(named_case(), MESHES, element)
-    return {"meshes": rows, "limits": _limits(element, limit)}
-
-
-def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
-    """Return the end values in the limit of refinement with their relative uncertainty."""
-    values = {
-        "com_x_m": (limit.centre[-1, 0], "trajectory"),
-        "com_y_m": (limit.centre[-1, 1], "trajectory"),
-        "torque_Nm": (limit.torque[-1], "torque"),
-        "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
-        "max_stress_Pa": (limit.max_stress[-1], "stress"),
-    }
-    return [
-        {
-            "element": element,
-            "quantity": quantity,
-            "limit": value,
-            "relative_uncertainty": limit.uncertainty[kind],
-        }
-        for quantity, (value, kind) in values.items()
-    ]
+    """Return the errors of every mesh of an element."""
+    return {"meshes": element_sweep(named_case(), MESHES, element)[0]}
 
 
 def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
@@ -194,4 +173,4 @@ ELEMENT_STUDY = Study(
         ),
     ),
 )
-"""Convergence of the finite elements with their number: errors, observed orders, limit and uncertainty."""
+"""Convergence of the finite elements with their number: errors and observed orders."""
