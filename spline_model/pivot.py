@@ -47,6 +47,11 @@ class Pivot(Mechanism):
         return self.design.strips[0].linear_density
 
     @property
+    def strip_mass(self) -> float:
+        """Mass of a strip [kg]."""
+        return self.linear_density * self.design.strips[0].length
+
+    @property
     def body_mass(self) -> float:
         """Mass of the body [kg]."""
         return self.design.bodies[0].mass
