@@ -2,14 +2,12 @@
 
 import math
 
-import pandas as pd
 import pytest
 
 from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.stability import family as columns
-from studies.stability import maps
 from studies.stability.family import OUTCOMES, Found, judged
 
 
@@ -50,15 +48,3 @@ def test_columns_are_what_they_say():
     assert columns.COLUMNS[columns.DEFAULT] == SplineSettings()
     assert columns.COLUMNS[columns.PAPER] == formulations.SETTINGS[formulations.PAPER]
     assert set(columns.COLUMNS) <= set(columns.ORDER)
-
-
-def test_map_draws_every_model_and_outcome():
-    """A map has a panel a model, and its legend names the outcomes that occur, no others."""
-    rows = [
-        {"model": model, "x": i, "y": i, "outcome": outcome}
-        for model in (columns.DEFAULT, columns.FE)
-        for i, outcome in enumerate(("right", "wrong"))
-    ]
-    figure = maps.outcome_map(pd.DataFrame(rows), title="t", xlabel="x", ylabel="y")
-    assert len(figure.axes) == 2
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["right", "wrong"]

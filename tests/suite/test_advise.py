@@ -10,7 +10,7 @@ from studies.baselines.answer import BaselineFailed
 from studies.baselines.variant import Baseline, grid
 from studies.cases.problem import FOLDER
 from studies.work_precision import advice, series
-from studies.work_precision.equal_error import cheapest, coarsest, kept
+from studies.work_precision.equal_error import coarsest, kept
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -31,17 +31,6 @@ def test_an_error_by_luck_does_not_count():
     table = rows([[1e-5, 1e-2, 1e-3], [1e-2, math.nan, 1e-4]])
     assert kept(table, ["error_x"], "rank").tolist() == [1e-2, 1e-2, 1e-3, math.inf, math.inf, 1e-4]
     assert coarsest(table, ["error_x"], "rank", 2e-3)["setting"].tolist() == ["a2", "b2"]
-
-
-def test_cheapest_at_equal_error():
-    """At each error the fastest setting of every series is found, and its time over the spline's."""
-    table = rows([[1e-1, 1e-3, 1e-5], [1e-2, 1e-3]], names=("spline", "b"), slow=10.0)
-    found = cheapest(table, columns=["error_x"], rank="rank", targets=(1e-2, 1e-4))
-    loose, tight = found.iloc[:2].set_index("series"), found.iloc[2:].set_index("series")
-    assert (loose.loc["spline", "setting"], loose.loc["b", "setting"]) == ("spline1", "b0")
-    assert loose.loc["b", "ratio"] == 10.0 / 2.0
-    assert tight.loc["spline", "setting"] == "spline2"
-    assert tight.loc["b", "setting"] == "" and math.isnan(tight.loc["b", "ratio"])
 
 
 @pytest.fixture
