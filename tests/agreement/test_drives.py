@@ -7,7 +7,6 @@ import pytest
 
 from studies.answers.settings import FeSettings
 from studies.cases.design import Design
-from studies.errors import BadInput
 from tests import gates
 from tests.agreement import loaded
 from tests.agreement.loaded import ROTATION
@@ -82,11 +81,3 @@ def test_gates_of_drives_have_teeth(gate):
             gates.check(gate, released(driven("caught"), ELEMENTS, **coarse).energy_error)
         else:
             gates.check(gate, schemes_apart(**coarse))
-
-
-def test_a_drive_without_a_rotation_is_refused():
-    """Requirement: a case that leads a rotation says which, and says until when in order."""
-    with pytest.raises(BadInput, match=r"drive\.rotation_deg: got none, expected the rotation"):
-        released(replace(loaded.design("applied_force", None), held=HELD), ELEMENTS)
-    with pytest.raises(BadInput, match=r"drive\.held_s: got \[0.5, 0.2\], expected two instants"):
-        replace(loaded.design("gravity"), held=(0.5, 0.2))

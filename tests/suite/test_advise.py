@@ -162,29 +162,6 @@ def test_no_model_meets_an_impossible_error(capsys, monkeypatch):
     assert "its best" in streams.out
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        ([str(FOLDER / "parallel_strip_guide.toml")], "got none, expected a rotation to relate errors to"),
-        ([CASE, "--accuracy", "0"], "expected a finite number above 0"),
-        ([CASE, "--accuracy", "no"], "expected a finite number above 0"),
-        (["nowhere.toml"], "nowhere.toml"),
-    ],
-    ids=str,
-)
-def test_bad_input_is_one_line(words, expected, refused):
-    """What cannot be advised on is refused in one line."""
-    refused("advise", *words, says=expected)
-
-
-def test_a_path_without_rotation_is_refused(tmp_path, refused):
-    """Without a rotation there is nothing to relate errors to."""
-    text = (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
-    case = tmp_path / "rest.toml"
-    case.write_text(text.replace("rotation_deg = 90", "rotation_deg = 0"), encoding="utf-8")
-    refused("advise", case, says="expected a rotation")
-
-
 def test_uncertain_references_are_told():
     """When a reference is too coarse for the wanted error, the table says that the verdict is not certain."""
     found = advice._chosen(rows([[1e-4]]), ["error_x"], 1e-3).assign(uncertainty=5e-4)

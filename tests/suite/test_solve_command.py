@@ -194,22 +194,6 @@ def test_accuracy_out_of_reach_is_exit_code_3(case, command):
     assert answer["estimate"]["torque"] < 1e-13
 
 
-@pytest.mark.parametrize(
-    ("options", "line"),
-    [
-        (["spline", "--accuracy", 0], "--accuracy: got 0, expected a finite number above 0"),
-        (
-            ["spline", "--accuracy", 1e-3, "--control-points", 8, "--axial-modes", 3],
-            "axial_modes: got 3, expected none beside accuracy",
-        ),
-    ],
-    ids=["zero", "axial modes"],
-)
-def test_accuracy_that_cannot_be_is_one_line(options, line, case, refused):
-    """Elements are refined by another command; an accuracy is positive; it chooses the axial modes."""
-    refused("solve", case(), "--model", *options, says=line)
-
-
 def test_a_mechanism_is_answered_to_an_accuracy(command):
     """The control points of a mechanism are chosen like those of a pivot, 1e-4 unless said otherwise."""
     words = ["solve", FOLDER / "parallel_strip_guide.toml", "--model", "spline", "--json", "-"]
