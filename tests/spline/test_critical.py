@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mpmath import ellipk, mp
 
-from spline_model import InvalidParameter, cross_axis_pivot, solve_loads, solve_mechanism, solve_statics
+from spline_model import InvalidParameter, cross_axis_pivot, solve_mechanism, solve_statics
 from spline_model.dynamics import solve_release
 from spline_model.modes import natural_frequencies
 from spline_model.sequential_impulse import solve_impulses
@@ -126,11 +126,3 @@ def test_printed_forces_are_of_statics_alone():
             ask(pivot)
     with pytest.raises(InvalidParameter, match=f"{line}: printed forces are of static paths alone"):
         answer.body_stiffness()
-
-
-def test_an_unknown_branch_and_control_are_refused():
-    """Requirement: a branch or a control that does not exist is refused with those that do."""
-    with pytest.raises(InvalidParameter, match="one of primary, follow"):
-        solve_loads(column(load=1.0).scene, branch="lucky")
-    with pytest.raises(InvalidParameter, match="one of load, arc-length"):
-        solve_loads(column(load=1.0).scene, control="time")

@@ -59,12 +59,6 @@ def test_fast_path_gate_has_teeth():
         gates.check("spline_fast_path", np.abs(fast.torque / reference.torque.max() - 1)[-1])
 
 
-def test_an_unknown_method_is_refused():
-    """Requirement: a method that does not exist is refused with those that do."""
-    with pytest.raises(InvalidParameter, match="one of condensed, multipliers"):
-        solve_statics(cross_axis_pivot(**SIX), rotation=0.3, method="guess")
-
-
 def many(count=40):
     """Designs around Table 1, drawn once."""
     generator = np.random.default_rng(11)
