@@ -40,8 +40,9 @@ CALLS = {
     "fe release": (fe_reference.solve_release, ELEMENTS, {"start": 0.1, "duration": 1e-4}),
     "fe modes": (fe_reference.natural_frequencies, ELEMENTS, {"rotation": 0.1, "count": 1}),
 }
-#: Calls that do not check the type of these parameters.
-UNCHECKED = {"spline pivot": {"inclination", "crossing_ratio", "poisson_ratio"}}
+#: Calls that do not check the type of these parameters, or take NaN of them for none.
+SECTION = ("area", "second_moment_of_area")
+UNCHECKED = {"spline pivot": {"inclination", "crossing_ratio", "poisson_ratio", *SECTION}}
 #: Whole numbers, which may be of any size.
 COUNTS = {"increments", "count", "control_points", "gauss_points", "elements"}
 WRONG = {
