@@ -8,7 +8,6 @@ import pytest
 
 from studies.answers.settings import FeSettings
 from studies.cases.design import Design
-from studies.errors import BadInput
 from tests import gates
 from tests.agreement import loaded
 from tests.agreement.loaded import ROTATION
@@ -76,11 +75,3 @@ def schemes_apart(step: float = 0.4 * STEP) -> float:
 def test_both_schemes_of_the_elements_follow_the_same_drives():
     """Requirement: the implicit integrator of the elements moves as the explicit one does."""
     gates.hold("drives_schemes", schemes_apart)
-
-
-def test_a_drive_without_a_rotation_is_refused():
-    """Requirement: a case that leads a rotation says which, and says until when in order."""
-    with pytest.raises(BadInput, match=r"drive\.rotation_deg: got none, expected the rotation"):
-        released(replace(loaded.design("applied_force", None), held=HELD), ELEMENTS)
-    with pytest.raises(BadInput, match=r"drive\.held_s: got \[0.5, 0.2\], expected two instants"):
-        replace(loaded.design("gravity"), held=(0.5, 0.2))

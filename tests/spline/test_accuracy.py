@@ -172,13 +172,6 @@ def test_accuracy_out_of_reach_is_an_error_with_the_best_answer():
     assert (kept.status, kept.message) == (Status.NOT_CONVERGED, str(caught.value))
 
 
-@pytest.mark.parametrize("wrong", [0.0, -1e-3, math.nan, math.inf, "1e-3"])
-def test_bad_accuracy_is_refused(wrong):
-    """Requirement: an accuracy is a positive number."""
-    with pytest.raises(InvalidParameter, match=r"accuracy: got .*, expected a finite number > 0 \[1\]"):
-        solve_statics(pivot(), rotation=QUARTER, accuracy=wrong)
-
-
 @pytest.mark.parametrize("choice", [{"axial_modes": 3}, {"gauss_points": 9}], ids=str)
 def test_choices_that_contradict_are_refused(choice):
     """Requirement: axial modes and quadrature go with the control points that are chosen."""

@@ -11,7 +11,6 @@ from spline_model import (
     cross_axis_pivot,
     natural_frequencies,
     solve_impulses,
-    solve_loads,
     solve_mechanism,
     solve_release,
     solve_statics,
@@ -121,11 +120,3 @@ def test_printed_forces_are_of_statics_alone():
             ask(pivot)
     with pytest.raises(InvalidParameter, match=f"{line}: printed forces are of static paths alone"):
         answer.body_stiffness()
-
-
-def test_an_unknown_branch_and_control_are_refused():
-    """Requirement: a branch or a control that does not exist is refused with those that do."""
-    with pytest.raises(InvalidParameter, match="one of primary, follow"):
-        solve_loads(column(load=1.0).scene, branch="lucky")
-    with pytest.raises(InvalidParameter, match="one of load, arc-length"):
-        solve_loads(column(load=1.0).scene, control="time")

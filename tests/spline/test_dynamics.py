@@ -132,12 +132,8 @@ def test_small_swing_has_the_linear_frequency():
 @pytest.mark.parametrize(
     "options, line",
     [
-        ({"step": 0.0}, "step: got 0.0"),
-        ({"duration": -1.0}, "duration: got -1.0"),
         ({"step": 1.0}, "step: got 1.0, expected at most the duration"),
         ({"duration": 1e6, "step": 1e-6}, r"duration: got 1000000.0, expected records within 2 GB"),
-        ({"integrator": "generalised-alpha"}, "expected one of energy, leapfrog"),
-        ({"start": math.nan}, "start: got nan"),
         ({"accuracy": 1e-3, "step": 1e-4}, "accuracy: got 0.001"),
         ({"records": 0}, "records: got 0, expected an integer >= 1"),
     ],

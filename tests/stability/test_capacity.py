@@ -144,9 +144,3 @@ def test_command_tells_the_capacity(capsys):
     one, other = json.loads(capsys.readouterr().out)["answers"]
     assert one["capacity_N"] == pytest.approx(other["capacity_N"], rel=1e-5)
     assert (one["held"], one["kind"], one["status"]) == (True, "bifurcation", "converged")
-
-
-def test_a_body_that_is_not_there_is_refused(refused):
-    """Requirement: an unknown body is one line with what there is."""
-    text = "studies: body: got wing, expected one of crank, coupler, rocker\n"
-    refused("capacity", "four_bar_of_flexures", "--body", "wing", says=text)

@@ -94,18 +94,3 @@ def test_dynamic_advice_as_a_table(command, monkeypatch):
     assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
     assert any(line.startswith("spline, energy-consistent") and " ms" in line for line in lines)
     assert any(line.startswith("failing") and line.endswith("it blew up") for line in lines)
-
-
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        ([str(FOLDER / "parallel_strip_guide.toml")], "got none, expected a rotation to relate errors to"),
-        ([CASE, "--accuracy", "0"], "expected a finite number above 0"),
-        ([CASE, "--accuracy", "no"], "expected a finite number above 0"),
-        (["nowhere.toml"], "nowhere.toml"),
-    ],
-    ids=str,
-)
-def test_bad_input_is_one_line(words, expected, refused):
-    """What cannot be advised on is refused in one line."""
-    refused("advise", *words, says=expected)

@@ -113,21 +113,6 @@ def test_audit_reads_well(command):
     assert "run anew: largest change " in lines[-1]
 
 
-@pytest.mark.parametrize(
-    ("words", "text"),
-    [
-        (["--tolerance", "0"], "--tolerance: got 0, expected a finite number above 0"),
-        (["--tolerance", "nan"], "--tolerance: got nan, expected"),
-        (["--control-points", "3"], "--control-points: got 3, expected a whole number of at least 4"),
-        (["--effects=-strip_inertia,-body_inertia"], "expected one of strip_inertia, section_rotary_inertia"),
-        (["--effects=+gravty"], "--effects: got gravty, expected gravity (the nearest name)"),
-    ],
-)
-def test_bad_audit_is_one_line(words, text, refused):
-    """Options with a fault, and a full scene that the model refuses, are one line and exit code 2."""
-    refused("audit", TABLE_1, *words, says=text)
-
-
 def test_audit_of_what_is_not_stable(command, tmp_path):
     """A design that does not stand at rest is exit code 3, and says why."""
     text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")

@@ -186,14 +186,6 @@ def test_command_writes_a_picture_beside_its_answer(words, kind, tmp_path, capsy
     assert f"{path}: the picture" in said.err
 
 
-@pytest.mark.parametrize(
-    ("name", "expected"), [("a.gif", ".svg, .png or .pdf"), ("no/a.svg", "writable place")]
-)
-def test_a_picture_that_cannot_be_written_is_refused_before_solving(name, expected, tmp_path, refused):
-    """A wrong ending or a missing folder is one line, and nothing is solved."""
-    refused("solve", PIVOT, "--plot", tmp_path / name, says=expected)
-
-
 @pytest.mark.slow
 def test_compare_draws_what_it_tells(tmp_path, capsys):
     """The table ends with the ratios of the designs to the first; pictures of paths and modes are drawn."""
@@ -204,20 +196,6 @@ def test_compare_draws_what_it_tells(tmp_path, capsys):
     (line,) = (line.split() for line in lines if line.startswith("torque, end"))
     assert float(line[-1]) == pytest.approx(float(line[-2]) / float(line[-3]), rel=1e-2)
     assert both.stat().st_size > 0 < modes.stat().st_size
-
-
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        ([PIVOT], "expected 2 to 5 designs"),
-        ([PIVOT, FOUR_BAR, "--model", "spline,fe,fe-shear"], "expected 2 to 5 designs"),
-        ([PIVOT, FOUR_BAR, "--elements", "4"], "--elements: got it with --model spline"),
-        ([PIVOT, FOUR_BAR, "--model", "fe", "--control-points", "6"], "--control-points: got it with"),
-    ],
-)
-def test_compare_refuses_in_a_line(words, expected, refused):
-    """Too few or many designs, and options that no model takes, are one line."""
-    refused("compare", *words, says=expected)
 
 
 def test_curves_over_rotation_begin_under_the_loads():

@@ -151,22 +151,6 @@ def test_accuracy_out_of_reach_is_exit_code_3(case, command):
     assert answer["estimate"]["torque"] < 1e-13
 
 
-@pytest.mark.parametrize(
-    ("options", "line"),
-    [
-        (["spline", "--accuracy", 0], "--accuracy: got 0, expected a finite number above 0"),
-        (
-            ["spline", "--accuracy", 1e-3, "--control-points", 8, "--axial-modes", 3],
-            "axial_modes: got 3, expected none beside accuracy",
-        ),
-    ],
-    ids=["zero", "axial modes"],
-)
-def test_accuracy_that_cannot_be_is_one_line(options, line, case, refused):
-    """Elements are refined by another command; an accuracy is positive; it chooses the axial modes."""
-    refused("solve", case(), "--model", *options, says=line)
-
-
 @pytest.mark.parametrize(("order", "turned"), [("loads first", 4), ("together", 1)])
 @pytest.mark.parametrize("model", ["spline", "fe"])
 def test_order_of_loads_and_rotation(model, order, turned, case, command):

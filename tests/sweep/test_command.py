@@ -76,13 +76,6 @@ def test_the_help_shows_a_file_that_works(tmp_path, capsys):
     assert asked.task.batch
 
 
-def test_scheduler_and_workers_exclude_each_other(tmp_path, refused):
-    """Requirement: options that contradict each other are refused."""
-    words = ["sweep", EXAMPLES[0], "--out", tmp_path / "out"]
-    both = ["--workers", 2, "--scheduler", "tcp://127.0.0.1:1"]
-    refused(*words, *both, says="--workers: got it with --scheduler")
-
-
 def left_of(group: int, within: float = 60.0) -> list[str]:
     """Return the processes of a group that are still at work after a while."""
     end = time.monotonic() + within
