@@ -134,7 +134,6 @@ class SwingReference:
         frequency: of the limit [Hz].
         uncertainty: (T,) of the rotation [rad]; centre_uncertainty: (T, 2) [m].
         frequency_uncertainty: relative [1].
-        levels: the motions that it was taken from, the finest last.
     """
 
     swing: Swing
@@ -142,7 +141,6 @@ class SwingReference:
     uncertainty: Array
     centre_uncertainty: Array
     frequency_uncertainty: float
-    levels: tuple[Motion, ...]
 
 
 def sampled(motion: Motion, instants: Array) -> Swing:
@@ -180,5 +178,4 @@ def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference
         uncertainty=rotation.uncertainty,
         centre_uncertainty=limits["centre"].uncertainty,
         frequency_uncertainty=abs(swing_frequency(instants, before).value / frequency - 1.0),
-        levels=tuple(levels),
     )
