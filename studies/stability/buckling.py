@@ -132,7 +132,7 @@ LARGE = {"markersize": 7.0}
 def _figure(tables: Tables) -> Figure:
     """Draw the four panels of the tables outcomes, curves, critical and branches."""
     column, toggle, lee = (_loads(tables, part) for part in AXES)
-    return sheet(8.6, 6.6, [[column, toggle], [lee, _pivot(tables["branches"])]], legend=5)
+    return sheet(8.6, 6.6, [[column, toggle], [lee, _pivot(tables["branches"])]], legend=4)
 
 
 def _loads(tables: Tables, part: str) -> Panel:
@@ -140,11 +140,12 @@ def _loads(tables: Tables, part: str) -> Panel:
     curves, critical = (tables[name][tables[name]["part"] == part] for name in ("curves", "critical"))
     outcomes = tables["outcomes"]
     asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
+    levels = sorted(set(outcomes[asked]["published"]), reverse=True)
     along, up, limits = AXES[part]
     marks = (
         Curves(curves, LOOKS, by="model", along="state"),
         Curves(critical, CRITICAL, by="model", more=LARGE),
-        *(Level(limit, "published", line=":") for limit in sorted(set(outcomes[asked]["published"]))),
+        *(Level(level, "" if k else "published", line=":") for k, level in enumerate(levels)),
     )
     return Panel(Axis("deflection", along), Axis("load", up, limits=limits), marks, title=part)
 
