@@ -149,15 +149,22 @@ def sampled(motion: Motion, instants: Array) -> Swing:
     return Swing(time=instants, **found)
 
 
-def swing_reference(problem: Problem, *, duration: float, instants: Array) -> SwingReference:
+def swing_reference(
+    problem: Problem,
+    *,
+    duration: float,
+    instants: Array,
+    meshes: Sequence[int] = SWING_MESHES,
+    element: str = "corotational",
+) -> SwingReference:
     """Release `problem` from the end of its path on the meshes and return their limit at `instants` [s].
 
     Raises:
         NoReference: a motion stopped early.
     """
     levels = []
-    for elements in SWING_MESHES:
-        settings = FeSettings(elements=elements)
+    for elements in meshes:
+        settings = FeSettings(elements=elements, element=element)
         answer = answer_release(problem, settings, duration=duration, records=RECORDS)
         if not answer.converged:
             raise NoReference(f"reference with {elements} elements: {answer.message}")
