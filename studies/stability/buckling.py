@@ -17,7 +17,7 @@ from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.record.digits import Digits
 from studies.record.marks import Level
-from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, Look
 from studies.stability import family, questions
 from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
@@ -142,7 +142,7 @@ def _loads(tables: Tables, part: str) -> Panel:
     asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
     levels = sorted(set(outcomes[asked]["published"]), reverse=True)
     along, up, limits = AXES[part]
-    marks = (
+    marks: tuple[Mark, ...] = (
         Curves(curves, LOOKS, by="model", along="state"),
         Curves(critical, CRITICAL, by="model", more=LARGE),
         *(Level(level, "" if k else "published", line=":") for k, level in enumerate(levels)),
