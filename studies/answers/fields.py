@@ -38,6 +38,7 @@ class _Part(Sectioned):
     area: float
     second_moment_of_area: float
     section_depth: None = None
+    width: None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.keys import DEPTH, GROUND, LOADS_FIRST, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
 from studies.cases.rules import FREE, shown
 
 if TYPE_CHECKING:  # a template of a case waits for no arrays
@@ -24,12 +24,18 @@ class Sectioned:
     area: float
     second_moment_of_area: float
     section_depth: float | None
+    width: float | None
 
     @property
     def depth(self) -> float:
         """Depth of the section [m]: as given, or that of the rectangle with its A and I."""
         depth: float = self.rectangle()["thickness"] if self.section_depth is None else self.section_depth
         return depth
+
+    @property
+    def depth_is_assumed(self) -> bool:
+        """Whether the depth is that of a rectangle which no one named: only A and I are known."""
+        return self.width is None and self.section_depth is None
 
     def rectangle(self) -> dict[str, Any]:
         """Return width and thickness [m] of the rectangle with its A and I."""
@@ -258,9 +264,9 @@ def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
 def _refuse_both(where: str, found: Values, label: str) -> None:
     """Raise CaseError if both pairs, or parts of them, are given for one section."""
     one = [key.name for key in SIDES if key.attribute in found]
-    other = [key.name for key in MOMENTS if key.attribute in found]
+    other = [key.name for key in (*MOMENTS, DEPTH) if key.attribute in found]
     if one and other:
-        expected = "width_m and thickness_m, or area_m2 and second_moment_m4, not both"
+        expected = "width_m and thickness_m, or area_m2 and second_moment_m4 (with section_depth_m), not both"
         raise CaseError(f"{where}: {label}.{one[0]}: got it beside {other[0]}, expected {expected}")
 
 
@@ -273,7 +279,7 @@ def _inherited(shared: Values, own: Values) -> dict[str, Any]:
     left = dict(shared)
     for pair, other in ((SIDES, MOMENTS), (MOMENTS, SIDES)):
         if any(key.attribute in own for key in pair):
-            left = _without(left, [key.attribute for key in other])
+            left = _without(left, [key.attribute for key in (*other, DEPTH)])
     if NAMED.attribute in own:
         left = _without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
     return left | dict(own)
