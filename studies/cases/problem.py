@@ -10,7 +10,8 @@ from typing import Any
 from studies.cases.document import CaseError, is_mechanism, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
-from studies.cases.mechanism import Body, Sectioned, Strip, completed, of_sides
+from studies.cases.mechanism import Body, Strip
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -97,6 +98,8 @@ class Problem(Sectioned):
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
         self._check_section()
+        if said := out_of_scale(self):
+            raise CaseError(f"strip: {said}")
 
     def _check_section(self) -> None:
         """Raise CaseError if the sides of the section are not those of its area and second moment."""
