@@ -63,7 +63,6 @@ STUDIES: dict[str, str] = {
     "convergence/elements": "studies.convergence.sweep:ELEMENT_STUDY",
     "convergence/frequency": "studies.convergence.frequency",
     "convergence/error_estimate": "studies.convergence.error_estimate",
-    "convergence/slide_stiffness": "studies.convergence.control_points:SLIDE_STUDY",
     "model_form/plate": "studies.published.plate",
     "published/problems": "studies.published.problems",
     "stability/rotation": "studies.stability.paths:ROTATION",
@@ -82,8 +81,7 @@ STUDIES: dict[str, str] = {
     "impulses/step_size": "studies.convergence.impulse_steps",
     "baselines/surrogates": "studies.baselines.surrogates",
     "baselines/peers": "studies.baselines.peers",
-    "work_precision/statics": "studies.work_precision.statics",
-    "work_precision/dynamics": "studies.work_precision.dynamics",
+    "work_precision/references": "studies.work_precision.references",
     "work_precision/waits": "studies.work_precision.waits",
 }
 

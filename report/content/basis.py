@@ -8,22 +8,20 @@ from functools import cache
 from itertools import chain
 from typing import Any
 
-import pandas as pd
-
 from report.content.hard_cases import DEFAULT, WARNED, kinds
 from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
 from report.forms import Form, count, degrees, digits, percent, power, seconds, significant, times, unit
 from studies.cases.problem import Problem, named_case
 from studies.record.source import ROOT
-from studies.registry import STUDIES, question_of
+from studies.registry import STUDIES
 
 STATICS = Stored("convergence/control_points", "reference")
 RELEASE = Stored("paper/fig06_release", "reference")
-FINE = Stored("work_precision/dynamics", "reference")
+FINE = Stored("work_precision/references", "swings")
 SHEAR = {"what": "difference of the theories"}
 TORQUE = Stored("baselines/peers", "theories", **SHEAR)
 SWING = Stored("baselines/peers", "swing_theories", **SHEAR)
-SPATIAL = Stored("work_precision/statics", "reference", theory="spatial")
+SPATIAL = Stored("work_precision/references", "paths", theory="spatial")
 AT_REST = Stored("paper/fig05_stiffness", "curves", formulation="FE refined", rotation_rad=0.0)
 
 
@@ -114,13 +112,6 @@ def _(r: Results) -> Any:
 
 #: Gates beside each other in a row of their table; cases of a study that are named; letters of a hash.
 BESIDE, NAMED, HASH = 3, 3, 10
-#: Tables of the findings on cost.
-FINDINGS = (
-    ("work_precision/statics", "findings"),
-    ("work_precision/statics", "findings_of_time"),
-    ("work_precision/dynamics", "findings"),
-    ("work_precision/dynamics", "findings_of_time"),
-)
 PLATE = Stored("model_form/plate", "paper")
 
 
@@ -146,26 +137,6 @@ def _gates(results: Results) -> Table:
     cells += [["", "", ""]] * (BESIDE * height - len(cells))
     yield ["limit of", "limit", "ratio"] * BESIDE
     yield from (list(chain.from_iterable(cells[k::height])) for k in range(height))
-
-
-@listing("unmet")
-def _unmet(results: Results) -> Table:
-    """Return the findings that do not hold, if any."""
-    found = pd.concat([results.table(*each).query("holds == 'no'") for each in FINDINGS])
-    yield ["claim that does not hold", "for", "measured"]
-    for row in found.to_dict("records"):
-        measured = f"{row['quantity'].strip(' ,')}: {significant(row['value'])}"
-        yield [row["claim"], row["formulation"], measured]
-
-
-@listing("further")
-def _further(results: Results) -> Table:
-    """Return the figures that no section shows, with what their studies ask."""
-    sections = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "report/sections").glob("*.typ"))
-    yield ["figure", "what it is about"]
-    for name, (study, _) in results.figures().items():
-        if f'#plot("{name}"' not in sections:
-            yield [_breakable(name), question_of(study)]
 
 
 @listing("provenance")
@@ -221,7 +192,6 @@ FACTS |= {
     ),
     "limits.plate.constant": PLATE.at("excess", percent, kind="constant"),
     "limits.plate.linear": PLATE.at("excess", percent, kind="linear"),
-    "limits.plate.ritz": Stored("model_form/plate", "ritz").largest("difference", power),
     "limits.unresolved": Stored("stability/step_size", "outcomes", model=DEFAULT).fact(
         lambda rows: (kinds(rows) == WARNED).sum(), count
     ),

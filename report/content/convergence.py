@@ -9,7 +9,6 @@ from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing, wh
 from report.forms import count, digits, percent, power, signed_percent, significant, times, unit
 from studies.record.style import COUNT_COLOURS, GREY, RED
 
-SLIDE = "convergence/slide_stiffness"
 QUANTITIES = ("trajectory", "torque", "stiffness")
 #: Control points that the table shows.
 COUNTS = (4, 5, 6, 8, 10)
@@ -22,7 +21,6 @@ MESHES = Stored("convergence/elements", "meshes", element="corotational")
 SHIFTS = Stored("convergence/frequency", "control_points")
 SWING = Stored("convergence/frequency", "findings")
 BACKBONE = Stored("convergence/frequency", "backbone", formulation="n = 6")
-SLID = Stored(SLIDE, "findings")
 ESTIMATES = Stored("convergence/error_estimate", "estimates", counts=True)
 
 
@@ -58,19 +56,6 @@ def _ten(results: Results) -> float:
     shift = SHIFTS.value(results, "shift", stretch="mixed", control_points=10)
     unsure = results.table("convergence/frequency", "reference")["uncertainty"].max()
     return max(abs(float(shift)), float(unsure))
-
-
-def _worst_slide(results: Results) -> float:
-    """Return the error with the default slide stiffness where that is farthest from the best."""
-    found = SLID.rows(results).sort_values("value").iloc[-1]
-    moving = "motion" in found["claim"]
-    table, name = ("motion", "error_rotation_rad") if moving else ("statics", "error_torque")
-    points = int(str(found["formulation"]).removeprefix("n = "))
-    default = Stored(SLIDE, "defaults", problem=table).value(
-        results, "slide_stiffness", control_points=points
-    )
-    rows = where(results.table(SLIDE, table), control_points=points)
-    return float(rows.loc[(rows["slide_stiffness"] - default).abs().idxmin(), name])
 
 
 def _as_good_as_six(results: Results) -> int:
@@ -144,10 +129,6 @@ FACTS |= {
     "backbone.rest": BACKBONE.least("frequency_Hz", unit("Hz", 4)),
     "backbone.end": BACKBONE.largest("frequency_Hz", unit("Hz", 4)),
     "backbone.difference": SWING.at("value", percent, claim=ALIKE, formulation="n = 6"),
-    "slide.worst": SLID.largest("value", times),
-    "slide.worst.error": Fact(made=_worst_slide, form=power),
-    "slide.failed": SLID.fact(lambda rows: (rows["holds"] == "no").sum(), count),
-    "slide.tried": SLID.fact(len, count),
     "estimate.statics": ESTIMATES.fact(len, count, problem="statics"),
     "estimate.statics.designs": ESTIMATES.fact(_designs, count, problem="statics"),
     "estimate.motion.designs": ESTIMATES.fact(_designs, count, problem="motion"),
@@ -196,12 +177,6 @@ def _(r: Results) -> Any:
 def _(r: Results) -> Any:
     """all findings on the frequency hold, but for the first mode at rest"""
     return set(SWING.rows(r, holds="no")["claim"]) == {AT_REST}
-
-
-@holds("slide.some-off")
-def _(r: Results) -> Any:
-    """the default slide stiffness is off the best for some counts of control points"""
-    return (SLID.rows(r)["holds"] == "no").any()
 
 
 @holds("estimate.never-above")

@@ -1,6 +1,5 @@
 """What accuracy costs: one comparison of all models, what a user waits for, and the surrogates."""
 
-import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -9,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from report.facts import FACTS, Fact, Results, Stored, Table, holds, listing
-from report.forms import angle, count, decade, percent, power, seconds, significant, times, unit
+from report.forms import angle, count, decade, percent, power, seconds, times, unit
 
 CODES = "baselines/peers"
 #: Groups of the comparison beside the spline, in the order of the table.
@@ -29,61 +28,23 @@ SIMPLE = {
 #: Splines of four control points that the path of the four-bar is compared with.
 FOUR_POINTS = {"paper": "n = 4, as the paper", "free": "n = 4, locking-free"}
 QUANTITIES = ("trajectory", "torque", "stiffness")
-#: What a setting's words are shortened to.
-SHORT: tuple[tuple[str, Any], ...] = (
-    (r"control_points=(\d+)", r"n = \1"),
-    (r"elements=(\d+)", r"\1 el."),
-    (r"relative_tolerance=(\S+)", r"tol. \1"),
-    (r"tolerance=(\S+)", r"tol. \1"),
-    (r"spectral_radius=(\S+)", r"ρ∞ \1"),
-    (r"step=(\S+)", lambda found: f"{significant(1e6 * float(found[1]), 2)} µs"),
-    (r"integrator=|solver=as delivered|finite elements, |spline, |openseespy frame, ", ""),
-    (r"exudyn ", ""),
-    (r"integration=(\d)", r"int. \1"),
-    (r"generalised-alpha", "gen.-α"),
-    (r"central-difference", "central diff."),
-)
 
 
-def _setting(words: str) -> str:
-    """Return a setting in few words."""
-    for pattern, short in SHORT:
-        words = re.sub(pattern, short, words)
-    return words.strip(" ,")
-
-
-def _timed(row: Any, kind: str) -> str:
-    """Return setting, median and quartiles."""
-    median, low, high = (seconds(row[f"{kind}_{part}"]) for part in ("s", "low_s", "high_s"))
-    return f"{_setting(row[kind])}: {median} ({low} to {high})"
-
-
-def _compared(results: Results, spline: Callable[[Any], str], peer: Callable[[Any], str]) -> Table:
-    """Return all models at equal error, each cell made by `spline` or `peer` of a row of the ratios."""
+@listing("cost")
+def _cost(results: Results) -> Table:
+    """Return all models at equal error: median, and ratio to the spline."""
     yield ["task, error", "spline", *GROUPS]
     for task, table in TASKS.items():
         for level, found in sorted(table.rows(results).groupby("level"), reverse=True):
             groups = {str(row["group"]): row for row in found.to_dict("records")}
             error = decade(level) if task == "path" else unit("rad", 1)(level)
             held = [groups.get(group, {"ratio": np.nan}) for group in GROUPS]
-            cells = ["–" if pd.isna(row["ratio"]) else peer(row) for row in held]
-            yield [f"{task}, {error}", spline(found.iloc[0]), *cells]
+            cells = ["–" if pd.isna(row["ratio"]) else _peer(row) for row in held]
+            yield [f"{task}, {error}", seconds(found.iloc[0]["spline_s"]), *cells]
 
 
-@listing("cost")
-def _cost(results: Results) -> Table:
-    """Return median and ratio to the spline."""
-    return _compared(
-        results,
-        lambda row: seconds(row["spline_s"]),
-        lambda row: f"{seconds(row['peer_s'])}, {times(row['ratio'])}",
-    )
-
-
-@listing("cost-settings")
-def _settings(results: Results) -> Table:
-    """Return setting, median and quartiles."""
-    return _compared(results, lambda row: _timed(row, "spline"), lambda row: _timed(row, "peer"))
+def _peer(row: Any) -> str:
+    return f"{seconds(row['peer_s'])}, {times(row['ratio'])}"
 
 
 @listing("waits")
@@ -175,7 +136,6 @@ FACTS |= {
     "surrogates.over": Stored(SURROGATES, "findings", quantity=OVER).at(
         "value", times, formulation=FOUR_POINTS["paper"]
     ),
-    "surrogates.swing": Stored(SURROGATES, "motion").largest("difference_rad", unit("rad"), model="four-bar"),
 }
 
 

@@ -15,7 +15,6 @@ from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
-from spline_model.pattern import Pattern
 from spline_model.solution import Later
 
 Array = NDArray[np.float64]
@@ -65,15 +64,13 @@ class Followed:
     """A system with its unknowns z (N,), of which the first ``count`` are coordinates, and arrays to fill.
 
     The unknowns are the scene's own: behind its coordinates stand axial forces and multipliers. Elements
-    (``spline_model.reduced.elements``) have others. pattern: of a tangent that is factorised sparse; None for
-    a dense one; counters: of the work; grows: whether the load factor is the share of weight and pre-strain
-    that acts, while no load does.
+    (``spline_model.reduced.elements``) have others. counters: of the work; grows: whether the load factor is
+    the share of weight and pre-strain that acts, while no load does.
     """
 
     system: System
     gradient: Array
     hessian: Array
-    pattern: Pattern | None = None
     counters: Counters = field(default_factory=Counters)
     grows: bool = False
 
@@ -81,12 +78,7 @@ class Followed:
     def of(cls, system: System) -> Self:
         """Fresh arrays for a system."""
         size = system.layout.size
-        return cls(
-            system=system,
-            gradient=np.empty(size),
-            hessian=np.empty((size, size)),
-            pattern=Pattern.of(system),
-        )
+        return cls(system=system, gradient=np.empty(size), hessian=np.empty((size, size)))
 
     @property
     def unit(self) -> Array:
@@ -223,8 +215,6 @@ class Followed:
         unit, energy = self.unit, self.energy
         own = unit if right_side.ndim == 1 else unit[:, None]
         self.counters.factorisations += 1
-        if self.pattern is not None:
-            return np.asarray(own * self.pattern.factorise(self.hessian).solve(right_side * own / energy))
         matrix = self.hessian * (unit[:, None] * unit / energy)
         if not np.isfinite(matrix).all():
             raise np.linalg.LinAlgError("the tangent is not finite")

@@ -109,8 +109,6 @@ def directed(work: Followed, point: Point, direction: Array, along: float) -> Po
 def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
     """Solve hessian x = right (N, K), and count the negative eigenvalues of the reduced tangent."""
     unit, energy, not_free = work.unit[:, None], work.energy, len(right) - work.count
-    if work.pattern is not None:
-        return work.solve(right), work.pattern.negative(work.hessian) - not_free
     work.counters.factorisations += 1
     matrix = work.hessian * (unit * unit.T / energy)
     # the transpose is as LAPACK stores it; without room for blocks a long B-spline takes three times as long

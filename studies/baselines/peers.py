@@ -8,7 +8,7 @@ stand beside the codes, so that one run, one limit and one criterion hold for al
 """
 
 import importlib.metadata
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,7 @@ from studies.baselines.compared import (
 from studies.baselines.exudyn_strips import exudyn_ancf
 from studies.baselines.openseespy import openseespy_frame
 from studies.cases.problem import named_case
-from studies.engine import Answer, Claim, Part, Study, Tables, records
+from studies.engine import Answer, Part, Study, Tables, records
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, Look
@@ -136,9 +136,6 @@ def _panel(tables: Tables, task: str, y: Axis, title: str, *marks: Level) -> Pan
 #: Errors at which times are compared: of the path [1], and of the swing [rad].
 LEVELS = (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6)
 SWING_LEVELS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)
-#: Level -> ratio to the fastest Exudyn that the suite set out for.
-AIMS = {2e-4: 50.0, 1e-6: 100.0}
-SWING_AIMS = {1e-2: 20.0}
 
 
 def _paths() -> Answer:
@@ -181,12 +178,6 @@ def _codes() -> list[dict[str, str]]:
     return rows
 
 
-def _wanted(task: str, rows: pd.DataFrame, aims: Mapping[float, float]) -> list[dict[str, Any]]:
-    """Return the ratios to Exudyn that were aimed at."""
-    found = rows[(rows["group"] == EXUDYN) & rows["level"].isin(list(aims))].dropna(subset="ratio")
-    return [{**row, "task": task, "aim": aims[row["level"]]} for row in records(found)]
-
-
 STUDY = Study(
     parts=(
         Part(ask=lambda: {"codes": _codes()}),
@@ -194,19 +185,6 @@ STUDY = Study(
         Part(ask=_motions, alone=True),
     ),
     made={"statics_ratios": _path_ratios, "swings_ratios": _swing_ratios},
-    claims_of_time=(
-        Claim(
-            claim="The spline is at least {aim:g} x faster than the fastest Exudyn at equal error",
-            formulation="{task}, errors of {level:g}",
-            quantity="the time of Exudyn over the spline's",
-            rows=lambda tables: [
-                *_wanted("static path", tables["statics_ratios"], AIMS),
-                *_wanted("free swing of 0.05 s", tables["swings_ratios"], SWING_AIMS),
-            ],
-            value="ratio",
-            holds=lambda row: row["ratio"] >= row["aim"],
-        ),
-    ),
     varying=("statics_ratios", "swings_ratios"),
     figures={"peers": _fastest_of_all},
     missing=missing,

@@ -81,10 +81,9 @@ class Variant:
 
     @property
     def theory(self) -> str:
-        """What the strips' energies are measured in, which decides on the limit: "material", "spatial" or
-        "shear"."""
+        """What the strips' energies are measured in, which decides on the limit: "material" or "shear"."""
         sheared = self.baseline.sheared or self.settings.get("element") == "reissner"
-        return "shear" if sheared else str(self.settings.get("measure", "material"))
+        return "shear" if sheared else "material"
 
     @property
     def count(self) -> int:

@@ -9,14 +9,11 @@ and torque, and its estimate is of the stress in each state; it is judged apart.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from scipy.stats import qmc
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
@@ -27,9 +24,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.record.digits import Digits
-from studies.record.marks import Slope, Words
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import BLUE, GREEN, ORANGE, Look
+from studies.record.style import BLUE, GREEN, ORANGE
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -109,51 +104,6 @@ def _described(number: int, problem: Problem) -> dict[str, float]:
         "inclination_rad": problem.inclination,
         "rotation_rad": problem.rotation,
     }
-
-
-def _figure(tables: Tables) -> Figure:
-    """Draw the estimates against the true errors, and the true errors against what was asked for."""
-    rows = tables["estimates"]
-    rows = rows[rows["counts"]]
-    said = "grey: 0.3 to 10 times the true error\ndotted: a third of it"
-    words = Words(said, (0.98, 0.03), side="right", placed=True)
-    static = _panel(rows[rows["problem"] == "statics"], f"Static paths of {DESIGNS} designs")
-    moving = _panel(rows[rows["problem"] == "motion"], f"A period of {SWINGS} designs let go", words)
-    return sheet(9.5, 4.6, [[static, moving]])
-
-
-def _panel(rows: pd.DataFrame, title: str, *words: Words) -> Panel:
-    """Return the estimates over the true errors of one kind of problem."""
-    low, high, unit = rows["true_error"].min() / 2.0, rows["true_error"].max() * 2.0, rows["unit"].iloc[0]
-    looks = {
-        name: Look(label=name, colour=colour, line="", marker="o") for name, colour in QUANTITIES.items()
-    }
-    return Panel(
-        Axis("true_error", f"true error [{unit}]", log=True),
-        Axis("estimate", f"estimated error [{unit}]", log=True),
-        (
-            _Near(low, high),
-            Curves(rows, looks, by="quantity"),
-            Slope(through=(low, low), power=1, span=(low, high), label="_", line="-"),
-            Slope(through=(low, LEAST * low), power=1, span=(low, high), label="_"),
-            *words,
-        ),
-        title=title,
-        legend="upper left",
-    )
-
-
-@dataclass(frozen=True)
-class _Near:
-    """Where estimates are near true errors from `low` to `high`: shaded."""
-
-    low: float
-    high: float
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Shade it."""
-        ends = np.array([self.low, self.high])
-        panel.fill_between(ends, BAND[0] * ends, BAND[1] * ends, color="#eeeeee", zorder=0)
 
 
 def _static(number: int, problem: Problem) -> Answer:
@@ -303,5 +253,4 @@ STUDY = Study(
         for claim, quantity, value, least in JUDGED
     ),
     digits=DIGITS,
-    figures={"error_estimate": _figure},
 )

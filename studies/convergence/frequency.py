@@ -1,24 +1,15 @@
-"""Frequency of the swing and of small motion against control points, elements, step and amplitude."""
+"""Frequency of the swing and of small motion against control points, elements and amplitude."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from studies.convergence.swing_sweep import MODES, PARTS
+from studies.convergence.swing_sweep import PARTS
 from studies.engine import Claim, Study, Tables
 from studies.record.digits import Digits
-from studies.record.marks import Doubt, Level
-from studies.record.panels import AMPLITUDE, CONTROL_POINTS, MESH, STEP, Axis, Curves, Drawn, Panel, sheet
-from studies.record.style import BLACK, BLUE, LOOKS, Look
 
 SPLINE, TWENTY = "n = 6", "FE, 20 elements"
-MESHES = replace(LOOKS[TWENTY], colour=BLACK, label="_")
-STEPPED = Look(label="energy-consistent", colour=BLUE, marker="x")
 
 #: The part of a shift by which its prediction from statics may be off and still explain it.
 EXPLAINED = 0.25
@@ -26,84 +17,6 @@ EXPLAINED = 0.25
 LEFT = 0.05
 #: Both models "swing alike" within this part of the frequency: three times the error of 20 elements.
 ALIKE = 1e-3
-
-
-def _shifts(tables: Tables) -> Figure:
-    """Draw the shifts of the swing (above) and the errors of the linear modes (below), by refinement."""
-    doubt = Doubt(float(tables["reference"]["uncertainty"].iloc[0]))
-    size = Axis("shift", "|shift of the frequency| [1]", log=True)
-    unnamed = replace(size, label="")
-    swing = (
-        Panel(
-            CONTROL_POINTS, size, (*_by_stretch(tables["control_points"]), doubt),
-            title="Swing from 90°", legend={"loc": "upper right", "fontsize": 7}
-        ),
-        Panel(
-            replace(MESH, each=2), unnamed, title="Swing from 90°",
-            marks=(Curves(tables["elements"], MESHES), doubt)
-        ),
-        Panel(
-            STEP, unnamed, (Curves(tables["steps"], STEPPED),),
-            title="Swing from 90°, n = 6", legend="upper left"
-        ),
-    )  # fmt: skip
-    return sheet(9.5, 6.6, (swing, _modes(tables["modes"])))
-
-
-def _by_stretch(rows: pd.DataFrame) -> tuple[Curves, Curves]:
-    """Return the shifts of either form of stretching, as they swing and as their statics predict them."""
-    forms = {"consistent": LOOKS["n = 4, as the paper"], "mixed": LOOKS[SPLINE]}
-    swung = {name: replace(look, label=name) for name, look in forms.items()}
-    predicted = {
-        name: replace(look, label=f"{name}, statics", line=":", marker="") for name, look in forms.items()
-    }
-    return (
-        Curves(rows, swung, by="stretch"),
-        Curves(rows, predicted, by="stretch", y="shift_from_statics"),
-    )
-
-
-def _modes(rows: pd.DataFrame) -> list[Drawn]:
-    """Return the errors of the linear modes over either refinement, a colour a mode, and their legend."""
-    looks = {}
-    for mode, look in zip(range(1, MODES + 1), LOOKS.values(), strict=False):
-        frequency = rows.loc[rows["mode"] == mode, "limit_Hz"].iloc[0]
-        looks[mode] = Look(label=f"mode {mode}: {frequency:.1f} Hz", colour=look.colour, marker="o")
-    y = Axis("error", "|error of the frequency| [1]", log=True, limits=(1e-11, None))
-    points, meshes = (
-        Panel(replace(x, column="count"), y, title="Small motion at rest",
-              marks=(Curves(rows[rows["model"] == model], looks, by="mode"),))
-        for x, model in ((CONTROL_POINTS, "spline"), (replace(MESH, each=2), "fe"))
-    )  # fmt: skip
-
-    def named(panel: Axes) -> None:
-        panel.set_axis_off()
-        handles = [Line2D([], [], **look.keywords()) for look in looks.values()]
-        panel.legend(handles=handles, loc="center left", title="small motion at rest")
-
-    return [points, replace(meshes, y=replace(y, label="")), named]
-
-
-def _backbone(tables: Tables) -> Figure:
-    rows, apart = tables["backbone"], _apart(tables)
-    spline = rows[rows["formulation"] == SPLINE]
-    massless = Look(label="from statics alone, massless strips", colour=BLACK, line=":")
-    curve = Panel(
-        AMPLITUDE,
-        Axis("frequency_Hz", "frequency of the swing [Hz]"),
-        (
-            Curves(rows, {name: LOOKS[name] for name in (TWENTY, SPLINE)}),
-            Curves(spline, massless, y="frequency_from_statics_Hz"),
-            Level(rows["first_mode_Hz"].iloc[0], words="first mode at rest", place=0.99),
-        ),
-        legend="upper left",
-    )
-    difference = Panel(
-        AMPLITUDE,
-        Axis("difference", "difference to 20 elements [1e-4]", factor=1e4),
-        (Curves(apart, LOOKS[SPLINE]), Level(0.0)),
-    )
-    return sheet(9.5, 3.8, [[curve, difference]])
 
 
 def _shifts_left(tables: Tables) -> Iterator[dict[str, Any]]:
@@ -184,5 +97,4 @@ STUDY = Study(
         ),
     ),
     digits={"findings.value": Digits(floor=1e-7), "modes.uncertainty": Digits(floor=1e-9)},
-    figures={"frequency": _shifts, "backbone": _backbone},
 )

@@ -17,7 +17,7 @@ from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
-from studies.record.marks import Doubt, Slope
+from studies.record.marks import Doubt
 from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
 from studies.record.progress import silent, watched
 from studies.record.style import ELEMENTS, LOOKS
@@ -133,40 +133,8 @@ ORDER, ALLOWANCE = 2.0, 0.1
 
 
 def _refined(element: str) -> Answer:
-    """Return the errors of every mesh of an element, and the limits."""
-    rows, limit = element_sweep(named_case(), MESHES, element)
-    return {"meshes": rows, "limits": _limits(element, limit)}
-
-
-def _elements_figure(tables: Tables) -> Figure:
-    """Draw the errors over the number of elements, one panel a quantity, beside the slope of second order."""
-    rows, span, panels = tables["meshes"], (MESHES[0], MESHES[-1]), []
-    for quantity in QUANTITIES:
-        y = Axis(f"error_{quantity}", f"largest error of the {quantity} [1]", log=True)
-        start = (span[0], 0.5 * rows.sort_values("elements")[y.column].iloc[0])
-        order = Slope(through=start, power=-ORDER, span=span, label="order 2")
-        panels.append(Panel(replace(MESH, each=2), y, (Curves(rows, ELEMENTS, by="element"), order)))
-    return sheet(11.5, 3.9, [panels], legend=3)
-
-
-def _limits(element: str, limit: Reference) -> list[dict[str, Any]]:
-    """Return the end values in the limit of refinement with their relative uncertainty."""
-    values = {
-        "com_x_m": (limit.centre[-1, 0], "trajectory"),
-        "com_y_m": (limit.centre[-1, 1], "trajectory"),
-        "torque_Nm": (limit.torque[-1], "torque"),
-        "stiffness_Nm_per_rad": (limit.stiffness[-1], "stiffness"),
-        "max_stress_Pa": (limit.max_stress[-1], "stress"),
-    }
-    return [
-        {
-            "element": element,
-            "quantity": quantity,
-            "limit": value,
-            "relative_uncertainty": limit.uncertainty[kind],
-        }
-        for quantity, (value, kind) in values.items()
-    ]
+    """Return the errors of every mesh of an element."""
+    return {"meshes": element_sweep(named_case(), MESHES, element)[0]}
 
 
 def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
@@ -204,6 +172,5 @@ ELEMENT_STUDY = Study(
             most=0.01,
         ),
     ),
-    figures={"elements": _elements_figure},
 )
-"""Convergence of the finite elements with their number: errors, observed orders, limit and uncertainty."""
+"""Convergence of the finite elements with their number: errors and observed orders."""

@@ -1,4 +1,4 @@
-"""Sweeps of swings and of linear modes over refinement, step and amplitude: one row each."""
+"""Sweeps of swings and of linear modes over refinement and amplitude: one row each."""
 
 import dataclasses
 import math
@@ -11,7 +11,6 @@ import numpy as np
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
 from studies.answers.motion import Motion
-from studies.answers.reference import SWING_MESHES, sampled
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -24,8 +23,6 @@ COUNTS = tuple(formulations.STEPS)
 MOST_CONSISTENT = 7
 #: Stretch forms with their counts.
 FORMS = [("mixed", n) for n in COUNTS] + [("consistent", n) for n in COUNTS if n <= MOST_CONSISTENT]
-ELEMENTS = (5, 10, *SWING_MESHES[:1], 20, *SWING_MESHES[1:])
-STEPS = (2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4)
 AMPLITUDES = (2, 5, 10, 20, 30, 45, 60, 75, 90)
 
 #: Linear modes shown, and the meshes whose limit they are held against.
@@ -50,24 +47,6 @@ def _of_control_points(stretch: str, n: int) -> Answer:
     implied = _static_frequency(answer_static(named_case(), slid))
     row = {"stretch": stretch, "control_points": n} | _outcome(motion)
     return {"control_points": row | {"shift_from_statics": implied / _finest_static_frequency() - 1.0}}
-
-
-def _of_elements(count: int) -> Answer:
-    """Return the row of a mesh of the explicit finite elements; columns as of `_of_control_points`."""
-    levels = {int(level.settings["elements"]): level for level in formulations.refined_swing().levels}
-    motion = levels[count] if count in levels else formulations.released(FeSettings(elements=count))
-    return {"elements": {"elements": count} | _outcome(motion)}
-
-
-def _of_step(step: float) -> Answer:
-    """Return the row of a step of the default integrator, against the resolved motion of the same spline.
-
-    Columns: step_s, status, frequency_Hz, shift, error_rotation_rad, energy_error.
-    """
-    settings = SplineSettings(control_points=6)
-    motion = formulations.released(settings, integrator="energy", step=step)
-    row = {"step_s": step} | _outcome(motion, formulations.resolved(settings))
-    return {"steps": row | {"energy_error": motion.energy_error}}
 
 
 def _modes() -> Answer:
@@ -141,25 +120,21 @@ def _static_frequency(answer: Response) -> float:
     )
 
 
-def _outcome(motion: Motion, exact: Motion | None = None) -> dict[str, Any]:
-    """Return status, frequency, shift and error of a motion against `exact`, or the limit of the elements."""
+def _outcome(motion: Motion) -> dict[str, Any]:
+    """Return status, frequency, shift and error of a motion against the limit of the elements."""
     limit = formulations.refined_swing()
-    frequency = limit.frequency if exact is None else exact.frequency
-    rotation = limit.swing.rotation if exact is None else sampled(exact, formulations.INSTANTS).rotation
     found = motion.frequency if motion.converged else math.nan
     return {
         "status": motion.status,
         "frequency_Hz": found,
-        "shift": found / frequency - 1.0,
-        "error_rotation_rad": formulations.rotation_error(motion, rotation),
+        "shift": found / limit.frequency - 1.0,
+        "error_rotation_rad": formulations.rotation_error(motion, limit.swing.rotation),
     }
 
 
-#: What is asked, for the tables control_points, elements, steps, modes, backbone and reference.
+#: What is asked, for the tables control_points, modes, backbone and reference.
 PARTS = (
     Part(at=lambda: FORMS, ask=_of_control_points),
-    Part(at=lambda: ELEMENTS, ask=_of_elements),
-    Part(at=lambda: STEPS, ask=_of_step),
     Part(ask=_modes),
     Part(at=lambda: product(BACKBONE, np.radians(AMPLITUDES)), ask=_of_amplitude),
     Part(ask=_reference),

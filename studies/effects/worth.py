@@ -1,4 +1,4 @@
-"""What each effect is worth for four designs, and what inextensible and massless strips save."""
+"""What each effect is worth for four designs."""
 
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
@@ -9,40 +9,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.answers.adapters import answer_modes
 from studies.answers.settings import SplineSettings
-from studies.cases.design import named_design
-from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.cases.problem import Problem, named_case
 from studies.effects.audit import audit
-from studies.effects.beyond import ALL, SHEAR, prices
-from studies.effects.scenes import CHANGES, SIZES, Variant, size_of
+from studies.effects.scenes import CHANGES, SIZES
 from studies.engine import Answer, Claim, Part, Study, Tables, records
-from studies.record.digits import Digits
-from studies.record.marks import Level, Slope, Words
-from studies.record.panels import CONTROL_POINTS, Axis, Curves, Mark, Panel, sheet
+from studies.record.marks import Level, Words
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
 
-#: Control points for which the highest frequency is taken with and without stretching.
-COUNTS = range(4, 9)
-#: Mass of the body, and with it its moment of inertia, over that of Table 1.
-MASSES = np.geomspace(0.03, 30.0, 13)
-
-#: Designs for which what planar beams leave out is priced, by their cases; sized ones are in `design/sizing`.
-PRICED = {
-    "Table 1": TABLE_1,
-    "spring steel": "spring_steel_pivot",
-    "titanium": "titanium_pivot",
-    "large steel": "large_steel_pivot",
-    "silicon": "silicon_pivot",
-    "polymer": "polymer_pivot",
-    "living hinge": "living_hinge",
-    "four-bar linkage": "four_bar_of_flexures",
-}
-
-STRETCHING, INERTIA = "stretching", "strip_inertia"
 #: Scenes whose strips cannot stretch, or have no mass.
 SIMPLER = ("inextensible strips", "massless strips")
 
@@ -102,57 +80,10 @@ def _with_body(problem: Problem, factor: float) -> Problem:
     )
 
 
-def _steps(control_points: int) -> list[dict[str, Any]]:
-    """Return highest frequency and explicit step with and without stretching, at rest and at the release."""
-    problem = named_case()
-    full = Variant(dropped=(), effects=problem.effects)
-    rows = []
-    for variant in (full, full.without([STRETCHING])):
-        size = size_of(variant.of(problem), SplineSettings(control_points=control_points))
-        rows.append(
-            {
-                "control_points": control_points,
-                "stretching": "yes" if STRETCHING in variant.effects.names else "no",
-                **{name: size[name] for name in SIZES[1:]},
-            }
-        )
-    return rows
-
-
-def _massless(factor: float) -> dict[str, Any]:
-    """Return the shift of the first mode by massless strips under a body of `factor` times the given mass."""
-    problem = _with_body(named_case(), factor)
-    full = Variant(dropped=(), effects=problem.effects)
-    massive, massless = (
-        answer_modes(variant.of(problem), SETTINGS, count=1).frequency[0]
-        for variant in (full, full.without([INERTIA]))
-    )
-    strips = 2.0 * problem.density * problem.area * problem.length
-    return {
-        "mass_ratio": strips / problem.body_mass,
-        "first_mode_Hz": massive,
-        "massless_Hz": massless,
-        "shift": massless / massive - 1.0,
-    }
-
-
 def _cheapest(tables: Tables) -> pd.DataFrame:
     """Return the cheapest scene of each design with its time, which differs run by run."""
     timed = tables["timings"].query("scene == 'cheapest'")[["design", "time_ratio"]]
     return tables["cheapest"].merge(timed, on="design")
-
-
-def _gains(tables: Tables) -> list[dict[str, Any]]:
-    """Return how many times longer the explicit step is without stretching, a row a count."""
-    wide = tables["steps"].pivot(index="control_points", columns="stretching", values="explicit_step_s")
-    return [{"n": n, "gain": float(row["no"] / row["yes"])} for n, row in wide.iterrows()]
-
-
-def _exponent(tables: Tables) -> list[dict[str, Any]]:
-    """Return how far the exponent of the shift by massless strips over the mass ratio is from one."""
-    shift = tables["mass_ratio"].sort_values("mass_ratio")
-    order = np.polyfit(np.log(shift["mass_ratio"]), np.log(shift["shift"].abs()), 1)[0]
-    return [{"distance": abs(float(order) - 1.0)}]
 
 
 def _worth(tables: Tables) -> Figure:
@@ -184,49 +115,8 @@ def _times(rows: pd.DataFrame, ratios: pd.Series, order: Sequence[str]) -> Itera
         yield Words(text, place, by=(-2, 7), colour="#666666", side="right")
 
 
-def _savings(tables: Tables) -> Figure:
-    """Draw highest frequency and explicit step without stretching, and the shift by massless strips."""
-    looks = {
-        "yes": Look(label="stretching", colour=BLUE, marker="o"),
-        "no": Look(label="inextensible", colour=ORANGE, marker="o"),
-    }
-    steps = (Curves(tables["steps"], looks, by="stretching"),)
-    frequency = Axis("highest_frequency_Hz", "highest frequency [kHz]", factor=1e-3, log=True)
-    step = Axis("explicit_step_s", "largest stable explicit step [µs]", factor=1e6, log=True)
-    rows = tables["mass_ratio"].sort_values("mass_ratio")
-    ratio, shift = rows["mass_ratio"], Axis("shift", "shift of the first mode [1]", log=True)
-    start, span = (ratio.iloc[0], abs(rows["shift"].iloc[0])), (ratio.iloc[0], ratio.iloc[-1])
-    massless = Panel(
-        Axis("mass_ratio", "mass of strips / of body", log=True),
-        shift,
-        (
-            Curves(rows, Look(label="massless strips", colour=BLUE, marker="o")),
-            Slope(through=start, power=1, span=span, label="in proportion"),
-        ),
-        title="Strips without inertia",
-        legend="best",
-    )
-    title = "Table 1, at rest and at 90°"
-    highest = Panel(CONTROL_POINTS, frequency, steps, title=title, legend="best")
-    return sheet(9.5, 3.6, [[highest, Panel(CONTROL_POINTS, step, steps), massless]])
-
-
 STUDY = Study(
-    cases=tuple(PRICED.values()),
-    parts=(
-        Part(at=_designs, ask=_audited, alone=True),
-        # what each effect that planar beams leave out is worth
-        Part(
-            at=lambda: PRICED,
-            ask=lambda name: {
-                "beyond": [{"design": name, **row} for row in prices(named_design(PRICED[name]))]
-            },
-        ),
-        # highest frequency and explicit step with and without stretching
-        Part(at=lambda: COUNTS, ask=lambda n: {"steps": _steps(n)}),
-        # shift of the first mode by massless strips
-        Part(at=lambda: MASSES, ask=lambda factor: {"mass_ratio": _massless(float(factor))}),
-    ),
+    parts=(Part(at=_designs, ask=_audited, alone=True),),
     claims=(
         Claim(
             claim=f"The answer is within {TOLERANCE:g} without it",
@@ -235,30 +125,6 @@ STUDY = Study(
             rows=lambda tables: tables["worth"].query("status == 'converged'"),
             value="largest",
             most=TOLERANCE,
-        ),
-        Claim(
-            claim="A planar beam without shear is within 1 % of one that has it, and of three dimensions",
-            formulation="{design}, {effect}",
-            quantity="the largest change of path, stiffness, torque, stress and first mode",
-            rows=lambda tables: tables["beyond"][tables["beyond"]["effect"].isin((ALL, SHEAR))],
-            value="largest",
-            most=0.01,
-        ),
-        Claim(
-            claim="Without stretching the largest stable explicit step is at least twice as long",
-            formulation="n = {n}",
-            quantity="the explicit step without over that with stretching",
-            rows=_gains,
-            value="gain",
-            least=2.0,
-        ),
-        Claim(
-            claim="The frequency shift by massless strips goes with the mass ratio",
-            formulation="Table 1 with bodies of other masses",
-            quantity="the distance of the observed exponent from 1",
-            rows=_exponent,
-            value="distance",
-            most=0.1,
         ),
     ),
     claims_of_time=tuple(
@@ -279,9 +145,5 @@ STUDY = Study(
         )
     ),
     varying=("cheapest",),
-    digits=dict.fromkeys(("beyond.first_mode", "beyond.largest"), Digits(floor=1e-7)),
-    figures={
-        "effects_worth": _worth,
-        "effects_savings": _savings,
-    },
+    figures={"effects_worth": _worth},
 )

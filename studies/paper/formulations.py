@@ -81,15 +81,15 @@ STEPS = {4: 1e-6, 5: 1e-6, 6: 1e-6, 7: 1e-6, 8: 1e-6, 9: 8e-7, 10: 6.25e-7}
 
 
 @cache
-def released(settings: Settings, *, duration: float = DURATION, **options: Any) -> Motion:
+def released(settings: Settings, **options: Any) -> Motion:
     """Return the motion after the release from the end of the case's path, or from `start` [rad]."""
-    return answer_release(named_case(), settings, duration=duration, records=RECORDS, **options)
+    return answer_release(named_case(), settings, duration=DURATION, records=RECORDS, **options)
 
 
-def resolved(settings: SplineSettings, *, duration: float = DURATION) -> Motion:
+def resolved(settings: SplineSettings) -> Motion:
     """Return the spline's motion at a step that no longer matters."""
     step = STEPS[settings.points]
-    return released(settings, duration=duration, integrator="leapfrog", step=step)
+    return released(settings, integrator="leapfrog", step=step)
 
 
 @cache
@@ -98,12 +98,12 @@ def refined_swing() -> SwingReference:
     return swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
 
 
-def rotation_error(motion: Motion, against: Array, instants: Array = INSTANTS) -> float:
-    """Return the largest difference of the rotation to `against` at `instants` [rad]; NaN if it stopped
+def rotation_error(motion: Motion, against: Array) -> float:
+    """Return the largest difference of the rotation to `against` at `INSTANTS` [rad]; NaN if it stopped
     early."""
     if not motion.converged:
         return float("nan")
-    return float(np.abs(sampled(motion, instants).rotation - against).max())
+    return float(np.abs(sampled(motion, INSTANTS).rotation - against).max())
 
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.

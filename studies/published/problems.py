@@ -18,19 +18,16 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem
-from studies.engine import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Study
 from studies.errors import BadInput
 from studies.published import case
 from studies.published.arcs import LIMIT, Arc, arc_of
 from studies.published.case import Value, published
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import BLACK, BLUE, GREY, ORANGE, Look
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
@@ -121,15 +118,8 @@ PROBLEMS = (
     "clamped_hinged_arch",
     "catalogue_pivot",
 )
-#: How a model is called.
-LABELS = {"spline": "spline", "fe": "elements", "fe-shear": "elements with shear"}
-COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": ORANGE}
-BAR = Look(label="_", colour=GREY, line="", marker="|")
-MARKERS = {case.BEAM: "o", case.CLAMPED_WIDTH: "s", case.SHEAR: "^", case.SHEARED: "D"}
 #: What a value in print says of itself in the table.
 OF_VALUES = ("quantity", "at", "load", "unit", "bound", "published", "uncertainty")
-#: Differences below it are drawn at it [1].
-FLOOR = 1e-6
 
 
 def _asked() -> Iterator[tuple[str, str, str]]:
@@ -175,33 +165,6 @@ def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
     }
 
 
-def _figure(tables: Tables) -> Figure:
-    """Draw the differences to the values in print, a line a problem, beside the limits."""
-    rows = tables["values"]
-    rows = rows[rows["bound"] == case.EQUAL]
-    known = np.maximum(np.abs(rows["published"]), 1e-300)
-    slack = (rows["limit"] + rows["uncertainty"] / known).groupby(rows["problem"]).max()
-    bars = slack[(slack > 0.0) & (slack < 1.0)].rename("error").reset_index()
-    titles = list(dict.fromkeys(published(name).title for name in PROBLEMS))
-    looks = {
-        (model, answer): Look(
-            label=f"{LABELS[model]}, {answer}".replace("_", " "), colour=COLOURS[model], line="",
-            marker=MARKERS[answer], hollow=True
-        )
-        for model, answer in rows[["model", "answer"]].drop_duplicates().itertuples(index=False)
-    }  # fmt: skip
-    label = "difference to the value in print [1]; bar: limit and uncertainty"
-    panel = Panel(
-        Axis("error", label, log=True, least=FLOOR),
-        Axis("problem", "", names=[each for each in titles if each in set(rows["problem"])]),
-        (
-            Curves(rows, looks, by=("model", "answer"), more={"markersize": 5.0}),
-            Curves(bars, BAR, more={"markersize": 14.0}),
-        ),
-    )
-    return sheet(7.5, 4.6, [[panel]], legend=2)
-
-
 STUDY = Study(
     cases=tuple(f"published/cases/{name}" for name in PROBLEMS),
     parts=(Part(at=_asked, ask=_compared),),
@@ -215,5 +178,4 @@ STUDY = Study(
             holds=lambda row: row["within"] == "yes",
         ),
     ),
-    figures={"published_problems": _figure},
 )

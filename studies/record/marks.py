@@ -19,14 +19,13 @@ class Level:
     """A line across a panel, or up where `upright`: a bound, what the paper has, a number to compare with.
 
     Attributes:
-        words: beside it; label: or in the legend.
+        words: beside it.
         place: of the words over the line [of the width, or height]: beyond one half they end there, at 1 they
             stand beside the panel.
     """
 
     at: float
     words: str = ""
-    label: str = "_"
     colour: str = MARK
     line: str = "-"
     upright: bool = False
@@ -35,7 +34,7 @@ class Level:
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
         """Draw the level."""
         line = panel.axvline if self.upright else panel.axhline
-        line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label=self.label)
+        line(self.at, color=self.colour, linestyle=self.line, linewidth=0.9, label="_")
         if self.words:
             panel.annotate(self.words, fontsize=8, color=self.colour, bbox=BACKGROUND, **self._placed())
 

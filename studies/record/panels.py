@@ -7,7 +7,7 @@ of its own, or a function of matplotlib's axes in a panel's place.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import pandas as pd
@@ -29,7 +29,7 @@ class Axis:
         log: whether it is logarithmic. Sizes are drawn then, without a sign, and nothing of what is nought.
         least: smaller sizes are drawn here.
         limits: lowest and highest value, None for those of the curves.
-        ticks: the only ones; each: or a tick at every so manieth value of the column, 1 for all.
+        ticks: the only ones; each: or a tick at every value of the column.
         names: what the column has in place of numbers, from the top, or from the left, on.
     """
 
@@ -40,7 +40,7 @@ class Axis:
     least: float = 0.0
     limits: tuple[float | None, float | None] = (None, None)
     ticks: Iterable[float] = ()
-    each: int = 0
+    each: bool = False
     names: Sequence[str] = ()
 
     def of(self, rows: pd.DataFrame) -> pd.Series:
@@ -55,7 +55,7 @@ class Axis:
 
     def apply(self, panel: Axes, name: str, values: Iterable[float]) -> None:
         """Give the axis of that name, x or y, its looks, once the values along it are drawn."""
-        ticks = list(self.ticks) or (sorted(set(values))[:: self.each] if self.each else [])
+        ticks = list(self.ticks) or (sorted(set(values)) if self.each else [])
         if ticks:
             words = {"labels": [f"{tick:g}" for tick in ticks]} if self.log and self.each else {}
             getattr(panel, f"set_{name}ticks")(ticks, **words)
@@ -74,11 +74,9 @@ class Axis:
 
 #: Axes that many figures have.
 ROTATION = Axis("rotation_rad", "rotation [deg]", factor=180.0 / math.pi, ticks=range(0, 91, 15))
-AMPLITUDE = replace(ROTATION, column="amplitude_rad", label="amplitude of the swing [deg]")
 TIME = Axis("time_s", "time [ms]", factor=1e3)
-CONTROL_POINTS = Axis("control_points", "control points a strip, n", each=1)
-MESH = Axis("elements", "elements a strip", log=True, each=1)
-STEP = Axis("step_s", "step [s]", log=True)
+CONTROL_POINTS = Axis("control_points", "control points a strip, n", each=True)
+MESH = Axis("elements", "elements a strip", log=True, each=True)
 
 
 class Mark(Protocol):
@@ -96,7 +94,6 @@ class Curves:
         looks: of each curve, by the value of the column `by`, or by the values of several; or the look of all
             rows as one curve.
         along: column in whose order points are joined, x by default.
-        y: column in place of the axis's.
         more: of `Axes.plot`.
     """
 
@@ -104,15 +101,13 @@ class Curves:
     looks: Mapping[Any, Look] | Look
     by: str | Sequence[str] = "formulation"
     along: str = ""
-    y: str = ""
     more: Mapping[str, Any] | None = None
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
         """Draw the curves."""
-        upright = replace(y, column=self.y or y.column)
         for look, rows in self._curves():
             ordered = rows.sort_values(self.along or x.column, kind="stable")
-            panel.plot(x.of(ordered), upright.of(ordered), **look.keywords() | dict(self.more or {}))
+            panel.plot(x.of(ordered), y.of(ordered), **look.keywords() | dict(self.more or {}))
 
     def _curves(self) -> Iterable[tuple[Look, pd.DataFrame]]:
         """Yield the rows of every curve with its look."""
@@ -132,17 +127,12 @@ class Curves:
 
 @dataclass(frozen=True)
 class Panel:
-    """Marks over two axes.
-
-    Attributes:
-        legend: where a legend of its own stands, or how, as of `Axes.legend`; none without.
-    """
+    """Marks over two axes."""
 
     x: Axis
     y: Axis
     marks: Sequence[Mark]
     title: str = ""
-    legend: str | Mapping[str, Any] = ""
 
     def __call__(self, panel: Axes) -> None:
         """Draw it all."""
@@ -153,8 +143,6 @@ class Panel:
         for name, axis in (("x", self.x), ("y", self.y)):
             axis.apply(panel, name, (value for some in rows for value in axis.of(some).dropna()))
         panel.set_title(self.title)
-        if self.legend:
-            panel.legend(**({"loc": self.legend} if isinstance(self.legend, str) else self.legend))
 
 
 #: What stands in a place of a sheet.

@@ -1,8 +1,6 @@
 """Sudden events: a drive reversed, a body let go and caught a thousand times, targets that jump."""
 
 import math
-import time
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -15,7 +13,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Answer, Part
+from studies.engine import Part
 from studies.stability import family
 
 #: Reversals, and releases with as many catches: of the default, and of the locking-free spline.
@@ -35,13 +33,6 @@ MOST_ITERATIONS = 200
 QUIET = 1e-6
 #: A jump within a motion lasts this long [s].
 INSTANT = 1e-9
-
-
-def _timed(case: str, model: str, attempt: Callable[[], family.Found], tolerance: float) -> Answer:
-    """Return how one task ends and how long that takes."""
-    begin = time.perf_counter()
-    outcome = family.outcome_of(case, model, attempt, tolerance)
-    return {**outcome, "timings": {"case": case, "model": model, "wall_s": time.perf_counter() - begin}}
 
 
 def _tasks() -> list[family.Task]:
@@ -191,4 +182,4 @@ def _bounded(answer: family.Found, jumps: int) -> family.Found:
     return answer
 
 
-STUDY = family.study(Part(at=_tasks, ask=_timed, alone=True))
+STUDY = family.study(Part(at=_tasks, ask=family.outcome_of))

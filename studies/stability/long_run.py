@@ -1,10 +1,7 @@
-"""A million steps of free swing without damping: energy, constraints and memory."""
+"""A million steps of free swing without damping: energy and constraints."""
 
 import math
-import resource
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
@@ -28,21 +25,13 @@ GROWTH = 3.0
 
 
 def _pieces(model: str, count: int) -> Answer:
-    """Return the drift of a column over so many pieces, the memory after each, and its outcome.
-
-    They run in a process of their own: the largest memory of any other would be that of what it did before.
-    """
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as own:
-        drift, memory = zip(*own.submit(_all_of, model, count).result(), strict=True)
-    return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift, "timings_memory": memory}
+    """Return the drift of a column over so many pieces, and its outcome."""
+    drift = list(_run(model, count))
+    return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift}
 
 
-def _all_of(model: str, count: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-    return list(_run(model, count))
-
-
-def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """Yield the rows of drift and of memory after each piece of so many steps, until one stops early."""
+def _run(model: str, count: int, steps: int = PIECE) -> Iterator[dict[str, Any]]:
+    """Yield the row of drift after each piece of so many steps, until one stops early."""
     mechanism = put(named_case(), family.COLUMNS[model], moving=True).modelled
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
     first, change = 0.0, 0.0
@@ -53,16 +42,15 @@ def _run(model: str, count: int, steps: int = PIECE) -> Iterator[tuple[dict[str,
         energy = piece.kinetic_energy + piece.strain_energy
         first = first or float(energy[0])
         change = max(change, float(np.abs(energy / first - 1.0).max()))
-        place = {"model": model, "steps": number * steps}
-        row = {
+        yield {
+            "model": model,
+            "steps": number * steps,
             "energy_change": change,
             "constraint_residual_m": float(piece.constraint_residual.max()),
             "amplitude_rad": float(np.abs(piece.rotation).max()),
             "newton_iterations": piece.counters["newton_iterations"],
             "message": piece.message,
         }
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-        yield place | row, place | {"largest_memory_MB": peak}
         if piece.message:
             return
         begin = {"after": piece}

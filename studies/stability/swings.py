@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_modes, answer_release
@@ -22,11 +21,8 @@ from studies.answers.motion import Motion
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine import Answer, Part, Row, Tables
+from studies.engine import Answer, Part, Row
 from studies.record.digits import Digits
-from studies.record.marks import Level, Slope
-from studies.record.panels import STEP, Axis, Curves, Panel, sheet
-from studies.record.style import BLUE, GREEN, ORANGE, RED, Look
 from studies.stability import family
 
 #: Largest error of the rotation that counts as right, over the rotation at the start [1]. A step of a
@@ -95,6 +91,7 @@ SWING = 0.012
 #: Steps of a motion: at least, so that energy could drift; at most, so that the finest end in seconds.
 FEWEST, MOST = 15, 1200
 
+
 #: Steps of the table of orders and of its limit [s], and the duration of its motions [s].
 ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
 LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
@@ -146,46 +143,10 @@ def _order_table() -> pd.DataFrame:
     return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
 
 
-def _order_figure(tables: Tables) -> Figure:
-    order = tables["order"].sort_values("step_s")
-    looks = {
-        "yes": Look(label="resolved", colour=BLUE, line="", marker="o"),
-        "no": Look(label="said to be unresolved", colour=ORANGE, line="", marker="o"),
-    }
-    third, span = order.iloc[2], (order["step_s"].min(), order["step_s"].max())
-    through = (third["step_s"], third["error_rad"])
-    left = Panel(
-        STEP,
-        Axis("error_rad", "error of the rotation [rad]", log=True),
-        (
-            Curves(order, looks, by="resolved"),
-            Slope(through=through, power=2, span=span, label="order 2", line="--"),
-        ),
-        title=f"{family.DEFAULT}, from 90°",
-        legend="upper left",
-    )
-    starts = {
-        degrees: Look(label=f"from {degrees}°", colour=colour, marker=marker)
-        for degrees, colour, marker in zip(STARTS, (BLUE, ORANGE, GREEN, RED), "ovsD", strict=True)
-    }
-    gain = "gain of energy over that of the start [1]"
-    right = Panel(
-        replace(STEP, column="x"),
-        Axis("energy_gain", gain, log=True, least=1e-17, limits=(1e-17, 1e-6)),
-        (
-            Curves(tables["outcomes"].query("model == @family.DEFAULT"), starts, by="y"),
-            Level(1e-8, colour=RED),
-        ),
-        legend={"loc": "upper left", "ncols": 2},
-    )
-    return sheet(7.6, 3.2, [[left, right]])
-
-
 STEP_SIZE = family.study(
     Part(at=lambda: STARTS, ask=_settled),
     Part(at=lambda: product(STARTS, STEPS), ask=_outcomes_of_step),
     Part(ask=lambda: {"order": _order_table()}),
-    figures={"stability_step_order": _order_figure},
 )
 """Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 

@@ -22,8 +22,6 @@ from studies.work_precision.limits import at, limit_of_theory, motion_errors, pa
 #: What a setting is judged by.
 PATH_ERRORS = ("error_trajectory", "error_torque")
 MOTION_ERRORS = ("error_rotation", "error_frequency")
-#: Series of the suite's own that are advised on; the others are variants of them.
-OWN = (series.SPLINE, series.ELEMENTS, series.SHEAR)
 #: Control points that are tried in statics, and timed repeats of what is advised.
 COUNTS, REPEAT = range(4, 17), 7
 #: A motion is followed for this many periods of the first mode at rest.
@@ -48,7 +46,7 @@ def advise_path(problem: Design, error: float, progress: Progress = silent) -> p
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    tried = [each for each in series.own_paths(COUNTS) if each.series in OWN]
+    tried = series.own_paths(COUNTS)
     tried += grid(spline, series.ITSELF, accuracy=(error,))
     tried += series.other_paths() if isinstance(problem, Problem) else []
     total = len(tried) + len({each.series for each in tried})

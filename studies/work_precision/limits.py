@@ -1,10 +1,10 @@
-"""The limit that each theory tends to, and the errors and counters of what models answer.
+"""The limit that each theory tends to, and the errors of what models answer.
 
 `path_limits` and `swing_limits` are those of the comparison with other codes.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -35,16 +35,9 @@ from studies.cases.problem import Problem
 from studies.kinds import Array
 from studies.paper import formulations
 
-#: Names of columns in the counters of a model, where they differ.
-THEIRS = {"iterations": "newton_iterations", "evaluations": "force_evaluations"}
 #: Errors of a path and of a motion, as columns of tables.
 PATH_ERRORS = [f"{kind}_{name}" for kind in ("error", "end") for name in QUANTITIES]
-MOTION_ERRORS = ("error_rotation_rad", "end_rotation_rad", "error_frequency")
-
-
-def counted(columns: Iterable[str], work: Mapping[str, float]) -> dict[str, float]:
-    """Return the columns of a model's counters, NaN of those that it does not count."""
-    return {name: float(work.get(name, work.get(THEIRS.get(name, ""), math.nan))) for name in columns}
+MOTION_ERRORS = ("error_rotation_rad", "error_frequency")
 
 
 def path_errors(path: Any, against: SolvedPath | Reference) -> dict[str, float]:
@@ -62,12 +55,6 @@ def path_errors(path: Any, against: SolvedPath | Reference) -> dict[str, float]:
     return nothing | largest | {f"end_{name}": float(values[-1]) for name, values in found.items()}
 
 
-#: Theories of a strip, by what their energies are measured in.
-THEORIES = {
-    "material": "bending per reference length, no shear",
-    "spatial": "bending per current length, as the paper's Eq 10, no shear",
-    "shear": "bending per reference length, with shear",
-}
 #: Control points of the spatial limit, and of the one below that says how uncertain it is.
 SPATIAL = (15, 13)
 
@@ -121,7 +108,7 @@ def at(motion: SolvedMotion | Motion, instants: Array) -> Array:
 def motion_errors(motion: Any, rotation: Array, instants: Array) -> dict[str, float]:
     """Return the errors of a whole motion against a rotation (T,) at `instants`, NaN of one that stopped.
 
-    Keys: `MOTION_ERRORS`, largest over the motion, at its end, and relative.
+    Keys: `MOTION_ERRORS`, largest over the motion, and relative.
     """
     if not motion.converged:
         return dict.fromkeys(MOTION_ERRORS, math.nan)
@@ -129,7 +116,7 @@ def motion_errors(motion: Any, rotation: Array, instants: Array) -> dict[str, fl
     gap = np.abs(at(motion, np.minimum(instants, motion.time[-1])) - rotation)
     frequency = swing_frequency(motion.time, motion.rotation).value
     exact = swing_frequency(instants, rotation).value
-    values = (float(gap.max()), float(gap[-1]), abs(frequency / exact - 1.0))
+    values = (float(gap.max()), abs(frequency / exact - 1.0))
     return dict(zip(MOTION_ERRORS, values, strict=True))
 
 

@@ -1,4 +1,4 @@
-"""The models of the work-precision tables: a series of settings each, from coarse to fine.
+"""The models that are advised on: a series of settings each, from coarse to fine.
 
 In motion all have strips without shear and without rotary inertia of their sections: two theories would be
 3e-2 rad apart after 0.05 s, more than any mesh here.
@@ -13,7 +13,6 @@ from studies.baselines.variant import Baseline, Variant, grid
 SPLINE, ITSELF = spline.model, "spline, by itself"
 ELEMENTS, SHEAR = elements.model, "finite elements with shear"
 IMPLICIT = "spline, energy-consistent"
-COUNTS = range(4, 13)
 
 #: Elements a strip of the paths of the others; what has none is in closed form.
 MESHES: dict[Baseline, dict[str, tuple[int, ...]]] = {
@@ -34,15 +33,11 @@ STEPS: dict[Baseline, dict[str, tuple[float, ...]]] = {
 }
 
 
-def own_paths(counts: range = COUNTS) -> list[Variant]:
+def own_paths(counts: range) -> list[Variant]:
     """Return the settings of the two models of the suite, for paths; `counts`: control points."""
-    meshes, more = (5, 10, 20, 40, 80, 160), "spline, one axial mode more"
-    paper = {"measure": ("spatial",), "stretch": ("consistent",)}
+    meshes = (5, 10, 20, 40, 80, 160)
     return [
         *grid(spline, SPLINE, control_points=counts),
-        *(v for n in counts for v in grid(spline, more, control_points=(n,), axial_modes=(n - 1,))),
-        *grid(spline, "B-spline", control_points=(4, 6, 8, 12, 16, 24, 32, 48, 64), basis=("bspline",)),
-        *grid(spline, "spline as the paper", control_points=counts, **paper),
         *grid(elements, ELEMENTS, elements=meshes),
         *grid(elements, SHEAR, elements=meshes, element=("reissner",)),
     ]

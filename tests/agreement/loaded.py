@@ -39,8 +39,6 @@ LOADS: dict[str, dict[str, Any]] = {
     "pre_strain": {"curvature": 3.0, "strain": 1e-4},
     "driven_displacement": {"displacement": (4e-4, -3e-4)},
 }
-#: Those that act in full from load factor 0 on.
-FROM_THE_START = ("gravity", "pre_strain")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,7 @@
 """The 3 x 3 stiffness of a body: both models agree, and it is what is known of it in closed form."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -29,18 +30,14 @@ def apart(asked, body=None, control_points=10):
 def test_body_stiffness_agrees(effect):
     """Requirement: under every load, along a path, both models give a body the same stiffness."""
     gates.check("body_stiffness", apart(design(effect)))
+    if effect == "applied_force":
+        gates.refuse("body_stiffness", partial(apart, design(effect)))
 
 
 @pytest.mark.parametrize("body", [None, "coupler"])
 def test_body_stiffness_of_a_linkage_agrees(body):
     """Requirement: so they do for the driven body of a linkage, and for another one while that is held."""
     gates.check("body_stiffness", apart(named_design("four_bar_of_flexures"), body))
-
-
-def test_body_stiffness_gate_has_teeth():
-    """Requirement: fewer control points do not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("body_stiffness", apart(design("applied_force"), **gates.teeth("body_stiffness")))
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,13 @@
 """Drives that begin and end during a motion, in both models: rotations of either sign, and a led centre."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from studies.answers.settings import FeSettings
 from studies.cases.design import Design
-from studies.errors import BadInput
 from tests import gates
 from tests.agreement import loaded
 from tests.agreement.loaded import ROTATION
@@ -43,7 +43,10 @@ def driven(name: str, sign: float = 1.0) -> Design:
 )
 def test_motions_that_are_driven_in_part_agree(name, sign):
     """Requirement: drives hold, lead and end at the same instants in both models, which move alike."""
-    gates.check("drives_release", apart(driven(name, sign)))
+    error = partial(apart, driven(name, sign))
+    gates.check("drives_release", error())
+    if (name, sign) == ("led back", -1.0):
+        gates.refuse("drives_release", error)
 
 
 @pytest.mark.parametrize("name", ["caught", "held, led centre"])
@@ -55,11 +58,14 @@ def test_what_is_held_stays_and_the_books_close(name, settings):
     assert np.ptp(motion.rotation[inside]) < 1e-10
     assert motion.dissipated[-1] > 0.0 or name != "caught"
     gates.check("drives_books", max(motion.energy_error, 1e-16))
+    if settings is ELEMENTS and name == "caught":
+        coarse = partial(released, driven(name), settings)
+        gates.refuse("drives_books", lambda **options: coarse(**options).energy_error)
     other = released(driven(name), SPLINE if settings is ELEMENTS else ELEMENTS)
     assert motion.dissipated[-1] == pytest.approx(other.dissipated[-1], rel=0.02, abs=1e-12)
 
 
-def schemes_apart(step: float) -> float:
+def schemes_apart(step: float = 0.4 * STEP) -> float:
     """Return how far the motions of the implicit and the explicit scheme of the elements are apart."""
     design, mesh = driven("held, led centre"), FeSettings(elements=4)
     implicit = released(design, mesh, integrator="generalised-alpha", step=step)
@@ -68,25 +74,4 @@ def schemes_apart(step: float) -> float:
 
 def test_both_schemes_of_the_elements_follow_the_same_drives():
     """Requirement: the implicit integrator of the elements moves as the explicit one does."""
-    gates.check("drives_schemes", schemes_apart(0.4 * STEP))
-
-
-@pytest.mark.parametrize("gate", ["drives_release", "drives_books", "drives_schemes"])
-def test_gates_of_drives_have_teeth(gate):
-    """Requirement: longer steps do not pass."""
-    coarse = gates.teeth(gate)
-    with pytest.raises(AssertionError, match="x the gate"):
-        if gate == "drives_release":
-            gates.check(gate, apart(driven("led back", -1.0), **coarse))
-        elif gate == "drives_books":
-            gates.check(gate, released(driven("caught"), ELEMENTS, **coarse).energy_error)
-        else:
-            gates.check(gate, schemes_apart(**coarse))
-
-
-def test_a_drive_without_a_rotation_is_refused():
-    """Requirement: a case that leads a rotation says which, and says until when in order."""
-    with pytest.raises(BadInput, match=r"drive\.rotation_deg: got none, expected the rotation"):
-        released(replace(loaded.design("applied_force", None), held=HELD), ELEMENTS)
-    with pytest.raises(BadInput, match=r"drive\.held_s: got \[0.5, 0.2\], expected two instants"):
-        replace(loaded.design("gravity"), held=(0.5, 0.2))
+    gates.hold("drives_schemes", schemes_apart)

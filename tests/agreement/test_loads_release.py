@@ -1,7 +1,7 @@
 """Releases under every load, from rotations of either sign and from rest: what starts, holds and lets go."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -97,15 +97,10 @@ def apart(design: Design, step: float = STEP, meshes: tuple[int, int] = (8, 12))
 @pytest.mark.parametrize("effect, history, rotation", QUICK)
 def test_motions_under_loads_agree(effect, history, rotation):
     """Requirement: both models start alike and move alike for 10 ms under every load."""
-    gates.check("loads_release", apart(asked(effect, history, rotation)))
-
-
-def test_gate_of_releases_has_teeth():
-    """Requirement: longer steps do not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(
-            "loads_release", apart(asked("gravity", "constant", -ROTATION), **gates.teeth("loads_release"))
-        )
+    error = partial(apart, asked(effect, history, rotation))
+    gates.check("loads_release", error())
+    if effect == "gravity":
+        gates.refuse("loads_release", error)
 
 
 @MODELS
@@ -155,6 +150,8 @@ def test_motions_under_all_histories_agree(effect, history, rotation):
     if history == "constant" and rotation is None:
         pytest.skip("stands still: see the test of that")
     gates.check("loads_release_wide", apart(design, meshes=(10, 20)))
+    if effect == "gravity":
+        gates.refuse("loads_release_wide", partial(apart, design))
 
 
 @pytest.mark.slow
@@ -162,18 +159,8 @@ def test_motions_under_all_histories_agree(effect, history, rotation):
 @pytest.mark.parametrize("effect, history", CASES)
 def test_motions_under_loads_keep_their_energy_books(effect, history, settings):
     """Requirement: strain, kinetic and gravity energy gained are the work of the loads."""
-    motion = released(replace(asked(effect, history, -ROTATION), increments=10), settings)
-    gates.check("loads_motion_books", max(motion.energy_error, 1e-16))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("gate", ["loads_release_wide", "loads_motion_books"])
-def test_gates_of_the_wide_set_have_teeth(gate):
-    """Requirement: longer steps do not pass, of the elements those of the implicit integrator."""
-    design, coarse = asked("gravity", "constant", -ROTATION), gates.teeth(gate)
-    with pytest.raises(AssertionError, match="x the gate"):
-        if gate == "loads_release_wide":
-            gates.check(gate, apart(design, **coarse))
-        else:
-            motion = released(design, ELEMENTS, integrator="generalised-alpha", **coarse)
-            gates.check(gate, motion.energy_error)
+    design = replace(asked(effect, history, -ROTATION), increments=10)
+    gates.check("loads_motion_books", max(released(design, settings).energy_error, 1e-16))
+    if effect == "gravity" and settings is ELEMENTS:
+        implicit = partial(released, design, settings, integrator="generalised-alpha")
+        gates.refuse("loads_motion_books", lambda step: implicit(step=step).energy_error)

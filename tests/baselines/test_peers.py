@@ -9,9 +9,9 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.reference import limit_of
 from studies.answers.settings import FeSettings
-from studies.baselines import compared, peers
+from studies.baselines import compared
 from studies.baselines.answer import BaselineFailed, SolvedPath
-from studies.baselines.compared import PEERS, kept, spread, tried
+from studies.baselines.compared import PEERS, tried
 from studies.baselines.exudyn_solve import SOLVERS
 from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.baselines.openseespy import openseespy_frame
@@ -19,7 +19,7 @@ from studies.baselines.own import elements, spline
 from studies.baselines.variant import grid
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.work_precision.limits import errors_of, path_limits
+from studies.work_precision.limits import errors_of
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
@@ -37,30 +37,24 @@ def against_spline(module, problem=CASE, turns=TURNS, **settings):
     return errors_of(module.static_path(problem, turns, **settings), limit)["worst"]
 
 
-@exudyn
-def test_ancf_tends_to_the_spline():
-    """Requirement: ANCF cables, of the same theory, come to the spline's path; nothing else is shared."""
-    gates.check("exudyn_ancf_path", against_spline(exudyn_ancf, elements=40))
+#: Gate of a code's path, the code, and the elements at which it is asked.
+PATHS = [
+    pytest.param("exudyn_ancf_path", exudyn_ancf, 40, marks=exudyn),
+    pytest.param("openseespy_path", openseespy_frame, 80, marks=opensees),
+]
 
 
-@exudyn
-def test_ancf_gate_has_teeth():
-    """Requirement: the check notices half as many elements."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("exudyn_ancf_path", against_spline(exudyn_ancf, **gates.teeth("exudyn_ancf_path")))
+@pytest.mark.parametrize(("gate", "module", "count"), PATHS)
+def test_path_tends_to_the_spline(gate, module, count):
+    """Requirement: ANCF cables, of the same theory, and corotational frames with a body of stiff links come
+    to the spline's path; nothing else is shared."""
+    gates.hold(gate, lambda elements=count: against_spline(module, elements=elements))
 
 
 @exudyn
 def test_exact_beam_tends_to_the_reissner_elements():
     """Requirement: Exudyn's rod with shear comes to the limit of this repository's elements with shear."""
-    gates.check("exudyn_exact_path", _against_reissner(elements=20))
-
-
-@exudyn
-def test_exact_beam_gate_has_teeth():
-    """Requirement: the check notices four elements."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("exudyn_exact_path", _against_reissner(**gates.teeth("exudyn_exact_path")))
+    gates.hold("exudyn_exact_path", lambda elements=20: _against_reissner(elements=elements))
 
 
 def _against_reissner(**settings):
@@ -72,27 +66,11 @@ def _against_reissner(**settings):
     return errors_of(exudyn_exact.static_path(CASE, TURNS, **settings), limit)["worst"]
 
 
-@exudyn
-@opensees
-@pytest.mark.parametrize(("module", "elements"), [(exudyn_ancf, 40), (openseespy_frame, 80)])
-def test_other_designs_come_through_alike(module, elements):
+@pytest.mark.parametrize(("gate", "module", "count"), PATHS)
+def test_other_designs_come_through_alike(gate, module, count):
     """Requirement: strips of other inclination and crossing, with the body off the middle, agree as well."""
     uneven = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
-    name = "exudyn_ancf_path" if module is exudyn_ancf else "openseespy_path"
-    gates.check(name, against_spline(module, uneven, np.linspace(0.0, 1.2, 17), elements=elements))
-
-
-@opensees
-def test_frame_tends_to_the_spline():
-    """Requirement: OpenSees' corotational frames come to the spline's path, body of stiff links included."""
-    gates.check("openseespy_path", against_spline(openseespy_frame, elements=80))
-
-
-@opensees
-def test_frame_gate_has_teeth():
-    """Requirement: the check notices a quarter of the elements."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("openseespy_path", against_spline(openseespy_frame, **gates.teeth("openseespy_path")))
+    gates.check(gate, against_spline(module, uneven, np.linspace(0.0, 1.2, 17), elements=count))
 
 
 def swing_error(module, **settings):
@@ -103,36 +81,17 @@ def swing_error(module, **settings):
     return np.abs(np.interp(limit.time, motion.time, motion.rotation) - limit.rotation).max()
 
 
-@exudyn
 @pytest.mark.slow
-def test_ancf_swings_as_the_spline():
-    """Requirement: released, ANCF cables follow the spline."""
-    gates.check("exudyn_ancf_swing", swing_error(exudyn_ancf, step=1e-5, elements=8))
-
-
-@exudyn
-@pytest.mark.slow
-def test_ancf_swing_gate_has_teeth():
-    """Requirement: the check notices half as many elements."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        settings = {"step": 1e-5} | gates.teeth("exudyn_ancf_swing")
-        gates.check("exudyn_ancf_swing", swing_error(exudyn_ancf, **settings))
-
-
-@opensees
-@pytest.mark.slow
-def test_frame_swings_as_the_spline():
-    """Requirement: released, OpenSees' frames follow the spline."""
-    gates.check("openseespy_swing", swing_error(openseespy_frame, step=1e-5, elements=40))
-
-
-@opensees
-@pytest.mark.slow
-def test_frame_swing_gate_has_teeth():
-    """Requirement: the check notices a quarter of the elements."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        settings = {"step": 1e-5} | gates.teeth("openseespy_swing")
-        gates.check("openseespy_swing", swing_error(openseespy_frame, **settings))
+@pytest.mark.parametrize(
+    ("gate", "module", "count"),
+    [
+        pytest.param("exudyn_ancf_swing", exudyn_ancf, 8, marks=exudyn),
+        pytest.param("openseespy_swing", openseespy_frame, 40, marks=opensees),
+    ],
+)
+def test_swings_as_the_spline(gate, module, count):
+    """Requirement: released, the other codes follow the spline."""
+    gates.hold(gate, lambda elements=count: swing_error(module, step=1e-5, elements=elements))
 
 
 @exudyn
@@ -180,23 +139,6 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     assert times == []
 
 
-def test_study_runs_without_other_codes(monkeypatch):
-    """Requirement: with no other code there are splines, a row for each absent code, and no ratio to it."""
-    import pandas as pd
-
-    for module in (exudyn_ancf, exudyn_exact, openseespy_frame):
-        monkeypatch.setattr(module, "installed", lambda: False)
-    for name in ("REPEAT", "PASSES"):
-        monkeypatch.setattr(compared, name, 1)
-    limits, theories = path_limits(CASE)
-    rows, times = compared.compared_paths(CASE, limits)
-    assert [row["what"] for row in theories] == ["uncertainty", "uncertainty", "difference of the theories"]
-    assert {row["status"] for row in rows} == {"converged", "not installed"}
-    found = peers._ratios(pd.DataFrame(rows), pd.DataFrame(times), "worst", [1e-3])
-    assert set(found.dropna(subset="ratio")["group"]) <= {compared.ELEMENTS, compared.SURROGATE}
-    assert (found["spline_s"] > 0.0).all()
-
-
 def test_failed_variant_keeps_its_row():
     """Requirement: a setting that fails is a row with the reason and without errors."""
 
@@ -209,40 +151,7 @@ def test_failed_variant_keeps_its_row():
     assert times == []
 
 
-def test_ratios_compare_at_equal_error():
-    """Requirement: the fastest within the level counts, on both sides; luck with one step does not keep."""
-    import pandas as pd
-
-    rows = pd.DataFrame(
-        [
-            ("spline", "spline", "n=5", 1e-2, 1.0),
-            ("spline", "spline", "n=6", 1e-4, 1.0),
-            ("exudyn ancf", "Exudyn", "elements=4 step=2", 1e-5, 2.0),
-            ("exudyn ancf", "Exudyn", "elements=4 step=1", 1e-3, 1.0),
-        ],
-        columns=["model", "group", "variant", "error", "step_s"],
-    ).assign(status="converged", fineness=lambda rows: -rows["step_s"])
-    times = rows[["model", "variant"]].assign(
-        solve_s=[1.0, 2.0, 30.0, 40.0], low_s=0.5, high_s=[1.5, 2.5, 35.0, 45.0]
-    )
-    reached = peers._ratios(rows, times, "error", [1e-4]).set_index("group")["ratio"]
-    assert reached.to_dict() == {"Exudyn": 15.0}
-    assert peers._ratios(rows, times, "error", [1e-6])["ratio"].isna().all()
-    doubtful = rows.assign(unsure=6e-5)
-    assert peers._ratios(doubtful, times, "error", [1e-4], unsure="unsure")["ratio"].isna().all()
-    steady = peers._ratios(kept(rows, "error"), times, "error", [1e-4, 1e-3]).set_index(["level", "group"])[
-        "ratio"
-    ]
-    assert math.isnan(steady[1e-4, "Exudyn"])
-    assert steady[1e-3, "Exudyn"] == 15.0
-
-
 def test_own_elements_stand_beside_the_codes():
     """Requirement: the suite's elements have the interface of a baseline and tend to the spline's path."""
     coarse, fine = (against_spline(elements, elements=count) for count in (5, 20))
     assert fine < 0.1 * coarse < 0.01
-
-
-def test_times_are_medians_with_quartiles():
-    """Requirement: a time is the median of its runs, with the quartiles and their number."""
-    assert spread([5.0, 1.0, 2.0, 3.0, 4.0]) == {"solve_s": 3.0, "low_s": 2.0, "high_s": 4.0, "runs": 5}

@@ -200,31 +200,6 @@ def test_full_disk_leaves_the_former_export(tmp_path, monkeypatch, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--formats", "vtk,step"], "got step, expected one or more of vtk, svg"),
-        (["--formats", "vtk,vtk"], "got vtk, expected one or more of vtk, svg"),
-        (["--formats", ""], "got nothing, expected one or more"),
-        (["--duration", "0.1"], "--duration: got it with --analysis static, expected release"),
-        (["--analysis", "modes"], "--increments: got it with --analysis modes, expected static"),
-        (["--draw-deg", "0,ninety"], "got ninety, expected a finite number of degrees"),
-        (["--formats", "vtk", "--draw-deg", "0"], "--draw-deg: got it without"),
-        (["--elements", "5"], "--elements: got it with --model spline"),
-        (["--out", "/proc/out"], "/proc: cannot be written"),
-        (["--out", PIVOT], "expected a folder"),
-        (["--out", "."], "expected a folder below"),
-    ],
-)
-def test_bad_input_is_one_line_and_writes_nothing(tmp_path, capsys, options, said):
-    """What cannot be exported is refused in one line before anything is written."""
-    assert export(tmp_path / "out", *options) == 2
-    line = capsys.readouterr().err.strip()
-    assert said in line
-    assert "\n" not in line
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_path_that_stops_is_exported_as_far_as_it_goes(tmp_path, capsys):
     """The converged part of a path that stops early is written, with exit code 3 and why."""
     options = ["--model", "fe", "--elements", "2", "--rotation-deg", "350", "--increments", "2"]

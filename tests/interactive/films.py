@@ -1,14 +1,17 @@
 """Films with known truth for the tests: two markers on the path of a pivot."""
 
+import contextlib
 import math
 from collections.abc import Callable
 from functools import cache, lru_cache
 
 import numpy as np
+import pytest
 
 from spline_model import HeldPivot
 from studies.interactive.design import SIDE, Placing, build, turned
 from studies.interactive.presets import PRESETS
+from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
 from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
@@ -107,9 +110,13 @@ def errors(events):
     return [angle for angle, _ in found], [shift for _, shift in found], len(found)
 
 
-def raw(picture, quads, gamma):
-    """Corners as the detector gives them."""
-    return quads, np.ones((2, 4))
+@contextlib.contextmanager
+def detected_corners():
+    """Corners as the detector gives them, none refused."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tracker.squares, "refine", lambda picture, quads, gamma: (quads, np.ones((2, 4))))
+        patch.setattr(tracker, "REFUSE_PX", 10.0)
+        yield
 
 
 def counter(picture):

@@ -1,6 +1,7 @@
 """What the tests in a browser share: opening the page, choosing in it, and scripts that look at it."""
 
 import json
+import math
 import time
 
 #: Collects, for two rounds of the film, the burned-in number of each picture that is shown and its state.
@@ -37,6 +38,23 @@ def chosen(browser, name, value):
         f"(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event('change')); }})"
         f"(document.getElementById('{name}'))"
     )
+
+
+def typed(browser, label, value):
+    """Type a value into the box, or move the slider, of that label."""
+    browser.ask(
+        f"(e => {{ e.value = '{value}'; e.dispatchEvent(new Event('change')); }})"
+        f"(document.querySelector(\"input[aria-label='{label}']\"))"
+    )
+
+
+def turned(browser, degrees):
+    """Hold the body at rest, then turn it by the keyboard, five degrees a key."""
+    browser.key("0")
+    browser.wait("studio.state.mode === 'held' && studio.state.pose[2] === 0")
+    for _ in range(degrees // 5):
+        browser.key("ArrowUp")
+    browser.wait(f"Math.abs(studio.state.pose[2] - {math.radians(degrees)}) < 1e-9")
 
 
 #: Keeps the page busy most of the time, and codes what is kept of a picture late: a busy machine.

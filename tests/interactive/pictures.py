@@ -10,6 +10,7 @@ from pathlib import Path
 from studies.interactive.tracking.films import demo_film
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
+from tests.interactive.pages import typed
 
 #: What the numbers stand at, from 1 on.
 PARTS = (
@@ -29,12 +30,8 @@ NUMBERED = """
 """
 #: Frame of the demo film that is shown, and quality of a picture with a camera's noise in it.
 FRAME, QUALITY = 68, 70
-#: What is typed where, and how.
+#: What is typed where.
 TYPED = (("strip thickness in mm", 0.6), ("load, downward in N", 0.1), ("rotation in °", 40))
-TYPE = """
-((name, value) => { const e = document.querySelector(`input[aria-label='${name}']`);
-  e.value = value; e.dispatchEvent(new Event("change")); })
-"""
 
 
 def main(folder: Path) -> None:
@@ -45,13 +42,13 @@ def main(folder: Path) -> None:
         with Browser(width=1366, height=768) as browser:
             _open(browser, hosted.address)
             for name, value in TYPED:
-                browser.ask(f"{TYPE}({name!r}, {value})")
+                typed(browser, name, value)
             browser.ask(NUMBERED % list(PARTS))
             _take(browser, folder / "interactive_hand.png")
         with Browser(width=390, height=844) as browser:
             browser.call("Emulation.setTouchEmulationEnabled", enabled=True)
             _open(browser, hosted.address)
-            browser.ask(f"{TYPE}('rotation in °', 30)")
+            typed(browser, "rotation in °", 30)
             _take(browser, folder / "interactive_phone.png")
     film = Server(Settings(camera="film", source=source))
     with film as hosted, Browser(width=1366, height=768) as browser:

@@ -9,7 +9,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import film
-from tests.interactive.pages import load
+from tests.interactive.pages import load, turned, typed
 from tests.interactive.test_browser_film import pixels
 
 pytestmark = [
@@ -30,16 +30,16 @@ DESIGN = "['length', 'inclination', 'crossing_ratio'].map((name) => studio.state
 def test_clamps_are_dragged(page, strip, end, way, degrees):
     """Requirement: a clamp that is dragged stays under the pointer, to 2 px, length, inclination and crossing
     following it and nothing else; one undo takes the whole drag back."""
-    page.key("0")
-    page.wait("studio.state.pose[2] === 0")
-    for _ in range(degrees // 5):
-        page.key("ArrowUp")
-    page.wait(f"Math.abs(studio.state.pose[2] - {np.radians(degrees)}) < 1e-9")
+    turned(page, degrees)
     before, others = page.ask(DESIGN), page.ask("studio.state.values.thickness")
     page.key("e")
-    at = np.array(page.ask(CLAMP.format(strip=end, end=end)))
-    page.drag([tuple(at + np.array(way) * k / 20) for k in range(21)])
-    page.wait(f"studio.state.values.length !== {before[0]}")
+    clamp, left = CLAMP.format(strip=strip, end=end), {"button": "left", "buttons": 1, "clickCount": 1}
+    at = np.array(page.ask(clamp))
+    for k, kind in enumerate(("mousePressed", *["mouseMoved"] * 20)):
+        x, y = at + np.array(way) * k / 20
+        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **left)
+    page.wait(f"(([u, v]) => Math.hypot(u - {x}, v - {y}) < 2)({clamp})")
+    page.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, **left)
     page.key("e")
     after = page.ask(DESIGN)
     assert np.abs(np.subtract(after, before)).min() > 1e-4
@@ -49,33 +49,13 @@ def test_clamps_are_dragged(page, strip, end, way, degrees):
     assert page.ask(DESIGN) == pytest.approx(before)
 
 
-def test_clamp_follows_the_pointer(page):
-    """Requirement: while it is dragged, the clamp is where the pointer is, to 2 px."""
-    page.key("0")
-    page.wait("studio.state.pose[2] === 0")
-    page.key("e")
-    at, left = np.array(page.ask(CLAMP.format(strip=1, end=1))), {"button": "left", "buttons": 1}
-    x, y = at
-    page.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, clickCount=1, **left)
-    for k in range(1, 11):
-        x, y = at + k * np.array([-2.0, -3.0])
-        page.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, **left)
-    near = f"(([u, v]) => Math.hypot(u - {x}, v - {y}) < 2)({CLAMP.format(strip=1, end=1)})"
-    page.wait(near)
-    page.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, clickCount=1, **left)
-    page.key("e")
-    page.key("z")
-
-
 def test_load_is_set_and_seen(page):
     """Requirement: a load that is typed in newtons acts, and its energy is in the table; its slider's
     middle is no load."""
-    box = "document.querySelector(\"input[aria-label='load, downward in N']\")"
-    page.ask(f"(e => {{ e.value = '0.05'; e.dispatchEvent(new Event('change')); }})({box})")
+    typed(page, "load, downward in N", "0.05")
     page.wait("studio.state.values.load === 0.05 && studio.state.pose[1] < studio.state.placing.centre[1]")
     assert "the load's energy" in page.ask("document.getElementById('numbers').textContent")
-    slider = "document.querySelector(\"input[aria-label='load, downward, slider']\")"
-    page.ask(f"(e => {{ e.value = '0'; e.dispatchEvent(new Event('change')); }})({slider})")
+    typed(page, "load, downward, slider", "0")
     page.wait("studio.state.values.load === 0")
 
 
@@ -100,11 +80,7 @@ def test_centres_of_a_swing_stay_together(page):
     """Requirement: the path of the centre of rotation that is drawn of a release stays within a third of the
     strips' length: where the body all but stands, and has no centre, none is drawn."""
     page.ask("document.getElementById('stage').focus()")
-    page.key("0")
-    page.wait("studio.state.mode === 'held' && studio.state.pose[2] === 0")
-    for _ in range(8):
-        page.key("ArrowUp")
-    page.wait("studio.state.pose[2] > 0.69")
+    turned(page, 40)
     page.key("r")
     page.wait("studio.state.steps > 300")
     page.key(" ")
@@ -117,13 +93,9 @@ def test_centres_of_a_swing_stay_together(page):
 
 def test_another_design_begins_its_own_plots(page):
     """Requirement: states and centres of a former design are not drawn as those of the present one."""
-    page.key("0")
-    page.wait("studio.state.mode === 'held' && studio.state.pose[2] === 0")
-    for _ in range(6):
-        page.key("ArrowUp")
-    page.wait("studio.state.pose[2] > 0.5 && studio.ring.centres.length > 3")
-    box = "document.querySelector(\"input[aria-label='strip width in mm']\")"
-    page.ask(f"(e => {{ e.value = '17'; e.dispatchEvent(new Event('change')); }})({box})")
+    turned(page, 30)
+    page.wait("studio.ring.centres.length > 3")
+    typed(page, "strip width in mm", "17")
     page.wait("studio.state.values.width === 0.017")
     same = "studio.ring.states.filter((s) => s.design === studio.ring.current.design)"
     assert 0 < page.ask("studio.ring.centres.length") <= page.ask(f"{same}.length")

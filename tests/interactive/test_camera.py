@@ -20,7 +20,7 @@ from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive.events import session, turned
-from tests.interactive.films import error, errors, film, names, raw, rms, truth, watch
+from tests.interactive.films import detected_corners, error, errors, film, names, rms, truth, watch
 
 
 @pytest.mark.parametrize(
@@ -60,17 +60,6 @@ CAMERAS = [
 ]
 
 
-def test_camera_gates_have_teeth(monkeypatch):
-    """Requirement: with corners as the detector gives them both fail."""
-    assert gates.teeth("camera_angle") == gates.teeth("camera_shift") == {"refined": False}
-    monkeypatch.setattr(tracking.squares, "refine", raw)
-    monkeypatch.setattr(tracking, "REFUSE_PX", 10.0)
-    angles, shifts, _ = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
-    for quantity, values in (("angle", angles), ("shift", shifts)):
-        with pytest.raises(AssertionError, match="x the gate"):
-            gates.check(f"camera_{quantity}", rms(values))
-
-
 @pytest.mark.slow
 def test_unloaded_pivot_before_any_camera():
     """Requirement: before cameras of any power, blur and exposure, which nobody told, the poses of an
@@ -92,8 +81,10 @@ def test_unloaded_pivot_before_any_camera():
             gaps.append(np.array(gap) / [*state["sd"], *state["force_sd"]])
         angles.append(rms(turns))
         shifts.append(rms(places))
-    gates.check("camera_angle", max(angles))
-    gates.check("camera_shift", max(shifts))
+    with detected_corners():
+        coarse = errors(watch(film(CAMERAS[-1], frames=6, samples=3)))
+    gates.hold("camera_angle", lambda refined=True: max(angles) if refined else rms(coarse[0]))
+    gates.hold("camera_shift", lambda refined=True: max(shifts) if refined else rms(coarse[1]))
     assert (np.mean(np.abs(gaps) > 3.0, axis=0) <= 0.01).all()
 
 

@@ -48,11 +48,9 @@ def test_absurd_poses_are_left_out(pose):
     [
         ({"do": "pose", "pose": [0, 0, math.nan]}, "pose: got nan, expected a finite number"),
         ({"do": "pose", "pose": [0, 0]}, r"pose: got \[0, 0\], expected three finite numbers"),
-        ({"do": "pose"}, "pose: got None"),
         ({"do": "seen", "marker": "here"}, "marker: got 'here'"),
         ({"do": "seen", "marker": [0, 0, 0], "faults": 3}, "faults: got 3, expected a list of texts"),
         ({"do": "dance"}, "do: got 'dance', expected one of"),
-        ({"do": ["pose"]}, "do: got "),
         ({}, "do: got None"),
         ({"do": "tick", "t": math.inf}, "t: got inf"),
         (
@@ -60,11 +58,9 @@ def test_absurd_poses_are_left_out(pose):
             "thickness: got -1000, expected 0.1 to 8 mm",
         ),
         ({"do": "parameter", "name": "colour", "value": 1.0}, "parameter: got 'colour'"),
-        ({"do": "parameter", "name": "length", "value": "long"}, "length: got 'long'"),
         ({"do": "preset", "name": "rubber"}, "preset: got 'rubber', expected one of polymer"),
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
         ({"do": "drive", "by": "will"}, "by: got 'will'"),
-        ({"do": "solver", "name": 7}, "name: got 7"),
         (
             {"do": "solver", "name": "printed", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",
@@ -179,29 +175,20 @@ def test_wrong_print_size_shows_off_the_path(preset, size):
 
 
 def test_every_action_is_known_to_the_protocol():
-    """Requirement: the page can send every event that the session takes, and it has a way for each."""
+    """Requirement: the page can send every event that the session takes."""
     from studies.interactive.web.protocol import FIELDS
 
     assert set(EVENTS) <= set(FIELDS)
-    assert all(callable(getattr(Session, f"_{name}")) for name in EVENTS)
 
 
 def test_holding_the_whole_pose_begins_where_the_body_is():
     """Requirement: a hand that held the rotation alone and then holds the whole pose leaves the body where it
-    is, moment and force unchanged."""
+    is, moment and force unchanged; a shift that was asked for before is not kept for later."""
     made = session()
-    before = turned(made, 20, 45)
-    after = made.feed({"do": "drive", "by": "pose", "t": 1.0})
-    assert after["pose"] == pytest.approx(before["pose"], abs=1e-12)
-    assert after["force"] == pytest.approx(before["force"], abs=1e-9)
-    assert after["wanted"] == pytest.approx(after["displacement"], abs=1e-12)
-
-
-def test_shift_of_a_rotation_held_alone_lays_no_trap():
-    """Requirement: a shift asked for while the hand holds the rotation alone is not kept for later."""
-    made = session()
-    turned(made, 20)
-    before = made.feed({"do": "pose", "pose": [0.005, -0.003, math.radians(20)], "t": 1.0})
+    turned(made, 20, 45)
+    before = made.feed({"do": "pose", "pose": [0.005, -0.003, math.radians(45)], "t": 1.0})
     assert before["wanted"] == pytest.approx(before["displacement"], abs=1e-12)
     after = made.feed({"do": "drive", "by": "pose", "t": 1.1})
     assert after["pose"] == pytest.approx(before["pose"], abs=1e-12)
+    assert after["force"] == pytest.approx(before["force"], abs=1e-9)
+    assert after["wanted"] == pytest.approx(after["displacement"], abs=1e-12)

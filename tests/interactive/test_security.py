@@ -1,6 +1,7 @@
 """What the server lets in: hosts, pages, tokens, sizes, rates."""
 
 import contextlib
+import math
 import socket as sockets
 import time
 
@@ -21,11 +22,15 @@ from tests.interactive.sockets import answer, closing, emptied, get, opened, say
 
 
 def test_page_is_served_with_its_headers(server):
-    """Requirement: page and modules come with their kinds and the strict headers."""
+    """Requirement: page and modules come with their kinds and strict headers: the page may load and reach
+    nothing but this server, and run no script from a string."""
     response, body = get(server, "/")
     assert (response.status, b"<!doctype html>" in body) == (200, True)
     for name, value in protocol.Door(server.port).headers().items():
         assert response.getheader(name) == value
+    policy = response.getheader("Content-Security-Policy")
+    assert "default-src 'none'" in policy and "frame-ancestors 'none'" in policy
+    assert "unsafe" not in policy and "*" not in policy
     assert get(server, "/page/app.js")[0].getheader("Content-Type").startswith("text/javascript")
     assert server.address.startswith(f"http://127.0.0.1:{server.port}/#token=")
 
@@ -39,53 +44,80 @@ def test_nothing_else_is_served(server, path):
     assert get(server, path)[0].status == 404
 
 
-def test_foreign_hosts_are_refused(server):
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:{}", "127.0.0.1", "127.0.0.1:81", "127.0.0.1.evil.example:{}"]
+)
+def test_foreign_hosts_are_refused(server, host):
     """Requirement: a request for another host (DNS rebinding) gets 400, for page and socket."""
-    assert get(server, "/", host="evil.example")[0].status == 400
-    with pytest.raises(InvalidStatus) as caught, opened(server, additional_headers={"Host": "evil.example"}):
+    host = host.format(server.port)
+    assert get(server, "/", host=f"localhost:{server.port}")[0].status == 200
+    assert get(server, "/", host=host)[0].status == 400
+    with pytest.raises(InvalidStatus) as caught, opened(server, additional_headers={"Host": host}):
         pass
     assert caught.value.response.status_code == 400
 
 
-@pytest.mark.parametrize("origin", ["http://evil.example", "null", None])
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "null", None, "http://127.0.0.1:81", "https://127.0.0.1:{}"]
+)
 def test_foreign_pages_are_refused(server, origin):
     """Requirement: a socket opened by another page, or none, gets 403."""
-    with pytest.raises(InvalidStatus) as caught, opened(server, origin=origin):
+    own = origin and origin.format(server.port)
+    with pytest.raises(InvalidStatus) as caught, opened(server, origin=own):
         pass
     assert caught.value.response.status_code == 403
 
 
 def test_token_is_needed(server):
-    """Requirement: without the token nothing is answered."""
-    with opened(server, hello=False) as socket:
-        say(socket, do="hello", version=1, token="x" * 32)
-        assert closing(socket)[0] == 4403
+    """Requirement: without the whole token nothing is answered."""
+    assert len(server.token) >= 32
+    for token in ("x" * 32, server.token[:-1], f"{server.token}x", "", None, 5):
+        with opened(server, hello=False) as socket:
+            say(socket, do="hello", version=1, token=token)
+            assert closing(socket)[0] == 4403
     with opened(server, hello=False) as socket:
         say(socket, do="pose", pose=[0, 0, 0])
         code, reason = closing(socket)
         assert (code, "expected one first" in reason) == (4400, True)
 
 
+def picture(width=64, height=64, body=None, kind=1, version=1, time=40.0):
+    """A binary message."""
+    body = bytes(width * height) if body is None else body
+    return protocol.HEADER.pack(kind, version, 7, width, height, time) + body
+
+
 @pytest.mark.parametrize(
-    "message",
+    ("message", "text"),
     [
-        "rubbish",
-        '{"do": "tick", "odd": 1}',
-        b"short",
-        protocol.HEADER.pack(9, 1, 1, 640, 480, 0.0) + bytes(640 * 480),
-        protocol.HEADER.pack(1, 1, 1, 641, 480, 0.0) + bytes(9),
+        (b"short", "got 5 bytes"),
+        (picture(kind=9), "got kind 9"),
+        (picture(version=2), "version 2"),
+        (picture(width=63), "got 63 x 64"),
+        (picture(width=9999, body=b"x"), "got 9999 x 64"),
+        (picture(body=bytes(4095)), "got 4095 grey levels"),
+        (picture(body=bytes(4097)), "got 4097 grey levels, expected 64 x 64"),
+        (picture(time=math.nan), "got time nan"),
+        (picture(time=-1.0), "got time -1.0"),
+        ("", "got no JSON"),
+        ("{", "got no JSON"),
+        ("[1]", "got list"),
+        ('{"do": "pose", "pose": [0, 0, NaN]}', "got no JSON"),
+        ('{"do": "format_disk"}', "do: got 'format_disk'"),
+        ('{"do": "tick", "path": "x"}', "'path': got an unknown field of tick"),
+        ('{"do": "tick", "t": 5}', "'t': got an unknown field of tick"),
+        ('{"do": "tick"' + " " * 5000 + "}", "got 5014 characters"),
+        ("[" * 4000, "got no JSON"),
     ],
-    ids=["text", "field", "short", "kind", "size"],
+    ids=lambda value: value if isinstance(value, str) and value.startswith("got") else "",
 )
-def test_malformed_messages_close_their_socket_only(server, message):
+def test_malformed_messages_close_their_socket_only(server, message, text):
     """Requirement: what is no message closes its own socket with 4400 and one line; others go on."""
     with opened(server) as other:
         with opened(server) as socket:
             socket.send(message)
             code, reason = closing(socket)
-            assert code == 4400
-            assert "got" in reason
-            assert "\n" not in reason
+            assert (code, text in reason, "\n" in reason) == (4400, True, False)
         say(other, do="pose", pose=[0, 0, 0.1])
         assert answer(other)["pose"][2] == pytest.approx(0.1)
 

@@ -45,9 +45,7 @@ def apart(quantity, degrees=40):
 def test_table_one_is_the_case_of_the_paper(quantity):
     """Requirement: the preset has the section of Table 1; its torque, its stiffness and the largest stress,
     |N|/A + |M| h/(2 I), at 40 degrees are those of the solver."""
-    gates.check(f"session_{quantity}", apart(quantity))
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(f"session_{quantity}", apart(quantity, **gates.teeth(f"session_{quantity}")))
+    gates.hold(f"session_{quantity}", lambda **turn: apart(quantity, **turn))
 
 
 def test_instantaneous_centre_is_that_of_the_path():
@@ -66,7 +64,9 @@ def test_instantaneous_centre_is_that_of_the_path():
 @pytest.mark.parametrize("solver", ["stable", "energy"])
 @pytest.mark.parametrize("preset", PRESETS)
 def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
-    """Requirement: N frames are exactly 4 N steps; the first state is the held one; energy never rises."""
+    """Requirement: N frames are exactly 4 N steps; the first state is the held one; energy never rises, and
+    what is stored, dissipated by the strips and lost to the steps is what the body had. The soft pivot, whose
+    strips are damped, is resolved: its strips take more than its steps."""
     made = session(preset)
     made.feed({"do": "solver", "name": solver, "t": 0.0})
     held = turned(made, 15, 30, 40)
@@ -81,11 +81,16 @@ def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
     assert state["steps"] == 50 * STEPS_A_FRAME
     assert state["simulated"] == pytest.approx(2.0 * PRESETS[preset].time_scale)
     assert state["pose"][2] != pytest.approx(held["pose"][2], abs=0.01)
+    energy = state["energy"]
+    assert total(state) + energy["dissipated"] + energy["lost"] == pytest.approx(energy["start"], rel=1e-12)
+    if preset == "polymer":
+        assert codes(state) == []
+        assert energy["dissipated"] > abs(energy["lost"])
 
 
 def test_steps_follow_the_clock_of_a_camera():
     """Requirement: off lock-step, time decides: a late frame is caught up to 20 steps, and as many in the
-    next."""
+    next; a time far before the last one holds the body up for 20 steps at most."""
     made = session(lock_step=False)
     turned(made, 10, 20)
     made.feed({"do": "release", "t": 1.0})
@@ -93,7 +98,10 @@ def test_steps_follow_the_clock_of_a_camera():
     assert made.feed({"do": "tick", "t": 1.115})["steps"] in (11, 12)
     late = made.feed({"do": "tick", "t": 1.515})
     assert late["steps"] <= 12 + 20
-    assert made.feed({"do": "tick", "t": 1.535})["steps"] == late["steps"] + 20
+    last = made.feed({"do": "tick", "t": 1.535})["steps"]
+    assert last == late["steps"] + 20
+    back = [made.feed({"do": "tick", "t": -1000.0 + 0.04 * k})["steps"] - last for k in range(26)]
+    assert (back[0], back[-1]) == (0, 100 - 20)
 
 
 def test_catch_goes_to_where_the_hand_is():

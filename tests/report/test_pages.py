@@ -4,7 +4,7 @@ import numpy as np
 import pypdfium2 as pdfium
 import pytest
 
-from report.build import OUTPUT, typeset
+from report.build import OUTPUT
 from studies.record.source import ROOT
 
 #: Of a page of A4 [pt]: nothing is nearer to the edge than the running lines leave.
@@ -66,19 +66,6 @@ def test_pages_are_two_thirds_full(pdf):
     assert length < 40
 
 
-@pytest.mark.slow
-def test_pages_render_as_pictures(pdf, tmp_path):
-    """Every page becomes a PNG of some size: figures are drawn, not left out."""
-    document = pdfium.PdfDocument(pdf)
-    try:
-        for number, page in enumerate(document):
-            path = tmp_path / f"{number}.png"
-            page.render(scale=2.0).to_pil().save(path)
-            assert path.stat().st_size > 20_000
-    finally:
-        document.close()
-
-
 def test_empty_and_overflowing_pages_are_seen():
     """The check has teeth: white pages and ink at the edge are found."""
     white = np.full((842, 595), 255, dtype=np.uint8)
@@ -86,11 +73,6 @@ def test_empty_and_overflowing_pages_are_seen():
     full = white.copy()
     full[100:300, 100:590] = 0
     assert _faults(full, 1.0) == ["ink outside the margins"]
-
-
-def test_same_content_gives_the_same_file(content, pdf):
-    """Compiled again, the file is equal byte by byte."""
-    assert typeset(content) == pdf
 
 
 def test_file_says_what_it_is(content, pdf):

@@ -59,16 +59,9 @@ def test_what_is_given_is_quoted(kind, functions):
     assert set().union(*map(quoted, functions)) == set(quotable()[kind])
 
 
-def _further(content):
-    """Return the figures that the supplement names without showing them."""
-    return {row[0].replace("\u200b", "") for row in content["listings"]["further"]["rows"]}
-
-
 def test_every_figure_of_every_study_is_shown_and_referred_to(content):
-    """All stored figures are shown, or named at the end, and the text refers to its own."""
-    further = _further(content)
-    assert quoted("plot") <= set(content["figures"])
-    assert set(content["figures"]) == quoted("plot") | further
+    """All stored figures are shown, and the text refers to its own."""
+    assert set(content["figures"]) == quoted("plot")
     for path in SECTIONS:
         source = text(path)
         for name in set(re.findall(r'#plot\("(\w+)"', source)):
@@ -76,10 +69,10 @@ def test_every_figure_of_every_study_is_shown_and_referred_to(content):
 
 
 def test_every_study_appears(content):
-    """Each study of the register has a line in the provenance; of its figures one is shown or named."""
+    """Each study of the register has a line in the provenance; of its figures one is shown."""
     for study in STUDIES:
         names = {name.partition(".")[0] for name in Store().record(study)["figures"]}
-        assert not names or names & (quoted("plot") | _further(content)), study
+        assert not names or names & quoted("plot"), study
     lines = [row[0].replace("\u200b", "") for row in content["listings"]["provenance"]["rows"]]
     assert lines == list(STUDIES)
 

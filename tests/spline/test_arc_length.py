@@ -25,13 +25,7 @@ def work_balance(late=0):
 
 def test_work_is_booked_through_limit_points():
     """Requirement: along a path whose load goes up, down and up again the work is the energy stored."""
-    gates.check("spline_arc_length_work", work_balance())
-
-
-def test_work_gate_has_teeth():
-    """Requirement: the check notices a step that is left out."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_arc_length_work", work_balance(**gates.teeth("spline_arc_length_work")))
+    gates.hold("spline_arc_length_work", work_balance)
 
 
 def test_inertia_goes_with_the_limit_points():

@@ -15,7 +15,6 @@ from spline_model import (
     solve_mechanism,
     solve_statics,
 )
-from spline_model.effects.plate import profile_of
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -84,40 +83,7 @@ def test_plate_factors_are_those_of_the_literature():
         found = [plate_factors(ratio, nu + poisson_ratio) for ratio, nu, *_ in KNOWN]
         return np.abs(np.array(found) - np.array(KNOWN)[:, 2:]).max()
 
-    gates.check("spline_plate_factors", error())
-    with pytest.raises(AssertionError):
-        gates.check("spline_plate_factors", error(**gates.teeth("spline_plate_factors")))
-
-
-def test_plate_factors_are_converged(monkeypatch):
-    """More functions across and along change the factors by less than a digit that anything here shows."""
-
-    def error(across=16, cells=26):
-        found = [[plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)]]
-        with monkeypatch.context() as finer:
-            finer.setattr("spline_model.effects.plate.ACROSS", across)
-            finer.setattr("spline_model.effects.plate.CELLS", cells)
-            found.append([plate_factors(ratio, 0.45) for ratio in (0.05, 0.5, 2.0)])
-        return np.abs(np.subtract(*found)).max()
-
-    gates.check("spline_plate_ritz", error())
-    with pytest.raises(AssertionError):
-        gates.check("spline_plate_ritz", error(**gates.teeth("spline_plate_ritz")))
-
-
-@pytest.mark.parametrize("ratio", [0.05, 0.118, 0.5, 2.0])
-@pytest.mark.parametrize("nu", [0.25, 0.45])
-def test_profile_has_both_factors(ratio, nu):
-    """The rigidity along the strip is EI/(1 - nu^2) at a clamp, smooth there, and has both plate factors."""
-    profile, factors = profile_of(ratio, nu), plate_factors(ratio, nu)
-    s, weight = np.polynomial.legendre.leggauss(400)
-    s, weight = 0.5 * (s + 1.0), 0.5 * weight
-    c = profile.compliance(s)
-    assert 1.0 / (weight @ c) == pytest.approx(factors.constant, rel=1e-10)
-    assert 1.0 / (12.0 * weight @ (c * (s - 0.5) ** 2)) == pytest.approx(factors.linear, rel=1e-10)
-    ends = np.array([0.0, 1.0])
-    assert np.abs(profile.share(ends)).max() < 1e-12
-    assert np.abs(profile.share(ends + np.array([1e-6, -1e-6]))).max() < 1e-6
+    gates.hold("spline_plate_factors", error)
 
 
 @pytest.mark.parametrize("crossing_ratio", [0.5, 0.3, 0.873])
@@ -137,9 +103,7 @@ def test_clamped_width_gives_a_pivot_the_stiffness_of_its_plates(crossing_ratio)
             worst = max(worst, abs(found / known - 1.0))
         return worst
 
-    gates.check("spline_clamped_width", error())
-    with pytest.raises(AssertionError):
-        gates.check("spline_clamped_width", error(**gates.teeth("spline_clamped_width")))
+    gates.hold("spline_clamped_width", error)
 
 
 @pytest.mark.parametrize("grid", [{}, {"basis": "bspline"}])
@@ -155,9 +119,7 @@ def test_clamped_width_in_a_guide(grid):
             stored.append(solve_mechanism(made, increments=1).bending_energy[-1])
         return abs(stored[1] / stored[0] / plate_factors(0.4, 0.3).linear - 1.0)
 
-    gates.check("spline_clamped_guide", error())
-    with pytest.raises(AssertionError):
-        gates.check("spline_clamped_guide", error(**gates.teeth("spline_clamped_guide")))
+    gates.hold("spline_clamped_guide", error)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,6 @@ from spline_model import (
     solve_release,
     swinging_slide_stiffness,
 )
-from spline_model.dynamics import INTEGRATORS
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -44,6 +43,7 @@ def test_energy_and_constraints_hold_at_any_step(step, control_points):
     assert trajectory.status.value == "converged", trajectory.message
     gates.check("spline_swing_energy", energy_error(trajectory))
     gates.check("spline_swing_constraints", trajectory.constraint_residual.max())
+    gates.refuse("spline_swing_constraints", lambda gap_m: gap_m)
     assert np.abs(trajectory.rotation).max() < 1.01 * math.pi / 2
     # a twentieth of the period of the second mode, which has 0.001 of the energy, is 59 to 70 microseconds
     assert bool(trajectory.resolution) == (step > 5e-5), trajectory.resolution
@@ -70,15 +70,6 @@ def test_a_folding_strip_stops_the_run_with_the_reason():
     gates.check("spline_swing_energy", energy_error(trajectory))
 
 
-@pytest.mark.parametrize("gate", ["spline_swing_energy", "spline_swing_constraints"])
-def test_swing_gates_have_teeth(gate):
-    """Requirement: the leapfrog, whose energy oscillates, and a tenth of a micrometre fail the same gates."""
-    trajectory = released(duration=0.01, **gates.teeth("spline_swing_energy"))
-    error = energy_error(trajectory) if gate == "spline_swing_energy" else gates.teeth(gate)["gap_m"]
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(gate, error)
-
-
 @cache
 def two_milliseconds(step, integrator="energy"):
     """Rotation within 2 ms after the release, at 20 instants."""
@@ -86,47 +77,32 @@ def two_milliseconds(step, integrator="energy"):
     return released({"control_points": 4}, **options).rotation
 
 
-def time_errors(steps):
-    """Largest error of the rotation within 2 ms after the release, against the leapfrog, for each step."""
-    exact = two_milliseconds(1e-7, "leapfrog")
-    return np.array([np.abs(two_milliseconds(step) - exact).max() for step in steps])
+def time_error(step=2.5e-7):
+    """Largest error of the rotation within 2 ms after the release, against the leapfrog."""
+    return np.abs(two_milliseconds(step) - two_milliseconds(1e-7, "leapfrog")).max()
 
 
 def test_order_two_in_time():
     """Requirement: the rotation converges with order 2 in the step."""
-    errors = time_errors([2e-6, 1e-6, 5e-7, 2.5e-7])
+    errors = np.array([time_error(step) for step in (2e-6, 1e-6, 5e-7, 2.5e-7)])
     # the axial waves that the release excites make single pairs scatter, so the mean is asked as well
     orders = np.log2(errors[:-1] / errors[1:])
     assert min(orders[-1], orders.mean()) > 2 - 0.15, (orders, errors)
-    gates.check("spline_swing_in_time", errors[-1])
+    gates.hold("spline_swing_in_time", time_error)
 
 
-def test_time_gate_has_teeth():
-    """Requirement: a long step fails the level of the order test."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_swing_in_time", time_errors([gates.teeth("spline_swing_in_time")["step"]])[0])
-
-
-def integrator_difference(step):
-    """Largest difference of the integrators' rotations over 5 ms, inextensible strips left out."""
-    paths = [
+def integrator_difference(step=1e-6):
+    """Largest difference of the integrators' rotations over 5 ms."""
+    one, other = (
         released({"control_points": 4}, duration=0.005, step=step, records=50, integrator=name).rotation
-        for name in INTEGRATORS
-    ]
-    return max(np.abs(path - paths[0]).max() for path in paths[1:])
+        for name in ("energy", "leapfrog")
+    )
+    return np.abs(one - other).max()
 
 
 def test_integrators_agree():
     """Requirement: all integrators tend to one trajectory."""
-    gates.check("spline_integrators_agree", integrator_difference(step=1e-6))
-
-
-def test_integrator_gate_has_teeth():
-    """Requirement: at a coarser step they differ by more."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(
-            "spline_integrators_agree", integrator_difference(**gates.teeth("spline_integrators_agree"))
-        )
+    gates.hold("spline_integrators_agree", integrator_difference)
 
 
 def crossing_frequency(time, value):
@@ -140,7 +116,7 @@ def crossing_frequency(time, value):
     return (len(zeros) - 1) / (2 * (zeros[-1] - zeros[0]))
 
 
-def small_swing(start, step=2e-5):
+def small_swing(start=1e-3, step=2e-5):
     """Relative difference of a small swing's frequency and the first linear mode."""
     pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=swinging_slide_stiffness(6))
     trajectory = solve_release(pivot, start=start, duration=0.1, step=step)
@@ -150,34 +126,14 @@ def small_swing(start, step=2e-5):
 
 def test_small_swing_has_the_linear_frequency():
     """Requirement: the period of a small swing is that of the first linear mode."""
-    gates.check("spline_small_swing", small_swing(start=1e-3))
-
-
-def test_small_swing_gate_has_teeth():
-    """Requirement: a swing of some degrees differs from the linear mode."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_small_swing", small_swing(**gates.teeth("spline_small_swing")))
-
-
-def test_an_unstable_explicit_step_is_named():
-    """Requirement: an explicit step above the critical one stops with a message, not with NaN."""
-    fine = released(duration=0.001, integrator="leapfrog")
-    coarse = released(duration=0.001, integrator="leapfrog", step=1.3 / 0.9 * fine.settings["step_s"])
-    assert fine.status.value == "converged"
-    assert coarse.status.value == "not_converged"
-    assert "above the critical one" in coarse.message
-    assert np.isfinite(coarse.rotation).all()
+    gates.hold("spline_small_swing", small_swing)
 
 
 @pytest.mark.parametrize(
     "options, line",
     [
-        ({"step": 0.0}, "step: got 0.0"),
-        ({"duration": -1.0}, "duration: got -1.0"),
         ({"step": 1.0}, "step: got 1.0, expected at most the duration"),
         ({"duration": 1e6, "step": 1e-6}, r"duration: got 1000000.0, expected records within 2 GB"),
-        ({"integrator": "generalised-alpha"}, "expected one of energy, leapfrog"),
-        ({"start": math.nan}, "start: got nan"),
         ({"accuracy": 1e-3, "step": 1e-4}, "accuracy: got 0.001"),
         ({"records": 0}, "records: got 0, expected an integer >= 1"),
     ],
@@ -196,6 +152,9 @@ def test_a_start_that_statics_cannot_reach_is_refused():
 
 
 def test_inextensible_strips_swing():
-    """Requirement: inextensible strips keep their energy like others."""
-    trajectory = released({"stretch": "inextensible"}, duration=0.005)
-    gates.check("spline_swing_energy", energy_error(trajectory))
+    """Requirement: inextensible strips keep their energy like others, which the leapfrog lets oscillate."""
+
+    def error(**options):
+        return energy_error(released({"stretch": "inextensible"}, duration=0.005, **options))
+
+    gates.hold("spline_swing_energy", error)

@@ -27,16 +27,19 @@ ZERO = {
 }
 
 
-def static_balance(increments, **more):
+def static_balance(increments=160):
     """Imbalance of work and energies over 0 to 0.5 rad with every static effect, over the energy."""
     names = ("gravity", "applied_force", "applied_moment", "driven_displacement", "tip_force")
-    solution = solve_mechanism(scene_with(*names, **more), rotation=0.5, increments=increments)
+    solution = solve_mechanism(scene_with(*names), rotation=0.5, increments=increments)
     energy = solution.bending_energy + solution.axial_energy + solution.gravity_energy
     return np.abs(energy - energy[0] - solution.work).max() / energy.max()
 
 
-def motion_balance(step=5e-5):
-    """Imbalance of work, energies and loss over 0.05 s with every effect and a catch, over the energy."""
+def motion_balance(booked=1.0):
+    """Imbalance of work, energies and loss over 0.05 s with every effect and a catch, over the energy.
+
+    booked : the share of the loss that is counted, 1 being right.
+    """
     names = (
         "gravity",
         "section_rotary_inertia",
@@ -48,36 +51,22 @@ def motion_balance(step=5e-5):
     )
     scene = scene_with(*names, slide_stiffness=swinging_slide_stiffness(6))
     drive = DrivenRotation(body="body", angle=1.0, history=((0.02, 0.0), (0.03, -0.6)), held=(0.02, 0.035))
-    run = solve_motion(scene, start=1.2, duration=0.05, step=step, drive=drive)
+    run = solve_motion(scene, start=1.2, duration=0.05, step=5e-5, drive=drive)
     assert run.status.value == "converged", run.message
     assert run.dissipated[-1] > 10  # J: the damping and the catch do take part
     assert abs(run.work[-1]) > 10
     energy = run.kinetic_energy + run.strain_energy + run.gravity_energy
-    return np.abs(energy - energy[0] - run.work + run.dissipated).max() / energy[0]
+    return np.abs(energy - energy[0] - run.work + booked * run.dissipated).max() / energy[0]
 
 
 def test_static_work_is_the_change_of_energy():
     """Requirement: work of loads and drives = change of strain and gravity energy."""
-    gates.check("spline_static_balance", static_balance(increments=160))
-
-
-def test_static_balance_has_teeth():
-    """Requirement: coarse increments, whose quadrature of the work errs, do not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_static_balance", static_balance(**gates.teeth("spline_static_balance")))
+    gates.hold("spline_static_balance", static_balance)
 
 
 def test_work_in_motion_is_the_change_of_energy_and_the_loss():
     """Requirement: with damping, loads, a catch and a drive, the balance holds at the default step."""
-    gates.check("spline_motion_balance", motion_balance())
-
-
-def test_motion_balance_has_teeth(monkeypatch):
-    """Requirement: a Newton that stops early shows in the balance."""
-    coarse = gates.teeth("spline_motion_balance")["tolerance"]
-    monkeypatch.setattr("spline_model.motion.energy_consistent.TOLERANCE", coarse)
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_motion_balance", motion_balance())
+    gates.hold("spline_motion_balance", motion_balance)
 
 
 def test_pre_strained_strips_keep_their_energy():
@@ -138,10 +127,4 @@ def frame_difference(turned_by=0.7):
 
 def test_effects_are_frame_indifferent():
     """Requirement: a scene turned as a whole, with its loads, moves in the same way."""
-    gates.check("spline_effects_frame", frame_difference())
-
-
-def test_frame_gate_has_teeth():
-    """Requirement: loads that do not turn with the scene do not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_effects_frame", frame_difference(**gates.teeth("spline_effects_frame")))
+    gates.hold("spline_effects_frame", frame_difference)

@@ -1,6 +1,7 @@
 """A pivot on the strips' elements against the multiplier path, and many pivots at once."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -33,36 +34,31 @@ DESIGNS = (
 )
 
 
-def difference(**settings):
-    """Largest difference of any answer of the two methods, over its largest value, there and back."""
-    pivot = cross_axis_pivot(**(SIX | settings))
+def difference(changed, **settings):
+    """Largest difference of any answer of the two methods, over its largest value, there and back.
+
+    settings : of the condensed path alone, none being right.
+    """
     path = {"rotation": [1.5, -0.7], "increments": 15}
-    fast, reference = (solve_statics(pivot, method=m, **path) for m in ("condensed", "multipliers"))
+    fast, reference = (
+        solve_statics(cross_axis_pivot(**SIX | changed | more), method=method, **path)
+        for method, more in (("condensed", settings), ("multipliers", {}))
+    )
     return max(
         np.abs(getattr(fast, name) - getattr(reference, name)).max() / np.abs(getattr(reference, name)).max()
         for name in FIELDS
     )
 
 
-@pytest.mark.parametrize("settings", DESIGNS, ids=str)
-def test_both_methods_give_the_same_answer(settings):
+@pytest.mark.parametrize("changed", DESIGNS, ids=str)
+def test_both_methods_give_the_same_answer(changed):
     """Requirement: condensed and multiplier path agree to 1e-10 in every answer, multipliers included."""
-    gates.check("spline_fast_path", difference(**settings))
+    gates.check("spline_fast_path", difference(changed))
 
 
-def test_fast_path_gate_has_teeth():
+def test_another_slide_stiffness_is_another_answer():
     """Requirement: the check notices a slide stiffness that differs by a per mille."""
-    changed = gates.teeth("spline_fast_path")
-    fast = solve_statics(cross_axis_pivot(**SIX | changed), rotation=1.5)
-    reference = solve_statics(cross_axis_pivot(**SIX), rotation=1.5, method="multipliers")
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_fast_path", np.abs(fast.torque / reference.torque.max() - 1)[-1])
-
-
-def test_an_unknown_method_is_refused():
-    """Requirement: a method that does not exist is refused with those that do."""
-    with pytest.raises(InvalidParameter, match="one of condensed, multipliers"):
-        solve_statics(cross_axis_pivot(**SIX), rotation=0.3, method="guess")
+    gates.refuse("spline_fast_path", partial(difference, {}))
 
 
 def many(count=40):
@@ -85,22 +81,19 @@ def test_a_batch_equals_single_solves():
     one, two = (solve_many(designs, rotation=1.2, increments=20, threads=t) for t in (1, 2))
     for name in ("torque", "stiffness", "centre", "energy"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
-    for i in (0, 17, 39):
-        single = solve_statics(cross_axis_pivot(**designs[i], control_points=6), rotation=1.2)
-        torque = np.abs(one.torque[i] - single.torque).max() / single.torque.max()
-        centre = np.abs(one.centre[i] - single.centre).max() / designs[i]["length"]
-        # the same code on the same numbers: zero is right here, so round-off is added
-        gates.check("spline_batch", torque + centre + np.finfo(float).eps)
     assert one.converged.all()
 
+    def error(design=0):
+        """Largest difference of three designs, and of the `design` places after them, to single solves."""
+        worst = np.finfo(float).eps  # the same code on the same numbers: zero is right here
+        for i in (0, 17, 38):
+            single = solve_statics(cross_axis_pivot(**designs[i], control_points=6), rotation=1.2)
+            torque = np.abs(one.torque[i + design] - single.torque).max() / single.torque.max()
+            centre = np.abs(one.centre[i + design] - single.centre).max() / designs[i]["length"]
+            worst = max(worst, torque + centre)
+        return worst
 
-def test_batch_gate_has_teeth():
-    """Requirement: one design's answer does not pass for another's."""
-    designs = many()
-    batch = solve_many(designs, rotation=1.2, increments=20)
-    other = gates.teeth("spline_batch")["design"]
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_batch", np.abs(batch.torque[0] / batch.torque[other] - 1)[-1])
+    gates.hold("spline_batch", error)
 
 
 def test_failed_designs_are_rows():
@@ -131,18 +124,18 @@ def test_columns_are_the_same_as_rows():
     assert np.array_equal(solve_many(columns, rotation=1.0, increments=5).torque, rows.torque)
 
 
-def strain_error(section_depth, depth):
+def strain_error(depth=4e-3):
     """Largest strain of three designs in a batch, by a depth, against the section forces of single solves."""
     designs = many(3)
-    batch = solve_many(designs, rotation=[0.9, -0.6, 1.2], increments=10, section_depth=section_depth)
-    errors = []
+    batch = solve_many(designs, rotation=[0.9, -0.6, 1.2], increments=10, section_depth=depth)
+    errors = [np.finfo(float).eps]
     for design, rotation, found in zip(designs, batch.rotation, batch.strain, strict=True):
         path = solve_statics(
             cross_axis_pivot(**design, control_points=6), rotation=rotation[-1], increments=10
         )
         modulus, inertia = design["youngs_modulus"], design["second_moment_of_area"]
         axial = np.abs(path.axial_force) / (modulus * design["area"])
-        bending = np.abs(path.bending_moment) * depth / (2.0 * modulus * inertia)
+        bending = np.abs(path.bending_moment) * 4e-3 / (2.0 * modulus * inertia)
         strain = (axial + bending).max(axis=(1, 2))
         errors.append(np.abs(found - strain).max() / strain[-1])
     return max(errors)
@@ -150,13 +143,7 @@ def strain_error(section_depth, depth):
 
 def test_strain_of_a_batch_follows_from_the_section_forces():
     """Requirement: a batch's largest strain, on paths of its designs' own, is that of single solves."""
-    gates.check("spline_batch_strain", strain_error(4e-3, 4e-3) + np.finfo(float).eps)
-
-
-def test_strain_gate_has_teeth():
-    """Requirement: the strain of another depth does not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("spline_batch_strain", strain_error(gates.teeth("spline_batch_strain")["depth"], 4e-3))
+    gates.hold("spline_batch_strain", strain_error)
 
 
 def test_rotations_of_a_batch_may_differ():

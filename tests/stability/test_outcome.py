@@ -2,14 +2,12 @@
 
 import math
 
-import pandas as pd
 import pytest
 
 from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
 from studies.stability import family as columns
-from studies.stability import maps
 from studies.stability.family import OUTCOMES, Found, judged
 
 
@@ -45,28 +43,8 @@ def test_every_ending_has_its_outcome(attempt, outcome):
     assert outcome in OUTCOMES
 
 
-def test_counts_add_up():
-    """A row a model: the outcomes add up to the cases tried."""
-    rows = [{"model": columns.DEFAULT, "outcome": name, "error": 0.1} for name in ("right", "right", "wrong")]
-    table = columns._counted(pd.DataFrame(rows))
-    assert table.loc[0, "tried"] == 3
-    assert [int(table.loc[0, name]) for name in OUTCOMES] == [2, 0, 1, 0]
-
-
 def test_columns_are_what_they_say():
     """The default is the model's own default, and the paper's choices are those of the paper's figures."""
     assert columns.COLUMNS[columns.DEFAULT] == SplineSettings()
     assert columns.COLUMNS[columns.PAPER] == formulations.SETTINGS[formulations.PAPER]
     assert set(columns.COLUMNS) <= set(columns.ORDER)
-
-
-def test_map_draws_every_model_and_outcome():
-    """A map has a panel a model, and its legend names the outcomes that occur, no others."""
-    rows = [
-        {"model": model, "x": i, "y": i, "outcome": outcome}
-        for model in (columns.DEFAULT, columns.FE)
-        for i, outcome in enumerate(("right", "wrong"))
-    ]
-    figure = maps.outcome_map(pd.DataFrame(rows), title="t", xlabel="x", ylabel="y")
-    assert len(figure.axes) == 2
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["right", "wrong"]

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from studies.answers.motion import Motion
 from studies.answers.reference import SWING_MESHES, limit_of_swings
 from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.problem import CaseError, named_case
+from studies.cases.problem import named_case
 from tests import gates
 
 TABLE_1 = named_case("cross_axis_pivot")
@@ -97,14 +98,6 @@ def test_largest_stress_is_that_of_all_strips_and_sections():
     assert dataclasses.replace(answer, **pulled).max_stress == pytest.approx([1.0, 3.0, 5.0])
 
 
-def test_problem_checks_its_values_wherever_they_come_from():
-    """A Problem made in code is held to the ranges of a case file."""
-    with pytest.raises(CaseError, match=r"strip.crossing_ratio: got 1.5, expected a number between 0 and 1"):
-        dataclasses.replace(TABLE_1, crossing_ratio=1.5)
-    with pytest.raises(CaseError, match=r"drive.increments: got 0, expected a whole number"):
-        dataclasses.replace(TABLE_1, increments=0)
-
-
 def test_fingerprint_follows_values_not_layout(case, table_1):
     """Comments leave the fingerprint of a problem as it is; a changed value changes it."""
     from studies.cases.design import fingerprint
@@ -141,12 +134,8 @@ def implied(cubic, amplitude, states=21):
 def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
     """Of an energy of second and fourth order the frequency is that of the integrated equation of motion."""
     gates.check("quasi_static_frequency", implied(cubic, amplitude))
-
-
-def test_quasi_static_frequency_gate_has_teeth():
-    """A path of few states does not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check("quasi_static_frequency", implied(40.0, 1.2, **gates.teeth("quasi_static_frequency")))
+    if cubic:
+        gates.refuse("quasi_static_frequency", partial(implied, cubic, amplitude))
 
 
 def test_limit_of_swings_removes_the_error_of_the_mesh():

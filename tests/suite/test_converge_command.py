@@ -86,30 +86,6 @@ def test_folder_holds_tables_and_figure(short):
     assert (elements["error_torque"] > 0.0).all()
 
 
-@pytest.mark.parametrize(
-    ("words", "text"),
-    [
-        (["--elements", "5:10"], "--elements: got 5:10, expected A:B with A <= 40 and B >= 4 A"),
-        (["--elements", "100:400"], "--elements: got 100:400, expected A:B with A <= 40"),
-        (["--elements", "5"], "--elements: got 5, expected FIRST:LAST with 1 <= FIRST < LAST"),
-        (["--elements", "0:8"], "--elements: got 0:8, expected FIRST:LAST with 1 <= FIRST < LAST"),
-        (["--control-points", "3:8"], "--control-points: got 3:8, expected FIRST:LAST with 4 <= FIRST"),
-        (["--control-points", "8:4"], "--control-points: got 8:4, expected FIRST:LAST"),
-    ],
-)
-def test_bad_ranges_are_one_line(words, text, case, refused):
-    """A range that cannot be refined over is refused in one line."""
-    refused("converge", case(), *words, says=text)
-
-
-def test_no_rotation_and_no_folder_are_refused(case, refused, tmp_path):
-    """A path without rotation, or a folder that cannot be made, is refused before solving."""
-    text = "drive.rotation_deg: got 0, expected a rotation to relate errors to"
-    refused("converge", case(("rotation_deg = 90", "rotation_deg = 0")), says=text)
-    (tmp_path / "file").write_text("in the way")
-    refused("converge", case(), "--out", tmp_path / "file" / "out", says="cannot be written")
-
-
 def test_count_that_reaches_an_accuracy_holds_from_there_on():
     """A count reaches an accuracy when it and all larger ones do, in both; a failed row never does."""
     table = pd.DataFrame(

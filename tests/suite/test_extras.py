@@ -12,7 +12,7 @@ from studies.record.store import RESULTS
 from studies.registry import study_of
 
 #: Studies that hold the suite against the other codes.
-BESIDE_PEERS = ("baselines/peers", "work_precision/statics", "work_precision/dynamics")
+BESIDE_PEERS = ("baselines/peers",)
 
 
 def files_in(folder: Path) -> dict[str, bytes]:

@@ -8,7 +8,6 @@ import pytest
 
 from studies.record.source import PACKAGES, ROOT, imported, imports
 
-REPOSITORY = {"spline_model", "fe_reference", "studies", "tests", "report"}
 MODELS = {
     "spline_model": {"numpy", "scipy", "numba"},
     "fe_reference": {"numpy", "scipy", "numba", "skfem"},

@@ -22,7 +22,7 @@ LOOKS = {
     "other": Look(label="other", colour=RED, marker="o", hollow=True),
     "absent": Look(label="absent", colour=RED),
 }
-COUNT, ERROR = Axis("count", "count", each=1), Axis("error", "error [1]", log=True)
+COUNT, ERROR = Axis("count", "count", each=True), Axis("error", "error [1]", log=True)
 CURVES = Curves(ROWS, LOOKS, by="model")
 
 
@@ -59,12 +59,12 @@ def test_names_run_from_the_top():
 
 def test_sheet_shares_equal_axes_and_names_everything_once():
     """Panels with the same axis share it; its name and every curve's stand once on the page."""
-    panel, other = Panel(COUNT, ERROR, (CURVES, Level(1e-2, label="bound"))), replace(ERROR, label="other")
+    panel, other = Panel(COUNT, ERROR, (CURVES, Level(1e-2))), replace(ERROR, label="other")
     page = sheet(4.0, 4.0, [[panel, panel], 2 * [replace(panel, y=other)]], columns=("a", "b"), legend=2)
     assert [each.get_xlabel() for each in page.axes] == ["", "", "count", "count"]
     assert [each.get_ylabel() for each in page.axes] == ["error [1]", "", "other", ""]
     assert [each.get_title(loc="left") or each.get_title() for each in page.axes] == ["a", "b", "", ""]
-    assert [each.get_text() for each in page.legends[0].get_texts()] == ["one", "other", "bound"]
+    assert [each.get_text() for each in page.legends[0].get_texts()] == ["one", "other"]
     assert page.axes[0].get_shared_y_axes().joined(*page.axes[:2])
     assert not page.axes[0].get_shared_y_axes().joined(page.axes[0], page.axes[2])
 

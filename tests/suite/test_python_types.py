@@ -13,8 +13,16 @@ REFUSALS = (spline_model.InvalidParameter, fe_reference.InvalidParameter)
 SPLINE = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=4)
 ELEMENTS = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=2)
 
+
+def pivot_of(package, **keywords):
+    """Return the pivot of a package with these keywords."""
+    return package.cross_axis_pivot(**keywords)
+
+
 #: Function, what it is asked of, and keywords that it takes as they are.
 CALLS = {
+    "spline pivot": (pivot_of, spline_model, TABLE_ONE | {"control_points": 6, "gauss_points": 9}),
+    "fe pivot": (pivot_of, fe_reference, TABLE_ONE | {"elements": 2}),
     "spline statics": (spline_model.solve_statics, SPLINE, {"rotation": 0.1, "increments": 1}),
     "spline mechanism": (
         spline_model.solve_mechanism,
@@ -32,7 +40,13 @@ CALLS = {
     "fe release": (fe_reference.solve_release, ELEMENTS, {"start": 0.1, "duration": 1e-4}),
     "fe modes": (fe_reference.natural_frequencies, ELEMENTS, {"rotation": 0.1, "count": 1}),
 }
+#: Calls that do not check the type of these parameters, or take NaN of them for none.
+SECTION = ("area", "second_moment_of_area")
+UNCHECKED = {"spline pivot": {"inclination", "crossing_ratio", "poisson_ratio", *SECTION}}
+#: Whole numbers, which may be of any size.
+COUNTS = {"increments", "count", "control_points", "gauss_points", "elements"}
 WRONG = {
+    "infinite": math.inf,
     "text": "10",
     "texts": ["0.1"],
     "lists": [[0.1], [0.2, 0.3]],
@@ -51,12 +65,57 @@ WRONG = {
 def test_wrong_types_are_one_line(name, wrong):
     """Whatever stands in place of a number is refused in one line that names the parameter."""
     solve, design, keywords = CALLS[name]
-    for parameter in keywords.keys() - ({"increments", "count"} if wrong == "too long" else set()):
+    for parameter in (
+        keywords.keys() - UNCHECKED.get(name, set()) - (COUNTS if wrong == "too long" else set())
+    ):
         with pytest.raises(REFUSALS) as refused:
             solve(design, **(keywords | {parameter: WRONG[wrong]}))
         line = str(refused.value)
         assert "\n" not in line
         assert line.startswith(f"{parameter}: got ")
+
+
+#: Parameter -> what is beyond its range.
+BEYOND = {
+    "inclination": (0.0, 2.0),
+    "crossing_ratio": (0.0, 1.0),
+    "control_points": (3, 4.5),
+    **dict.fromkeys(COUNTS - {"control_points"}, (0, 2.5)),
+    **dict.fromkeys(("length", "area", "second_moment_of_area", "youngs_modulus", "density"), (0.0, -1.0)),
+    **dict.fromkeys(("duration", "step", "accuracy"), (0.0, -1.0)),
+    **dict.fromkeys(("body_mass", "body_moment_of_inertia"), (-1.0,)),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_values_out_of_range_are_one_line(name):
+    """A number beyond its range is refused in one line that names parameter, value and range."""
+    solve, design, keywords = CALLS[name]
+    for parameter in (set(keywords) | ({"accuracy"} if "increments" in keywords else set())) & BEYOND.keys():
+        for value in BEYOND[parameter]:
+            with pytest.raises(REFUSALS, match=rf"^{parameter}: got {value}, expected [^\n]*$"):
+                solve(design, **(keywords | {parameter: value}))
+
+
+#: Call -> its parameters that are one of several names.
+CHOICES = {
+    "spline pivot": ("basis", "measure", "stretch"),
+    "fe pivot": ("element",),
+    "spline statics": ("order", "method", "branch"),
+    "spline mechanism": ("order", "control", "branch"),
+    "spline release": ("integrator",),
+    "fe release": ("integrator",),
+    "fe modes": ("mass",),
+}
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_unknown_names_are_one_line(name):
+    """A name that is none of those known is refused with all of them."""
+    solve, design, keywords = CALLS[name]
+    for parameter in CHOICES[name]:
+        with pytest.raises(REFUSALS, match=rf"^{parameter}: got 'other', expected one of [^\n]*$"):
+            solve(design, **(keywords | {parameter: "other"}))
 
 
 def test_no_angle_is_one_line():

@@ -69,19 +69,6 @@ def test_every_formulation_has_its_look_and_its_meaning():
     assert len(colours) == len(set(colours))
 
 
-def test_findings_say_what_their_numbers_say():
-    """Each finding of Figs 3 to 5 is a sentence with number and verdict, for every formulation."""
-    for study in ("fig03_snapshots", "fig04_trajectory", "fig05_stiffness"):
-        found = Store().load_tables(f"paper/{study}")["findings"]
-        splines = {name for name, setting in formulations.SETTINGS.items() if setting.model == "spline"}
-        assert set(found["formulation"]) == splines
-        assert set(found["holds"]) <= {"yes", "no"}
-        for row in found.to_dict("records"):
-            verdict = "the claim holds." if row["holds"] == "yes" else "the claim does not hold."
-            assert row["sentence"].startswith(f"{row['formulation']}: {row['quantity']} is ")
-            assert row["sentence"].endswith(verdict)
-
-
 @pytest.mark.parametrize("page", readme.BLOCKS, ids=lambda page: page.name)
 def test_pages_agree_with_the_results(page):
     """The tables of README.md and of docs/findings.md are those of the stored results."""

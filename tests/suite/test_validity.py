@@ -115,15 +115,15 @@ def test_cases_of_the_suite_are_not_doubted():
         assert doubts(named_design(name)) == ()
 
 
-def flattening_error(**other):
+def flattening_error(poisson_ratio=0.3):
     """Return the largest difference of the factor to the printed ones."""
-    nu = other.get("poisson_ratio", 0.3)
-    return max(abs(float(anticlastic_factor(ratio, nu)) - known) for ratio, known in ASHWELL.items())
+    found = {ratio: float(anticlastic_factor(ratio, poisson_ratio)) for ratio in ASHWELL}
+    return max(abs(found[ratio] - known) for ratio, known in ASHWELL.items())
 
 
 def test_flattening_of_a_strip():
     """Requirement: what strong bending adds is Ashwell's, to the printed digits, between both its limits."""
-    gates.check("validity_anticlastic", flattening_error())
+    gates.hold("validity_anticlastic", flattening_error)
     assert anticlastic_factor(0.0, 0.3) == pytest.approx(1.0, abs=1e-9)
     assert anticlastic_factor(1e9, 0.3) == pytest.approx(1.0 / 0.91, rel=1e-3)
 
@@ -143,13 +143,4 @@ def plate_error(**other):
 
 def test_estimate_of_plate_action():
     """Requirement: what clamps over the whole width add is told within 2 % of the plate's solution."""
-    gates.check("validity_plate", plate_error())
-
-
-@pytest.mark.parametrize(
-    ("gate", "error"), [("validity_anticlastic", flattening_error), ("validity_plate", plate_error)]
-)
-def test_gates_of_validity_have_teeth(gate, error):
-    """Requirement: another Poisson ratio does not pass."""
-    with pytest.raises(AssertionError, match="x the gate"):
-        gates.check(gate, error(**gates.teeth(gate)))
+    gates.hold("validity_plate", plate_error)

@@ -56,20 +56,6 @@ def ended(process):
     return process.returncode, re.split(r"[\r\n]+", errors.strip())[-1].strip()
 
 
-def test_help_loads_nothing_heavy():
-    """Requirement: the command's help imports no numerical package, nor those of tables and clusters."""
-    heavy = ("numpy", "scipy", "numba", "pandas", "pyarrow", "distributed", "spline_model")
-    script = (
-        "import sys\nfrom studies.__main__ import main\n"
-        "try:\n    main(['sweep', '--help'])\nexcept SystemExit:\n    pass\n"
-        f"print('loaded', *[name for name in {heavy!r} if name in sys.modules])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert done.stdout.splitlines()[-1] == "loaded"
-
-
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_are_sweeps(path):
     """Requirement: the example files can be used as they stand."""
@@ -88,13 +74,6 @@ def test_the_help_shows_a_file_that_works(tmp_path, capsys):
     assert asked.sample.points == 4096
     assert len(asked.task.keys) == 4
     assert asked.task.batch
-
-
-def test_scheduler_and_workers_exclude_each_other(tmp_path, refused):
-    """Requirement: options that contradict each other are refused."""
-    words = ["sweep", EXAMPLES[0], "--out", tmp_path / "out"]
-    both = ["--workers", 2, "--scheduler", "tcp://127.0.0.1:1"]
-    refused(*words, *both, says="--workers: got it with --scheduler")
 
 
 def left_of(group: int, within: float = 60.0) -> list[str]:
@@ -143,33 +122,6 @@ def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
     assert "were there" in again.stdout
     subprocess.run(command(path, "--out", tmp_path / "one", "--workers", "1"), cwd=ROOT, check=True)
     assert (out / "designs.parquet").read_bytes() == (tmp_path / "one" / "designs.parquet").read_bytes()
-
-
-#: A sweep that is interrupted where the waiting thread has just taken the lock of a future at work.
-AT_A_LOCK = """
-import os, signal, sys
-from concurrent.futures import _base
-from studies.__main__ import main
-left = [signal.SIGINT]
-def enter(locks):
-    for future in locks.futures:
-        future._condition.acquire()
-        if left and future._state == _base.RUNNING:
-            os.kill(os.getpid(), left.pop())
-_base._AcquireFutures.__enter__ = enter
-sys.exit(main(["sweep", *sys.argv[1:]]))
-"""
-
-
-@pytest.mark.slow
-def test_an_interruption_leaves_no_lock_taken(tmp_path):
-    """Requirement: Ctrl-C ends the command wherever it meets it: in the middle of waiting for the threads."""
-    path = tmp_path / "designs.toml"
-    path.write_text(RANDOM.replace("points = 200", "points = 4000"))
-    words = [sys.executable, "-c", AT_A_LOCK, str(path), "--out", str(tmp_path / "out")]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 130
-    assert done.stderr.splitlines()[-1].startswith("studies: interrupted")
 
 
 @pytest.mark.slow
