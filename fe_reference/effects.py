@@ -132,7 +132,7 @@ def _root_length(name: str, value: Any) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class RootCompliance(_Effect):
-    """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC, as without one."""
+    """Clamped ends turn against springs of EI / (root t) [N m]; root: number or "monolithic", the default."""
 
     root: Annotated[float, _root_length] = MONOLITHIC
 
