@@ -15,8 +15,12 @@ class InvalidParameter(ValueError):
     """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]"."""
 
     def __init__(self, name: str, got: object, expected: str) -> None:
-        super().__init__(f"{name}: got {got!r}, expected {expected}")
+        super().__init__(name, got, expected)  # of which another process makes it again
         self.name = name
+
+    def __str__(self) -> str:
+        name, got, expected = self.args
+        return f"{name}: got {got!r}, expected {expected}"
 
 
 class ConvergenceError(RuntimeError):
@@ -29,7 +33,12 @@ class ConvergenceError(RuntimeError):
     """
 
     def __init__(
-        self, message: str, *, solution: Any, load_factor: float, history: tuple[tuple[float, ...], ...]
+        self,
+        message: str,
+        *,
+        solution: Any = None,
+        load_factor: float = 0.0,
+        history: tuple[tuple[float, ...], ...] = (),
     ) -> None:
         super().__init__(message)
         self.solution = solution

@@ -12,8 +12,12 @@ class InvalidParameter(ValueError):
     """A parameter outside its range; the message is one line ``name: got X, expected Y``."""
 
     def __init__(self, name: str, got: Any, expected: str) -> None:
-        super().__init__(f"{name}: got {got!r}, expected {expected}")
+        super().__init__(name, got, expected)  # of which another process makes it again
         self.name, self.got, self.expected = name, got, expected
+
+    def __str__(self) -> str:
+        name, got, expected = self.args
+        return f"{name}: got {got!r}, expected {expected}"
 
 
 class ConvergenceError(RuntimeError):
@@ -30,9 +34,9 @@ class ConvergenceError(RuntimeError):
         self,
         message: str,
         *,
-        solution: Any,
-        load_factor: float,
-        history: tuple[tuple[float, ...], ...],
+        solution: Any = None,
+        load_factor: float = 0.0,
+        history: tuple[tuple[float, ...], ...] = (),
     ) -> None:
         super().__init__(message)
         self.solution = solution

@@ -17,7 +17,7 @@ LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
 #: tenth of it of the others.
 PIECE = 10_000
-PIECES = {family.DEFAULT: 100, family.LOCKING_FREE: 10, family.PAPER: 10}
+PIECES = {family.DEFAULT: 100, family.LOCKING_FREE: 10}
 #: Largest change of energy that is right [1].
 DRIFT = 1e-6
 #: Factor by which the constraint residual of the last tenth may exceed that of the first.

@@ -1,6 +1,7 @@
 """Wrong types at the public functions of both models are one line, as wrong values of a design are."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -134,6 +135,16 @@ def test_numbers_of_all_kinds_are_angles(name, legs):
     solve, design, keywords = CALLS[name]
     answer = solve(design, **(keywords | {"rotation": legs, "increments": 6}))
     assert answer.rotation[-1] == pytest.approx(float(np.ravel(legs)[-1]), rel=1e-12)
+
+
+@pytest.mark.parametrize("package", [spline_model, fe_reference], ids=["spline", "fe"])
+def test_refusals_pass_from_one_process_to_another(package):
+    """A worker's refusal, or its path that stopped, is the same where it is raised again."""
+    refused = package.InvalidParameter("length", -1.0, "a finite number > 0 [m]")
+    stopped = package.ConvergenceError("stopped", solution=(1, 2), load_factor=0.5, history=((1.0,),))
+    for error in (refused, stopped):
+        again = pickle.loads(pickle.dumps(error))
+        assert (str(again), vars(again)) == (str(error), vars(error))
 
 
 def _of(package):
