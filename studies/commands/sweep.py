@@ -76,7 +76,11 @@ def main(arguments: argparse.Namespace) -> int:
     from studies.sweep.run import cluster, local_pool, sweep
 
     plan = read_plan(arguments.designs)
-    pool = cluster(arguments.scheduler) if arguments.scheduler is not None else local_pool(plan, arguments.workers)
+    pool = (
+        cluster(arguments.scheduler)
+        if arguments.scheduler is not None
+        else local_pool(plan, arguments.workers)
+    )
     try:
         with Bar("sweep") as bar:
             solved = sweep(plan, arguments.out, pool=pool, csv=arguments.csv, progress=bar)
