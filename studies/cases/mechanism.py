@@ -10,7 +10,15 @@ from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION
 from studies.cases.rules import FREE, shown
-from studies.cases.section import Sectioned, completed, inherited, out_of_scale, refuse_both, without
+from studies.cases.section import (
+    Sectioned,
+    completed,
+    inherited,
+    out_of_scale,
+    refuse_both,
+    too_heavy,
+    without,
+)
 
 if TYPE_CHECKING:  # a template of a case waits for no arrays
     pass
@@ -105,10 +113,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     refuse_both(path, shared, "section")
-    bodies = tuple(
-        Body(**document.values(path, keys.BODY, given, label))
-        for label, given in _each(path, content, "bodies")
-    )
+    bodies = tuple(_body(path, given, label) for label, given in _each(path, content, "bodies"))
     strips = tuple(_strip(path, given, label, shared) for label, given in _each(path, content, "strips"))
     names = [body.name for body in bodies]
     _refuse_twice(path, [*names, *(strip.name for strip in strips)])
@@ -158,6 +163,14 @@ def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str,
     if said := out_of_scale(strip):
         raise CaseError(f"{path}: {label}: {said}")
     return strip
+
+
+def _body(path: str, given: Mapping[str, Any], label: str) -> Body:
+    """Return one body."""
+    body = Body(**document.values(path, keys.BODY, given, label))
+    if said := too_heavy(body.mass, body.moment_of_inertia):
+        raise CaseError(f"{path}: {label}: {said}")
+    return body
 
 
 def _refuse_twice(path: str, names: list[str]) -> None:

@@ -11,7 +11,7 @@ from studies.cases.document import CaseError, is_mechanism, parsed, refuse_secti
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
 from studies.cases.mechanism import Body, Strip
-from studies.cases.section import Sectioned, completed, of_sides, out_of_scale
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -98,8 +98,12 @@ class Problem(Sectioned):
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
         self._check_section()
-        if said := out_of_scale(self):
-            raise CaseError(f"strip: {said}")
+        for part, said in (
+            ("strip", out_of_scale(self)),
+            ("body", too_heavy(self.body_mass, self.body_moment_of_inertia)),
+        ):
+            if said:
+                raise CaseError(f"{part}: {said}")
 
     def _check_section(self) -> None:
         """Raise CaseError if the sides of the section are not those of its area and second moment."""

@@ -93,15 +93,30 @@ def completed(
     return values
 
 
+def _root(area: float, inertia: float) -> float:
+    """Return sqrt(A/I), without end where the second moment is too small for a number."""
+    return math.sqrt(area / inertia) if inertia > 0.0 else math.inf
+
+
 def out_of_scale(strip: Any) -> str:
     """Return in words the first number made of a strip that no solve can bear, or nothing."""
     area, inertia, modulus = strip.area, strip.second_moment_of_area, strip.youngs_modulus
     made = {
         "stiffness EA [N]": (modulus * area, SCALES),
-        "slenderness L sqrt(A/I) [1]": (strip.length * math.sqrt(area / inertia), SLENDERNESS),
+        "slenderness L sqrt(A/I) [1]": (strip.length * _root(area, inertia), SLENDERNESS),
         "stiffness EI/L^2 [N]": (modulus * inertia / strip.length / strip.length, SCALES),
         "mass per length [kg/m]": (strip.density * area, SCALES),
     }
+    return _beyond(made)
+
+
+def too_heavy(mass: float, inertia: float) -> str:
+    """Return in words that a body's mass or moment of inertia is more than any solve can bear, or nothing."""
+    none = (0.0, SCALES[1])
+    return _beyond({"mass [kg]": (mass, none), "moment of inertia [kg m^2]": (inertia, none)})
+
+
+def _beyond(made: Mapping[str, tuple[float, tuple[float, float]]]) -> str:
     for name, (value, (low, high)) in made.items():
         if not low <= value <= high:
             return f"{name}: got {value:.3g}, expected {low:g} to {high:g}"
@@ -110,7 +125,10 @@ def out_of_scale(strip: Any) -> str:
 
 def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
     """Return area b h [m^2] and second moment b h^3 / 12 [m^4] of a rectangle; sides may be arrays."""
-    return {"area": width * thickness, "second_moment_of_area": width * thickness**3 / 12.0}
+    return {
+        "area": width * thickness,
+        "second_moment_of_area": width * thickness * thickness * thickness / 12.0,
+    }
 
 
 def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
