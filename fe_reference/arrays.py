@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -12,21 +12,24 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
+F = TypeVar("F", bound=Callable[..., Any])
 
 #: Without numba's runtime there are no references of arrays and slices to count, which takes half of the time
 #: of a small kernel; what allocates does not compile.
 _compiled = partial(njit, nogil=True, error_model="numpy", _nrt=False)
 
 
-def kernel(**options: Any) -> Callable[..., Any]:
+def kernel(**options: Any) -> Callable[[F], F]:
     """Return the decorator of a function over all elements; it is kept compiled where there is a place."""
 
-    def decorated(function: Callable[..., Any]) -> Any:
+    def decorated(function: F) -> F:
+        made: Any
         try:
-            return _compiled(cache=True, **options)(function)
+            made = _compiled(cache=True, **options)(function)
         except RuntimeError:  # of numba, which finds nowhere to keep it
             _say_unkept()
-            return _compiled(**options)(function)
+            made = _compiled(**options)(function)
+        return cast(F, made)
 
     return decorated
 
