@@ -10,10 +10,10 @@ import numpy as np
 
 from .arrays import Array
 from .effects import DEFAULT_EFFECTS, DrivenDisplacement, Effects
-from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, within
+from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
 from .loads import DrivenRotation, drive_spans, full_load
 from .mass import about_mass_centre, carried_over
-from .model import Model
+from .model import Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, course
 from .refined import limit_of
@@ -74,6 +74,8 @@ class Run(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.drive is not None:
+            require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
         if self.start is not None and not self.settled:
             raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
         if self.accuracy is not None and (self.step is not None or not self.explicit):
@@ -89,6 +91,7 @@ class Run(Checked):
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
     """Let a pivot go at rest from the static state at a rotation: `solve_motion` of the one body there is."""
+    require_model(pivot)
     pivot.body_index(None)
     return solve_motion(pivot, start=start, duration=duration, **options)
 
@@ -122,6 +125,8 @@ def solve_motion(
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up, a step had no solution or the accuracy was not reached: carries what there is.
     """
+    require_model(mechanism)
+    require_kind("check", check, bool, "True or False")
     run = Run(**asked)
     if run.accuracy is not None:
         return _limit(mechanism, run, run.accuracy).checked(raise_on_failure)

@@ -12,7 +12,7 @@ from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
-from .model import Model
+from .model import Model, require_model
 from .refined import Quantities, refine
 from .solution import ErrorEstimate
 from .statics import settled_state
@@ -78,6 +78,7 @@ def natural_frequencies(
             rotation that is held but not driven.
         ConvergenceError: the static state cannot be reached, or the accuracy is not.
     """
+    require_model(pivot)
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
     if rotation is None and held:

@@ -13,7 +13,7 @@ from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
 from .law import FORCES
 from .loads import full_load
-from .model import Model
+from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import limit_of
 from .section_forces import strip_fields
@@ -28,6 +28,7 @@ JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
 
 def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
     """Drive the rotation of the one body there is from 0 to `rotation` [rad]: `solve_mechanism` of it."""
+    require_model(pivot)
     pivot.body_index(None)
     return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
 
@@ -71,6 +72,7 @@ def solve_mechanism(
         ConvergenceError: the path ended early; carries the converged part. The accuracy was not reached;
             carries the best answer.
     """
+    require_model(mechanism)
     ends = None if rotation is None else several("rotation", rotation, "rad")
 
     def solve(model: Model) -> StaticSolution:
@@ -96,6 +98,7 @@ def solve_loads(
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
         increments, accuracy, raise_on_failure, progress: as in `solve_mechanism`.
     """
+    require_model(model)
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
         raise InvalidParameter("force", force, "two components [N]")

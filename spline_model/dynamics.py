@@ -20,9 +20,10 @@ from spline_model.errors import (
     InvalidParameter,
     require_choice,
     require_finite,
+    require_kind,
     require_positive,
 )
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import settle
 from spline_model.motion import energy_consistent, leapfrog, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
@@ -94,6 +95,12 @@ def solve_motion(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
+    require_mechanism(mechanism)
+    require_kind("check", check, bool, "True or False")
+    if drive is not None:
+        require_kind("drive", drive, DrivenRotation, "a DrivenRotation or None")
+    if after is not None:
+        require_kind("after", after, Trajectory, "a motion of this mechanism or None")
     _check(integrator, duration, start, step, accuracy)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")

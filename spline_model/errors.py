@@ -90,6 +90,13 @@ def require_count(name: str, value: int, lowest: int, highest: int | None = None
         raise InvalidParameter(name, value, f"an integer >= {lowest}{upper}")
 
 
+def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
+    """Refuse anything but an object of this kind; one that fills pages is named by its own."""
+    if not isinstance(value, kind):
+        told = value if value is None or isinstance(value, int | float | str | dict) else type(value).__name__
+        raise InvalidParameter(name, told, expected)
+
+
 def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
     """Refuse anything but one of the named choices."""
     if value not in choices:

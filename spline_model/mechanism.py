@@ -22,7 +22,7 @@ from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, require_kind
 from spline_model.scene import Body, Effect, Scene, Strip
 
 HERE = (0.0, 0.0)
@@ -158,3 +158,9 @@ def compliant_mechanism(
         effects=(*build(names, given, design), *attachments),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
+
+
+def require_mechanism(value: Any) -> None:
+    """Refuse what is no mechanism of this package, such as one of the elements."""
+    made = "what cross_axis_pivot or compliant_mechanism of spline_model returns"
+    require_kind("mechanism", value, Mechanism, made)

@@ -16,7 +16,7 @@ from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
@@ -80,6 +80,7 @@ def natural_frequencies(
     raised and the modes have their ``estimate``; default 1e-4 without a number of control points, else just
     that number. Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
     """
+    require_mechanism(pivot)
     require_count("count", count, 1)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")

@@ -20,7 +20,7 @@ from spline_model.errors import (
     require_count,
     require_finite,
 )
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
@@ -67,6 +67,7 @@ def solve_statics(
     path, or with the best one where the accuracy is not reached; returns it as a status with
     ``raise_on_failure=False``.
     """
+    require_mechanism(pivot)
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
@@ -112,6 +113,7 @@ def solve_mechanism(
     always with control "arc-length" or another ``end``. control, branch and end as in ``solve_loads``;
     accuracy as in ``solve_statics``, with control "arc-length" of the state at the end.
     """
+    require_mechanism(mechanism)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
     require_count("increments", increments, 1)

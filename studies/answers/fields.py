@@ -10,7 +10,8 @@ from studies.answers.models import Model, effects_of, mode_bodies, model_of
 from studies.answers.response import Answered, assembled, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import GROUND
-from studies.cases.mechanism import Sectioned, Strip
+from studies.cases.mechanism import Strip
+from studies.cases.section import Sectioned
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -38,6 +39,7 @@ class _Part(Sectioned):
     area: float
     second_moment_of_area: float
     section_depth: None = None
+    width: None = None
 
 
 @dataclass(frozen=True, kw_only=True)

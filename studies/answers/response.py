@@ -10,7 +10,7 @@ import numpy as np
 from studies.answers.models import Asked
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
-from studies.cases.mechanism import Sectioned
+from studies.cases.section import Sectioned
 from studies.kinds import Array
 
 

@@ -26,8 +26,8 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import FORCE, capacity
 from studies.answers.validity import Strip, anticlastic_factor, strips_of
 from studies.cases.effects import Effects
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_sides
 from studies.design.figures import CHARTS
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_sides
 from studies.design import evaluate
 from studies.design.evaluate import (
     CENTRE_SHIFT,

@@ -14,8 +14,8 @@ from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
 from studies.cases.document import is_mechanism
 from studies.cases.effects import DEFAULT, MOTION_ONLY
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
+from studies.cases.section import of_sides
 from studies.kinds import Array
 from studies.sweep import plan, points
 from studies.sweep.plan import Task

@@ -10,8 +10,8 @@ from studies.answers.settings import Settings, settings_of_model
 from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
-from studies.cases.mechanism import rectangle_of
 from studies.cases.rules import Rule, not_negative, number, positive, text, whole
+from studies.cases.section import rectangle_of
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")
