@@ -8,12 +8,13 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from .arrays import Array, Flags, Indices
+from .freedom import loose_coordinates
 from .matrix import Factors, Singular
 from .structure import Evaluation, Structure
 
@@ -22,8 +23,8 @@ ITERATIONS = 25
 #: Dimensionless residual (forces over EI/L^2, moments over EI/L) taken as equilibrium where round-off allows
 #: it.
 TOLERANCE = 1e-10
-#: Longest correction that equilibrium asks for [strip lengths, rad]; it is made. A longer one is the round-off
-#: of the residual over a stiffness that vanishes, if the next is no shorter.
+#: Longest correction that equilibrium asks for [strip lengths, rad]; it is made. A longer one is round-off of
+#: the residual over a stiffness that vanishes, if the next is no shorter.
 LAST = 1e-9
 
 
@@ -53,6 +54,7 @@ class Control:
         span: parameter at both. load (size,): F, or None. shares: of it at both, by default the parameters.
         watched: coordinate of the turn whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
+        props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
     """
 
     structure: Structure
@@ -63,6 +65,7 @@ class Control:
     watched: int | None = None
     settling: bool = False
     shares: tuple[float, float] | None = None
+    props: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def growth(self) -> float:
@@ -166,6 +169,8 @@ def spans(
     ways = {centre + k: np.multiply(shares, d) for k, d in enumerate(displacement or ()) if d is not None}
     if rotations is not None:
         ways[at + 2] = np.array([0.0] * (1 + first) + [*rotations])
+    props = loose_coordinates(structure, ways)
+    ways |= {int(k): np.zeros(legs + 1) for k in props}
     values = np.reshape([*ways.values()], (-1, legs + 1)).T
     return [
         Control(
@@ -176,6 +181,7 @@ def spans(
             load=load,
             watched=watched,
             shares=(shares[leg], shares[leg + 1]),
+            props=props,
         )
         for leg in range(legs)
     ]

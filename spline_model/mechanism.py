@@ -91,7 +91,7 @@ class Mechanism:
         return self.with_effects(drive)
 
     def propped(self, rotation: float | None = None, body: str | None = None) -> Self:
-        """The same with props in its scene where rigid motions are free, a drive to a rotation being there."""
+        """The same with props where rigid motions are free beside a drive to a rotation, if there is one."""
         drives = [] if rotation is None else [DrivenRotation(body=self.design.body_named(body), angle=0.0)]
         known, made = len(drives), propped(self.with_effects(*drives))
         if len(made.effects) == len(self.scene.effects) + known:

@@ -21,8 +21,8 @@ from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
-from spline_model.sections import STATIONS
 from spline_model.rigid import Unheld, propped, require_unborne
+from spline_model.sections import STATIONS
 from spline_model.solution import FrequencyEstimate, Later
 from spline_model.statics import solve_mechanism
 
@@ -87,7 +87,8 @@ def natural_frequencies(
     forces act on. accuracy: wanted relative error of all frequencies [1], for which the control points are
     raised and the modes have their ``estimate``; default 1e-4 without a number of control points, else just
     that number. Where nothing holds the mechanism against its loads in full, the state is that in which its
-    motion starts, with loads and drives as their histories begin. Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
+    motion starts, with loads and drives as their histories begin.
+    Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
     """
     require_count("count", count, 1)
     if rotation is not None:

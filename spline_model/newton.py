@@ -24,8 +24,8 @@ LAST = 1e-6
 what is left is the square of the correction. The residual alone does not tell, where a strip is softer by
 orders than the one in whose units it is measured."""
 ROUND_OFF = 1e-9
-"""Corrections that are smaller and no longer shrink are round-off, whatever the residual: short strips between
-long ones answer the last digit of a place with large forces in balance, which move nothing."""
+"""Corrections that are smaller and no longer shrink are round-off, whatever the residual: short strips
+between long ones answer the last digit of a place with large forces in balance, which move nothing."""
 MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
 
