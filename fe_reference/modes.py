@@ -11,7 +11,7 @@ from .arrays import Array, Flags
 from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
-from .freedom import NothingHolds
+from .freedom import NothingHolds, loose_coordinates
 from .mass import MASSES, mass_matrix
 from .model import Model
 from .refined import Quantities, refine
@@ -164,9 +164,10 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
         )
         order = np.argsort(values)
         values, vectors = values[order], vectors[:, order]
-    size = np.abs(vectors)
-    least = ROUND_OFF * np.einsum("im,im->m", size, abs(stiffness) @ size)
-    values[np.abs(np.einsum("im,im->m", vectors, stiffness @ vectors)) <= least] = 0.0
+    rigid = np.argsort(np.abs(values))[: len(loose_coordinates(structure, np.flatnonzero(~free)))]
+    shapes = vectors[:, rigid]
+    least = ROUND_OFF * np.einsum("im,im->m", np.abs(shapes), abs(stiffness) @ np.abs(shapes))
+    values[rigid[np.abs(np.einsum("im,im->m", shapes, stiffness @ shapes)) <= least]] = 0.0
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]

@@ -228,7 +228,8 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
     inertia = by.T @ mass @ by
     free = _without_massless(free, stiffness, inertia)
-    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free)
+    rigid = len(propped(system.scene).effects) - len(system.scene.effects)
+    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
@@ -261,8 +262,8 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
     return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
 
 
-def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
-    """Squared frequencies and shapes of unit modal mass, lowest first; those of rigid motions are 0.
+def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Array]:
+    """Squared frequencies and shapes of unit modal mass, lowest first; 0 of at most so many rigid motions.
 
     Slow modes by M x = K x / w^2, in which they are the largest and keep their digits beside axial ones many
     thousand times as fast; K is shifted by a part of M where it is not positive definite. Fast ones by
@@ -276,9 +277,10 @@ def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     kept = np.flatnonzero(inverse[::-1] > SLOW * inverse[-1])
     values[kept] = 1.0 / inverse[::-1][kept] - shift
     vectors[:, kept] = slow[:, ::-1][:, kept] / np.sqrt(inverse[::-1][kept])
-    size = np.abs(vectors)
+    loose = np.argsort(np.abs(values))[:rigid]
+    size = np.abs(vectors[:, loose])
     least = ROUND_OFF * (np.einsum("im,ij,jm->m", size, np.abs(stiffness), size) + shift)
-    values[np.abs(values) <= least] = 0.0
+    values[loose[np.abs(values[loose]) <= least]] = 0.0
     return values, vectors
 
 

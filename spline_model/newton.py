@@ -70,10 +70,14 @@ def solve(work: Followed, start: Array, load_factor: float, change: Change | Non
     """
     z, energies, reason = start.copy(), (np.nan, np.nan), ""
     norms: list[float] = []
-    before = np.inf
+    before, last = np.inf, (z, load_factor)
     for iteration in range(MOST_ITERATIONS + 1):
         energies = work.evaluate(z, load_factor)
         norms.append(work.norm())
+        if len(norms) > 1 and norms[-2] <= TOLERANCE and not norms[-1] <= TOLERANCE:
+            z, load_factor = last  # a correction that spoils what was balanced: nothing is stiff along it
+            energies = work.evaluate(z, load_factor)
+            break
         if not np.isfinite(norms[-1]):
             reason = "the residual is not finite"
             break
@@ -92,7 +96,8 @@ def solve(work: Followed, start: Array, load_factor: float, change: Change | Non
         if iteration == MOST_ITERATIONS:
             reason = f"no convergence in {MOST_ITERATIONS} iterations (residual {norms[-1]:.1e})"
             break
-        z, load_factor, before = z + moved, load_factor + more, size
+        last, before = (z, load_factor), size
+        z, load_factor = z + moved, load_factor + more
         work.counters.newton_iterations += 1
     return Newton(z=z, load_factor=load_factor, energies=energies, norms=tuple(norms), reason=reason)
 
