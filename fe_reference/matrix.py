@@ -22,7 +22,7 @@ from .mesh import Carried, turned
 Lines = tuple[Indices, Indices, Indices, Indices]
 
 #: Part of a diagonal entry below which what elimination leaves of it is round-off, its sign of no meaning.
-GRAIN = 2.0**-52
+GRAIN = 2.0**-48
 
 
 class Singular(ArithmeticError):
@@ -186,7 +186,7 @@ class Symmetric:
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
         negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, low, d)
         if negative < 0:
-            raise Singular("the tangent is singular")
+            raise Singular("the tangent is singular to round-off")
         return Factors(p, held, low, d, negative)
 
 

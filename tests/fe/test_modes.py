@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from fe_reference import ELEMENTS, FREE, Body, InvalidParameter, natural_frequencies
+from fe_reference.model import GROUND
 from tests.closed_forms import CANTILEVER_ROOTS, end_body_roots
 from tests.fe.cases import LENGTH, MOMENT, SECTION, TABLE_1, cantilever, extrapolated, observed_order, pivot
-from fe_reference.model import GROUND
 from tests.gates import hold
 
 #: The paper's section with stretching put out of the way of bending, at the same EI and mass per length.
