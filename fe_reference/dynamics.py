@@ -9,9 +9,10 @@ from typing import Annotated, Any
 import numpy as np
 
 from .arrays import Array
-from .effects import DEFAULT_EFFECTS, DrivenDisplacement, Effects
+from .effects import DEFAULT_EFFECTS, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
-from .loads import DrivenRotation, drive_spans, full_load
+from .freedom import loose_coordinates
+from .loads import DrivenRotation, drive_spans
 from .mass import about_mass_centre, carried_over
 from .model import Model, require_model
 from .modes import natural_frequencies
@@ -19,7 +20,7 @@ from .motion import ENERGIES, Progress, Samples, course
 from .refined import limit_of
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
-from .statics import settled_state
+from .statics import state_at_start
 from .structure import structure_of
 from .trajectory import Trajectory, trajectory, with_companion
 
@@ -180,11 +181,7 @@ def checked(
 
 def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
     """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
-    load = full_load(structure_of(model), time=0.0)
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None:
-        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
-    y, remark = settled_state(model, run.start, run.body, run.increments, load)
+    y, remark = state_at_start(model, run.start, run.body, run.increments)
     return y, [f"the way to the start: {remark}"] if remark else []
 
 
@@ -232,10 +229,11 @@ def _first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia and elasticity alone [Hz]."""
     kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
     bare = replace(model, effects=Effects.read(kept, {}))
-    frequency = float(natural_frequencies(bare, rotation=None, count=1, mass="lumped").frequency[0])
-    if frequency <= 0.0:
+    rigid = len(loose_coordinates(structure_of(bare), ()))
+    found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
+    if not (found > 0.0).any():
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
-    return frequency
+    return float(found[found > 0.0][0])
 
 
 def _cheaper(model: Model, run: Run) -> str:

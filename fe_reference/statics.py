@@ -11,6 +11,7 @@ from .arrays import Array
 from .control import Control, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
+from .freedom import require_balance
 from .law import FORCES
 from .loads import full_load
 from .model import Model, require_model
@@ -155,6 +156,16 @@ def settled_state(
     return solution.states[-1], solution.message
 
 
+def state_at_start(
+    model: Model, rotation: float | None, body: str | None = None, increments: int = 20
+) -> tuple[Array, str]:
+    """Return the state in which a motion starts: loads and drives are as their histories begin."""
+    load, led = full_load(structure_of(model), time=0.0), model.effects.find(DrivenDisplacement)
+    if led is not None:
+        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
+    return settled_state(model, rotation, body, increments, load)
+
+
 def _solved(
     model: Model,
     body: str | None,
@@ -189,6 +200,8 @@ def _solved(
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
+    for state in path.states:
+        require_balance(structure, path.control.props, state.balance.residual, acting)
     return _packed(path, controls, steps, clock, None if which is None else model.body_names[which])
 
 

@@ -23,6 +23,7 @@ from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
 from spline_model.errors import InvalidParameter, require_kind
+from spline_model.rigid import propped
 from spline_model.scene import Body, Effect, Scene, Strip
 
 HERE = (0.0, 0.0)
@@ -88,6 +89,15 @@ class Mechanism:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
         return self.with_effects(drive)
+
+    def propped(self, rotation: float | None = None, body: str | None = None) -> Self:
+        """The same with props where rigid motions are free beside a drive to a rotation, if there is one."""
+        drives = [] if rotation is None else [DrivenRotation(body=self.design.body_named(body), angle=0.0)]
+        known, made = len(drives), propped(self.with_effects(*drives))
+        if len(made.effects) == len(self.scene.effects) + known:
+            return self
+        props = made.effects[len(self.scene.effects) + known :]
+        return replace(self, scene=self.with_effects(*props))
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""

@@ -14,7 +14,7 @@ from spline_model.continuation.followed import Point
 from spline_model.continuation.follower import Follower, equilibrium, first_point
 from spline_model.continuation.point import stand
 from spline_model.continuation.watch import BRANCHES, Watch
-from spline_model.errors import require_choice
+from spline_model.errors import InvalidParameter, require_choice
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.reduced.states import by_state
@@ -163,7 +163,10 @@ class _Track:
     def _point(self, state: int) -> Point:
         """A state as a point to go on from."""
         z, factor = self._z()[state], float(self._rows("load_factor")[state])
-        return stand(self.work, z, factor, self.work.evaluate(z, factor))
+        try:
+            return stand(self.work, z, factor, self.work.evaluate(z, factor))
+        except np.linalg.LinAlgError as error:
+            raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
 
     def path(self, message: str) -> Path:
         """What was followed, told what it is watched for."""

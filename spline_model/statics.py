@@ -25,6 +25,7 @@ from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
 from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
+from spline_model.rigid import require_unborne
 from spline_model.scene import Scene
 from spline_model.solution import Path
 from spline_model.static_answers import StaticSolution
@@ -121,7 +122,7 @@ def solve_mechanism(
     laps, first = Laps(), order == LOADS_FIRST and control == "load" and end == 1.0
 
     def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = mechanism.with_control_points(control_points)
+        given = mechanism.with_control_points(control_points).propped(rotation, body)
         if first and rotation and has_loads(given.scene):
             turn = Turn(
                 driven=partial(given.driven, body=body),
@@ -138,6 +139,7 @@ def solve_mechanism(
                 scene, increments=increments, end=end, control=control, branch=branch, progress=told
             )
             laps.lap("solve")
+        require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
     solution = answered(mechanism.design, accuracy, solve, progress, increments)

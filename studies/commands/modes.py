@@ -87,6 +87,8 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
             ),
         ]
     )
+    if rigid := int((answer.frequency == 0.0).sum()):
+        yield f"{rigid} of frequency 0: rigid motions that nothing holds"
     if (fall := answer.falls_in) is not None:
         yield f"a negative frequency is an unstable mode: a disturbance grows e-fold in {fall:.3g} s"
     yield from tell.estimated(answer)

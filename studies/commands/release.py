@@ -56,6 +56,8 @@ STILL = 1e-15
 SWINGS, STEPS = 4, 256
 #: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
 MODES, FASTEST, LEAST_STEPS = 3, 40.0, 20
+#: Rigid motions that may come before them.
+RIGID = 3
 #: Duration of what has no first frequency [s].
 USUAL = 0.05
 
@@ -125,8 +127,8 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
     """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives;
     of what has no stable mode the usual duration, in the model's own steps."""
-    found = answer_modes(design, settings, count=MODES)
-    frequency = found.frequency[found.frequency > 0.0]
+    found = answer_modes(design, settings, count=MODES + RIGID)
+    frequency = found.frequency[found.frequency > 0.0][:MODES]
     led = _last_time(design)
     if not found.converged or not frequency.size:
         return led + USUAL, None
