@@ -32,10 +32,6 @@ UNITS = ("N", "N", "N m")
 class Unheld(InvalidParameter):
     """A rigid motion that nothing holds, and a load along it: there is no equilibrium."""
 
-    def __init__(self, body: str, load: str, way: str) -> None:
-        expected = f"none, or a clamp, a pin or a drive: nothing holds body {body} {way}"
-        super().__init__(f"load on body {body} {way}", load, expected)
-
 
 def propped(scene: Scene) -> Scene:
     """The scene with props where rigid motions are free, behind all other constraints."""
@@ -68,7 +64,9 @@ def require_unborne(system: System, reactions: Array) -> None:
             name, axis = next(
                 (name, at - start) for name, start in system.layout.bodies.items() if 0 <= at - start < 3
             )
-            raise Unheld(name, f"{most:.4g} {UNITS[axis]}", WAYS[axis])
+            load, way = f"{most:.4g} {UNITS[axis]}", WAYS[axis]
+            expected = f"none, or a clamp, a pin or a drive: nothing holds body {name} {way}"
+            raise Unheld(f"load on body {name} {way}", load, expected)
 
 
 def _is_prop(effect: Constraint) -> bool:
