@@ -125,10 +125,10 @@ def changed(store, column, factor):
     """Multiply a stored column by a factor and note its table as if it had been computed so."""
     tables = store.load_tables(NAME)
     record = store.record(NAME)
-    table = tables["limits"].assign(**{column: tables["limits"][column] * factor})
+    table = tables["meshes"].assign(**{column: tables["meshes"][column] * factor})
     content = table.to_csv(index=False, float_format="%.12g", lineterminator="\n").encode()
-    (store.data(NAME) / "limits.csv").write_bytes(content)
-    record["tables"]["limits.csv"] = sha256(content).hexdigest()
+    (store.data(NAME) / "meshes.csv").write_bytes(content)
+    record["tables"]["meshes.csv"] = sha256(content).hexdigest()
     (store.data(NAME) / "provenance.json").write_text(json.dumps(record), encoding="utf-8")
 
 
@@ -145,33 +145,33 @@ def state(store):
 @pytest.mark.slow
 def test_verify_allows_round_off_and_names_what_differs(copied, capsys):
     """Stored numbers that are off by round-off are reproduced; those off by more are named."""
-    changed(copied, "limit", 1.0 + 1e-9)
+    changed(copied, "error_torque", 1.0 + 1e-9)
     record = copied.record(NAME)
     record["inputs"]["source_sha256"] = "of other code"
     (copied.data(NAME) / "provenance.json").write_text(json.dumps(record), encoding="utf-8")
     assert state(copied) == "stale"
     assert command(copied, "verify") == 0
     assert state(copied) == "fresh"
-    changed(copied, "limit", 1.0 + 1e-3)
+    changed(copied, "error_torque", 1.0 + 1e-3)
     assert command(copied, "verify") == 0  # it is fresh, and is not computed
     assert command(copied, "verify", "--fresh-too") == 1
-    assert capsys.readouterr().err.endswith(f"{NAME}: differs: limits (limit)\n")
+    assert capsys.readouterr().err.endswith(f"{NAME}: differs: meshes (error_torque)\n")
 
 
 @pytest.mark.slow
 def test_run_keeps_numbers_that_are_reproduced(copied, capsys):
     """`run` keeps a stored table that differs by round-off, and its figures; a wrong one is written."""
-    changed(copied, "limit", 1.0 + 1e-7)
+    changed(copied, "error_torque", 1.0 + 1e-7)
     assert command(copied, "run") == 0
     files = [path for path in copied.root.rglob("*") if path.is_file()]
     before = {path: path.read_bytes() for path in files}
     assert command(copied, "run") == 0
     assert {path: path.read_bytes() for path in files} == before
     assert "changed" not in capsys.readouterr().err
-    kept = copied.load_tables(NAME)["limits"]["limit"]
-    changed(copied, "limit", 1.0 + 1e-3)
+    kept = copied.load_tables(NAME)["meshes"]["error_torque"]
+    changed(copied, "error_torque", 1.0 + 1e-3)
     assert command(copied, "run") == 0
-    assert "changed: limits (limit)" in capsys.readouterr().err
-    found = copied.load_tables(NAME)["limits"]["limit"]
+    assert "changed: meshes (error_torque)" in capsys.readouterr().err
+    found = copied.load_tables(NAME)["meshes"]["error_torque"]
     assert found.to_numpy() == pytest.approx(kept.to_numpy(), rel=2e-7)
     assert state(copied) == "fresh"
