@@ -19,7 +19,7 @@ from spline_model.reduced.elements import Elements
 from spline_model.statics import solve_mechanism
 from studies.__main__ import main
 
-FINDS = Path(__file__).parent.parent / "suite" / "finds"
+FINDS = Path(__file__).parent / "finds"
 MODELS = ("spline", "fe")
 SECTION = {"width": 0.003, "thickness": 0.0008, "density": 1400.0, "poisson_ratio": 0.0}
 SHORT = (0.1, 2e-4, 0.1)
