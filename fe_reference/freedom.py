@@ -1,14 +1,14 @@
 """Rigid motions that nothing resists: parts of a model that hang on no clamp, and too few drives hold.
 
 A part moves rigidly along x, along y and about the origin. What its held coordinates leave free of this is
-the null space of their rows. As many coordinates more, chosen by a QR factorisation with pivots, make a path
+the null space of their rows. As many coordinates more, the first ones that the null space moves, make a path
 determinate. In equilibrium they bear nothing.
 """
 
 from collections.abc import Iterable
 
 import numpy as np
-from scipy.linalg import null_space, qr
+from scipy.linalg import null_space
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -40,9 +40,10 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
         places = np.concatenate([np.arange(3) + structure.body_slice(b).start for b in bodies])
         motions = np.vstack([_motions(structure, b) for b in bodies])
         free = null_space(motions[np.isin(places, list(held))], rcond=GRAIN) if len(bodies) else np.eye(3)
-        if free.shape[1]:
-            pivots = qr((motions @ free).T, mode="r", pivoting=True)[1]
-            chosen += places[pivots[: free.shape[1]]].tolist()
+        for place, row in zip(places.tolist(), motions, strict=True):
+            if np.abs(row @ free).max(initial=0.0) > GRAIN:
+                chosen.append(place)
+                free = free @ null_space((row @ free)[None], rcond=GRAIN)
     return np.array(sorted(chosen), dtype=np.int64)
 
 

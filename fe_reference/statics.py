@@ -141,10 +141,12 @@ def settled_state(
     body: str | None = None,
     increments: int = 20,
     load: Array | None = None,
+    starts: bool = False,
 ) -> tuple[Array, str]:
     """Return the coordinates (size,) in equilibrium at a driven rotation [rad], and a remark on the path.
 
     The load (size,) is by default that of the scene in full, as is its driven displacement. Errors as above.
+    Where a motion `starts` there, rigid motions that nothing resists are held until then, whatever it takes.
     """
     structure = structure_of(model)
     load = full_load(structure) if load is None else load
@@ -152,7 +154,7 @@ def settled_state(
     still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
     if still and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
-    solution = _solved(model, body, ends, None, increments, None, load=load).checked()
+    solution = _solved(model, body, ends, None, increments, None, load=load, starts=starts).checked()
     return solution.states[-1], solution.message
 
 
@@ -163,7 +165,7 @@ def state_at_start(
     load, led = full_load(structure_of(model), time=0.0), model.effects.find(DrivenDisplacement)
     if led is not None:
         model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
-    return settled_state(model, rotation, body, increments, load)
+    return settled_state(model, rotation, body, increments, load, starts=True)
 
 
 def _solved(
@@ -177,6 +179,7 @@ def _solved(
     order: str = LOADS_FIRST,
     load: Array | None = None,
     watch: bool = False,
+    starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
@@ -200,7 +203,7 @@ def _solved(
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
-    for state in path.states:
+    for state in () if starts else path.states:
         require_balance(structure, path.control.props, state.balance.residual, acting)
     return _packed(path, controls, steps, clock, None if which is None else model.body_names[which])
 

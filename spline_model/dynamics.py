@@ -73,7 +73,8 @@ def solve_motion(
     and driven displacements likewise. Then the driven rotation lets go, and so does a driven
     displacement without a history; one with a history goes on holding. Loads go on as value times
     history(t), constant before its first and after its last time. start None: no rotation is driven;
-    under loads without a history such a mechanism stands still.
+    under loads without a history such a mechanism stands still. Rigid motions that nothing holds are held
+    until the start.
 
     Parameters
     ----------
@@ -203,7 +204,7 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mech
     points, most = grid.points, grid.points if grid.control_points is not None else MOST[grid.basis]
     while True:
         try:
-            return chosen, settle(chosen.at_start(), start, body=body)
+            return chosen, settle(chosen.at_start(), start, body=body, starts=True)
         except ConvergenceError:
             if points == most:
                 raise

@@ -152,7 +152,7 @@ def _modes(
     try:
         z = static_state(mechanism, rotation, increments, body)[: layout.size]
     except Unheld:  # under the loads in full: about the start of its motion
-        z = static_state(mechanism.at_start(), rotation, increments, body)[: layout.size]
+        z = static_state(mechanism.at_start(), rotation, increments, body, starts=True)[: layout.size]
     values, vectors, share = linear_modes(system, z, system.mass)
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
@@ -176,15 +176,21 @@ def _modes(
 
 
 def static_state(
-    mechanism: Mechanism, rotation: float | None = None, increments: int = 20, body: str | None = None
+    mechanism: Mechanism,
+    rotation: float | None = None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
 ) -> Array:
     """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
 
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
-    pre-strain act in full; the multipliers of displacements that let go are left out.
+    pre-strain act in full; the multipliers of displacements that let go are left out. starts: as in
+    ``solve_mechanism``.
     """
     mechanism = mechanism.propped(rotation, body)
-    z = settle(mechanism, rotation, increments, body).array[-1]
+    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
@@ -197,15 +203,23 @@ def static_state(
 
 
 def settle(
-    mechanism: Mechanism, rotation: float | None, increments: int = 20, body: str | None = None
+    mechanism: Mechanism,
+    rotation: float | None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
 ) -> Later:
     """The unknowns of the path to that state, with all multipliers."""
     loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
     if rotation is not None or loaded:
-        return solve_mechanism(mechanism, rotation=rotation, increments=increments, body=body).unknowns
+        return solve_mechanism(
+            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
+        ).unknowns
     system = compile_scene(propped(mechanism.scene))
     path = follow(system, [])
-    require_unborne(system, path.reactions)
+    if not starts:
+        require_unborne(system, path.reactions)
     return path.unknowns
 
 

@@ -104,6 +104,7 @@ def solve_mechanism(
     branch: str = "primary",
     end: float = 1.0,
     accuracy: float | None = None,
+    starts: bool = False,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -112,7 +113,9 @@ def solve_mechanism(
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
     both meet, "loads first" as in ``solve_statics``, which then stay, or "together"; so it is
     always with control "arc-length" or another ``end``. control, branch and end as in ``solve_loads``;
-    accuracy as in ``solve_statics``, with control "arc-length" of the state at the end.
+    accuracy as in ``solve_statics``, with control "arc-length" of the state at the end. starts: whether a
+    motion starts at the end, until which rigid motions that nothing holds are held, whatever that takes;
+    else a load along one raises InvalidParameter.
     """
     require_mechanism(mechanism)
     if rotation is not None:
@@ -139,7 +142,8 @@ def solve_mechanism(
                 scene, increments=increments, end=end, control=control, branch=branch, progress=told
             )
             laps.lap("solve")
-        require_unborne(system, path.reactions)
+        if not starts:
+            require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
     solution = answered(mechanism.design, accuracy, solve, progress, increments)

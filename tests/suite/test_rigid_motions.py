@@ -19,7 +19,7 @@ from spline_model.reduced.elements import Elements
 from spline_model.statics import solve_mechanism
 from studies.__main__ import main
 
-FINDS = Path(__file__).parent.parent / "suite" / "finds"
+FINDS = Path(__file__).parent / "finds"
 MODELS = ("spline", "fe")
 SECTION = {"width": 0.003, "thickness": 0.0008, "density": 1400.0, "poisson_ratio": 0.0}
 SHORT = (0.1, 2e-4, 0.1)
@@ -208,3 +208,25 @@ def test_pendulum_period():
     at = int(np.flatnonzero((x[:-1] > 0.0) & (x[1:] <= 0.0))[0])
     quarter = motion.time[at] + (motion.time[at + 1] - motion.time[at]) * x[at] / (x[at] - x[at + 1])
     assert 4.0 * quarter == pytest.approx(4.1335, rel=1e-3)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_what_nothing_holds_falls(model, tmp_path, capsys):
+    """Requirement: two bodies on a strip, held until their release, fall by g t^2 / 2 in the mean."""
+    case = tmp_path / "falling.toml"
+    text = (FINDS / "free_flight.toml").read_text().split("[scene]")[0]
+    case.write_text(text + '[scene]\neffects = ["+gravity"]\n')
+    arguments = ["release", str(case), "--model", model, "--duration", "0.1", "--no-check", "--json", "-"]
+    code, out, _ = told(arguments, capsys)
+    answer = json.loads(out)
+    assert code == 0
+    assert answer["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
+    gained = np.array(answer["kinetic_J"]) + np.array(answer["strain_J"]) + np.array(answer["gravity_J"])
+    assert np.ptp(gained) < 1e-4 * max(answer["kinetic_J"])
+    strip = 4430.0 * 0.01 * 0.0005 * 0.1027
+    masses = {"A": 0.02 + 0.5 * strip, "B": 0.05 + 0.5 * strip}
+    fallen = sum(
+        mass * (answer["bodies"][name]["y_m"][-1] - answer["bodies"][name]["y_m"][0])
+        for name, mass in masses.items()
+    ) / sum(masses.values())
+    assert fallen == pytest.approx(-0.5 * 9.80665 * 0.01, rel=0.01)
