@@ -171,7 +171,8 @@ def course(
         y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = samples.kinetic(scheme, y, caught) - samples.kinetic(scheme, y, v)
-        samples.books += (0.0, -gained) if span.begins else (gained, 0.0)
+        # what a catch takes from the motion is lost; what a drive gives it, by a jump of rates too, is work
+        samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = samples.beside(scheme, now)
         if not samples.time:
