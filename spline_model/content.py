@@ -1,14 +1,16 @@
-"""How far a motion is resolved: by the natural modes that carry its energy, and by a companion.
+"""How far a motion is resolved: by the natural modes that carry its energy, and by companions.
 
 Of the modes that carry energy at the start each wants steps enough. A companion has two control points more:
-where the scene is undamped and free it is the leapfrog, whose steps resolve all, so that the difference
-shows what the motion's own steps and its control points leave out together; else it has the motion's own
-integrator and step, and shows the control points alone.
+where the scene is undamped and free and the steps are not much longer than explicit ones it is the leapfrog,
+whose steps resolve all, so that the difference shows what the motion's own steps and its control points leave
+out together. Else it has the motion's own integrator and step, and shows what the control points leave out; a
+second one of half the step shows what the steps do, and the estimate is the sum.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +22,8 @@ from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
 from spline_model.effects import MixedStretching
 from spline_model.errors import ConvergenceError, InvalidParameter
-from spline_model.mechanism import Mechanism
 from spline_model.modes import SLIDE_SHARE, linear_modes
-from spline_model.motion import leapfrog, quasi_static
+from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
@@ -146,56 +147,73 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:
-    """The motion with its ``rotation_error``, and a remark in ``resolution`` where that is much of the swing.
+    """The motion with its estimated errors, and a remark in ``resolution`` where they are much of the swing.
 
-    task: that of the motion. A companion that fails leaves nothing to compare, and the remark says so.
+    task: that of the motion. Companions that fail leave nothing to compare, and the remark says so.
     """
-    laps, count = Laps(), len(motion.time) - 1
-    points = task.mechanism.design.discretisation.points + MORE
+    laps, count, failures = Laps(), len(motion.time) - 1, []
     # the largest divisor that leaves enough instants
     every = max((each for each in range(1, count // COMPARED + 1) if count % each == 0), default=1)
-    instants = motion.time[::every]
-    try:
-        scheme = _scheme(motion, leapfrog.PART * task.critical(points), float(instants[1]))
-        other = task.run(points, *scheme, len(instants) - 1)
-        failed = other.message
-    except (ConvergenceError, InvalidParameter) as refused:
-        failed = str(refused)
-    error, remark, seconds = (
-        math.nan,
-        f"not checked with {points} control points: {failed}",
-        laps.lap("check"),
-    )
-    if not failed:
-        apart = np.abs(other.rotation - motion.rotation[::every])
-        error, remark = float(apart.max()), _remark(task.mechanism, motion, instants, apart, points)
-    return replace(motion, rotation_error=error, checked=remark, seconds=seconds | motion.seconds)
+    instants, moves = motion.time[::every], motion.moves(every)
+    for companions in _companions(task, motion, float(instants[1])):
+        turns, places = (np.zeros(each.shape[:2]) for each in moves)
+        try:
+            for points, integrator, step, part in companions:
+                other = task.run(points, integrator, step, len(instants) - 1)
+                if other.message:
+                    raise InvalidParameter("step", step, other.message)
+                apart = [mine - theirs for mine, theirs in zip(moves, other.moves(), strict=True)]
+                turns += part * np.abs(apart[0])
+                places += part * np.linalg.norm(apart[1], axis=2)
+        except (ConvergenceError, InvalidParameter) as refused:
+            failures.append(f"with {points} control points and the {integrator} integrator: {refused}")
+            continue
+        return replace(
+            motion,
+            rotation_error=float(turns.max(initial=0.0)),
+            displacement_error=float(places.max(initial=0.0)),
+            checked=_remark(moves, instants, turns, places, task.length),
+            seconds=laps.lap("check") | motion.seconds,
+        )
+    remark = f"error not estimated: a companion {failures[-1]}"
+    return replace(motion, checked=remark, seconds=laps.lap("check") | motion.seconds)
 
 
-def _scheme(motion: Trajectory, longest: float, spacing: float) -> tuple[str, float]:
-    """Integrator and step [s] of the companion, whole steps between two instants ``spacing`` [s] apart.
+Companion = tuple[int, str, float, float]
+"""Control points, integrator and step [s] of a motion to compare with, and what the difference counts."""
 
-    longest: step of the leapfrog [s], 0 where it cannot be used.
+
+def _companions(task: Task, motion: Trajectory, spacing: float) -> Iterator[list[Companion]]:
+    """Companions whose differences add up to the error, and others if one of these fails.
+
+    Their steps are whole between two instants ``spacing`` [s] apart. The leapfrog shows the errors of steps
+    and control points together. Where it cannot be used they are apart: half the step leaves a quarter of
+    the error of a scheme of second order, so that the difference is three quarters of it.
     """
     own, step = str(motion.settings["integrator"]), float(motion.settings["step_s"])
+    points, steps = motion.control_points, round(spacing / step)
+    longest = leapfrog.PART * task.critical(points + MORE)
     if longest > 0.0 and (own == leapfrog.NAME or step <= MOST_SHORTER * longest):
-        return leapfrog.NAME, spacing / math.ceil(spacing / longest)
-    return ("energy" if own == quasi_static.NAME else own), spacing / round(spacing / step)
+        yield [(points + MORE, leapfrog.NAME, spacing / math.ceil(spacing / longest), 1.0)]
+    if own != leapfrog.NAME:
+        parts = ((points + MORE, steps, 1.0), (points, 2 * steps, 4.0 / 3.0))
+        yield [(n, "energy", spacing / many, part) for n, many, part in parts]
 
 
-def _remark(mechanism: Mechanism, motion: Trajectory, time: Array, apart: Array, points: int) -> str:
-    """What is to be said of the differences (T,) [rad], or nothing.
+def _remark(moves: tuple[Array, Array], time: Array, turns: Array, places: Array, length: float) -> str:
+    """What is to be said of estimated errors of rotations (T, B) [rad] and places (T, P) [m], or nothing.
 
-    They are held against the swing: half the range of the rotation, or of the centre over a strip where
-    the body hardly turns.
+    They are held against the swing: half the range of what moves (``moves``) most, places over a strip.
     """
-    length = max(strip.length for strip in mechanism.design.strips)
-    swing = 0.5 * max(float(np.ptp(motion.rotation)), float(np.ptp(motion.centre, axis=0).max()) / length)
+    ranges = (np.ptp(moves[0], axis=0), np.ptp(moves[1], axis=0) / length)
+    swing = 0.5 * max(float(each.max(initial=0.0)) for each in ranges)
+    apart = np.hstack((turns, places / length)).max(axis=1, initial=0.0)
     much = np.flatnonzero(apart > max(UNRESOLVED * swing, STILL))
     if not much.size:
         return ""
     return (
-        f"with {points} control points the rotation differs by up to {np.degrees(apart.max()):.3g} deg, by "
-        f"more than {UNRESOLVED:.0%} of the swing from {time[much[0]]:.3g} s on: the motion is not resolved; "
-        "take more control points or ask for an accuracy"
+        f"rotations are uncertain by up to {np.degrees(turns.max(initial=0.0)):.3g} deg and displacements by "
+        f"up to {places.max(initial=0.0):.3g} m, by more than {UNRESOLVED:.0%} of the swing from "
+        f"{time[much[0]]:.3g} s on: the motion is not resolved; take more control points or shorter steps, "
+        "or ask for an accuracy"
     )
