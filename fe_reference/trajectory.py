@@ -1,32 +1,17 @@
-"""Motions as they are reported, and how far their elements resolve them.
-
-The latter is told by companions of fewer elements: half as many, a third or a fifth where they are odd.
-"""
+"""Motions as they are reported."""
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array
-from .errors import ConvergenceError, InvalidParameter
-from .mass import about_mass_centre, carried_over
-from .model import FREE, Model
+from .mass import carried_over
 from .motion import ENERGIES, Samples
-from .schemes import critical_step
 from .solution import Answer, ErrorEstimate, Status, Stopwatch
 from .structure import structure_of
-
-#: Estimated error over the swing that is not remarked on.
-UNRESOLVED = 0.05
-#: Error of a motion that hardly is one [rad, or of strip lengths]: its start alone has it.
-STILL = 1e-6
-#: Part of a companion's critical step that it takes at most.
-SAFETY = 0.8
-#: Most elements that one of the companion's stands for.
-COARSEST = 5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,133 +121,4 @@ def trajectory(
         settings=settings,
         seconds=watch.stop("recover"),
         resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
-    )
-
-
-def coarser(model: Model) -> tuple[Model, int]:
-    """Return the model on every second, third or fifth node, and which; 1 where none of these is possible."""
-    elements = len(model.strips[0].nodes) - 1
-    every = next((k for k in range(2, COARSEST + 1) if elements % k == 0 and elements > k), 1)
-    strips = tuple(replace(strip, nodes=strip.nodes[::every]) for strip in model.strips)
-    return replace(model, strips=strips), every
-
-
-def with_companion(model: Model, motion: Trajectory, run: Callable[..., Trajectory]) -> Trajectory:
-    """Return a trajectory with its estimated errors, and a remark in `resolution` where they are much.
-
-    Companions have half the elements and twice the steps, and again half and twice: errors of elements and
-    steps go with their squares, so that the error is a third of the difference to the first, if the
-    differences fall as that. Where they fall less, as where a fast motion is out of phase in all of them,
-    the error is the difference divided by the ratio less one, at most all of it. A motion that stopped, one
-    of few instants and a mesh that cannot be halved are returned as they are.
-
-    Args:
-        model, motion: the motion and its model.
-        run: solves a model from the same start by `duration`, `step` and `samples`.
-    """
-    levels, spacing = _coarser_levels(model, motion.settings), float(motion.time[-1])
-    if len(motion.time) > 1:
-        spacing = float(motion.time[1])
-    stride = math.ceil(levels[-1][2] / spacing * (1.0 - 1e-9)) if levels else 1
-    samples = (len(motion.time) - 2) // stride  # the last may be shorter
-    if not levels or motion.status is not Status.CONVERGED or samples < 2:
-        return motion
-    spacing, differences = stride * spacing, []
-    fine = moves(model, motion, stride)
-    for coarse, every, longest in levels:
-        step = spacing / math.ceil(spacing / longest * (1.0 - 1e-9))
-        try:
-            other = run(coarse, duration=samples * spacing, step=step, samples=samples)
-            failed = other.message or ("" if len(other.time) == samples + 1 else "too few instants")
-        except (ConvergenceError, InvalidParameter) as refusal:
-            failed = str(refusal)
-        if failed and not differences:
-            remark = f"error not estimated with 1/{every} of the elements: {failed}"
-            return replace(motion, resolution="; ".join(each for each in (motion.resolution, remark) if each))
-        if failed:
-            break
-        theirs = moves(coarse, other, 1)
-        differences.append([mine[: samples + 1] - its for mine, its in zip(fine, theirs, strict=True)])
-        fine = theirs
-    return _estimated(model, motion, differences, levels[0][1], stride)
-
-
-def _estimated(
-    model: Model, motion: Trajectory, differences: list[list[Array]], every: int, stride: int
-) -> Trajectory:
-    """Return the motion with the errors that its companions' differences tell.
-
-    Args:
-        differences: of rotations (T, B) [rad] and places (T, P, 2) [m], to one or two of them in turn.
-        every: elements of the motion in one of the first companion. stride: of the instants T.
-    """
-    length = max(strip.length for strip in model.strips)
-    sizes = [
-        max(float(np.abs(each).max(initial=0.0)) for each in (turns, places / length))
-        for turns, places in differences
-    ]
-    ratio = sizes[1] / max(sizes[0], np.finfo(float).tiny) if len(sizes) > 1 else 2.0
-    part = 1.0 / (min(max(ratio, 2.0), every**2) - 1.0)
-    turns, places = part * np.abs(differences[0][0]), part * np.linalg.norm(differences[0][1], axis=2)
-    remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]
-    return replace(
-        motion,
-        rotation_error=float(turns.max(initial=0.0)),
-        displacement_error=float(places.max(initial=0.0)),
-        resolution="; ".join(each for each in remarks if each),
-    )
-
-
-def moves(model: Model, motion: Trajectory, stride: int) -> tuple[Array, Array]:
-    """Return rotations of all bodies (T, B) [rad], and places of them and of free ends (T, P, 2) [m]."""
-    poses = np.array([*motion.bodies.values()]).reshape(-1, len(motion.time), 3)[:, ::stride].swapaxes(0, 1)
-    free = [k for k, strip in enumerate(model.strips) if strip.tip == FREE]
-    return poses[..., 2], np.concatenate((poses[..., :2], motion.shape[::stride, free, -1]), axis=1)
-
-
-def _coarser_levels(model: Model, settings: Any) -> list[tuple[Model, int, float]]:
-    """Return coarser models, how many of the elements are one in them, and their longest steps [s].
-
-    The step is that of the motion as many times, or an explicit one that is stable where it is shorter.
-    """
-    levels: list[tuple[Model, int, float]] = []
-    step, many, coarse = float(settings["step_s"]), 1, model
-    limits = [_stable(model)] if "critical_step_s" in settings else []
-    while len(levels) < 2:
-        coarse, every = coarser(coarse)
-        if every == 1:
-            break
-        many *= every
-        longest = many * step
-        if limits:
-            stable = SAFETY * float(settings["critical_step_s"]) * _stable(coarse) / limits[0]
-            longest = min(longest, stable)
-        levels.append((coarse, many, longest))
-    return levels
-
-
-def _stable(model: Model) -> float:
-    """Return the critical explicit step at rest [s]."""
-    structure, bodies = about_mass_centre(structure_of(model))
-    return critical_step(structure, bodies, np.zeros(structure.size))
-
-
-def _remark(model: Model, motion: Trajectory, turns: Array, places: Array, stride: int) -> str:
-    """Return what is to be said of the estimated errors (T, B) [rad] and (T, P) [m], or nothing.
-
-    They are held against the swing: half the range of the rotation, or of the nodes over the longest strip,
-    whichever is more.
-    """
-    length = max(strip.length for strip in model.strips)
-    travel = float(np.ptp(motion.shape, axis=0).max()) / length
-    turned = np.ptp(moves(model, motion, 1)[0], axis=0)
-    swing = 0.5 * max(float(turned.max(initial=0.0)), travel)
-    apart = np.hstack((turns, places / length)).max(axis=1, initial=0.0)
-    much = np.flatnonzero(apart > max(UNRESOLVED * swing, STILL))
-    if not much.size:
-        return ""
-    return (
-        f"rotations are uncertain by up to {np.degrees(turns.max(initial=0.0)):.3g} deg and displacements by "
-        f"up to {places.max(initial=0.0):.3g} m, by more than {UNRESOLVED:.0%} of the swing from "
-        f"{motion.time[stride * much[0]]:.3g} s on: the motion is not resolved; take more elements"
     )
