@@ -236,11 +236,11 @@ class FrequencyEstimate:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionEstimate:
-    """Estimated error of the rotation of a motion that was solved to an ``accuracy`` [rad].
+    """Estimated error of a motion that was solved to an ``accuracy`` [rad].
 
-    rotation: its largest error over the motion, of the steps (``time``) and of the control points
-    (``space``) together, which may cancel in part; control_points that were chosen; runs that
-    it took.
+    rotation: the largest error over the motion, of rotations [rad] and of places over the longest strip [1],
+    of the steps (``time``) and of the control points (``space``) together, which may cancel in part;
+    control_points that were chosen; runs that it took.
     """
 
     accuracy: float

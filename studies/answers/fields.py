@@ -209,7 +209,7 @@ def _motion(model: Model, asked: Any, result: Any) -> dict[str, Any]:
 
 def _modes(model: Model, asked: Any, result: Any) -> dict[str, Any]:
     count = len(result.frequency)
-    still = _arrays(model.static_fields(asked, np.asarray(result.state)[None]))
+    still = _arrays(model.mode_fields(asked, np.asarray(result.state)[None]))
     moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
     return {
         "status": "converged",
