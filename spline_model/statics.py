@@ -136,7 +136,7 @@ def solve_mechanism(
                 scene, increments=increments, end=end, control=control, branch=branch, progress=told
             )
             laps.lap("solve")
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
+        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
     solution = answered(mechanism.design, accuracy, solve, progress, increments)
     return solution.checked(raise_on_failure)
