@@ -268,7 +268,7 @@ def _in_step(one: StaticSolution, other: StaticSolution) -> bool:
 
 
 def relative(apart: Array, right: Array, unit: Array) -> Array:
-    """Largest of D differences (D, ...) over the largest that is right, or over their units (D,); (D,), nan of
+    """Largest of D differences (D, ...) over the largest that is right, or over their units (D,); nan of
     nothing."""
     if right.size == 0:
         return np.full(len(right), np.nan)

@@ -241,7 +241,9 @@ def remark(errors: Mapping[str, float], accuracy: float, control_points: int) ->
     missed = ", ".join(
         f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
     )
-    return f"estimated error above {accuracy:g} with {control_points} control points: {missed}" if missed else ""
+    return (
+        f"estimated error above {accuracy:g} with {control_points} control points: {missed}" if missed else ""
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
