@@ -81,8 +81,8 @@ def test_a_number_of_control_points_is_not_estimated():
 
 
 def test_what_a_path_lacks_has_no_error():
-    """Requirement: strains that nobody asks for have no estimate, not one of 0; body stiffness and energy have
-    theirs."""
+    """Requirement: strains that nobody asks for have no estimate, not one of 0; body stiffness and
+    energy have theirs."""
     estimate = solve_statics(loaded(), rotation=0.7, increments=3).estimate
     assert 0.0 < estimate.body_stiffness <= ACCURACY
     assert 0.0 < estimate.energy <= ACCURACY

@@ -13,7 +13,7 @@ ARRAYS = {"time_s", "rotation_rad", "com_x_m", "com_y_m", "kinetic_J", "strain_J
 KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "frequency_Hz"}
 KEYS |= {"frequency_reason", "rotation_error_rad", "counters", "wall_s"}
 MODE_KEYS = {"status", "message", "model", "settings", "effects", "rotation_rad", "held", "wall_s"}
-MODE_KEYS |= {"frequency_Hz", "body_shapes", "slide_frequency_Hz"}
+MODE_KEYS |= {"frequency_Hz", "body_shapes", "slide_frequency_Hz", "resolution"}
 
 #: A coarse discretisation of each model, so that a motion takes a moment.
 COARSE = {

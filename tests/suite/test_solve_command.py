@@ -161,7 +161,8 @@ def test_accuracy_raises_the_control_points_and_is_reported(case, command):
     answer = json.loads(command(*words, "--json", "-").out)
     estimate = answer["estimate"]
     assert set(answer) == KEYS | {"estimate"}
-    errors = {"trajectory", "torque", "stiffness", "section_forces", "stress"}
+    errors = {"trajectory", "centre_shift", "torque", "stiffness", "body_stiffness", "energy"}
+    errors |= {"section_forces", "stress"}
     assert set(estimate) == errors | {"accuracy", "control_points", "trials"}
     assert max(estimate[name] for name in errors) <= 1e-4
     assert estimate["trials"][0] == 4 < estimate["control_points"] == estimate["trials"][-1]
