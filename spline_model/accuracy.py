@@ -201,12 +201,8 @@ def _solve_accurately(
     if outcome.found is None:
         return solved(outcome.trials[-1])
     answer, errors = outcome.found
-    estimate = ErrorEstimate(
-        accuracy=accuracy,
-        **errors,
-        control_points=outcome.control_points,
-        trials=outcome.trials,
-    )
+    points, trials = outcome.control_points, outcome.trials
+    estimate = ErrorEstimate(accuracy=accuracy, **errors, control_points=points, trials=trials)
     failed = outcome.error > max(accuracy, least or 0.0)
     if failed and answer.status is Status.CONVERGED:
         answer = replace(answer, status=Status.NOT_CONVERGED, message=outcome.message)
