@@ -144,7 +144,7 @@ def solve_mechanism(
             laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
+        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
     solution = answered(mechanism.design, accuracy, solve, progress, increments)
     return solution.checked(raise_on_failure)

@@ -144,6 +144,13 @@ class Spectrum(Answered):
     wall_s: float = 0.0
 
     @property
+    def resolution(self) -> str:
+        """Return that the accuracy is missed, which the control points or elements were chosen for, or ""."""
+        accuracy = (self.estimate or {}).get("accuracy", math.inf)
+        missed = self.largest_error > accuracy
+        return f"the accuracy of {accuracy:g} is not reached by all frequencies" if missed else ""
+
+    @property
     def falls_in(self) -> float | None:
         """Time in which a disturbance of an unstable state grows e-fold [s]; None of a stable one."""
         least = float(self.frequency.min(initial=0.0))

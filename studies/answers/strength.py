@@ -12,11 +12,11 @@ from studies.answers.metrics import extrapolate
 from studies.answers.models import put
 from studies.answers.response import Answered, Response, assembled
 from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.yielding import Yield, first_yield
 from studies.cases.design import Design
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 #: Part of a strip within which a place is its root, its middle or its tip.
 NEAR = 0.02
@@ -44,7 +44,7 @@ class Strength:
         load_factor [1], rotation [rad]: of the state; NaN where no body turns.
         yield_strength: of that strip [Pa], None where none is given; safety: least of all strips, yield
             strength over largest stress [1].
-        yields: load factor [1] and rotation [rad] from which on some strip yields; None where none does.
+        yields: from which load factor and rotation on some strip yields; None where none does.
     """
 
     stress: float
@@ -54,7 +54,7 @@ class Strength:
     rotation: float
     yield_strength: float | None
     safety: float | None
-    yields: tuple[float, float] | None
+    yields: Yield | None
 
     @property
     def place(self) -> str:
@@ -66,10 +66,7 @@ class Strength:
 
 
 def strength(answer: Response) -> Strength:
-    """Return the largest stress of an answer, and what of its path the material bears.
-
-    Between states the share of the yield strength is interpolated monotonically, by cubics.
-    """
+    """Return the largest stress of an answer, and what of its path the material bears."""
     stress, strips = answer.extreme_fibre_stress, answer.design.strips
     limits = [strip.yield_strength for strip in strips]
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
@@ -86,24 +83,8 @@ def strength(answer: Response) -> Strength:
         rotation=float(places[state, 1]),
         yield_strength=limits[strip],
         safety=float(1.0 / share.max()) if share is not None and share.max() > 0.0 else None,
-        yields=None if share is None else _crossed(share, places),
+        yields=None if share is None else first_yield(answer, share),
     )
-
-
-def _crossed(share: Array, places: Array) -> tuple[float, float] | None:
-    """Return load factor and rotation at which the share (S,) of the strength first is 1; None if never."""
-    beyond = np.flatnonzero(share >= 1.0)
-    if not beyond.size:
-        return None
-    at = float(beyond[0])
-    if at > 0.0:
-        from scipy.interpolate import PchipInterpolator  # only a path that yields waits for them
-        from scipy.optimize import brentq
-
-        states = np.arange(len(share))
-        at = brentq(PchipInterpolator(states, share - 1.0), at - 1.0, at)
-        places = np.array([[np.interp(at, states, column) for column in places.T]])
-    return float(places[0, 0]), float(places[0, 1])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -92,9 +92,8 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     if (fall := answer.falls_in) is not None:
         yield f"a negative frequency is an unstable mode: a disturbance grows e-fold in {fall:.3g} s"
     yield from tell.estimated(answer)
-    least = answer.estimate or {}
-    if least.get("frequency", 0.0) > least.get("accuracy", math.inf):
-        yield f"the accuracy of {least['accuracy']:g} is not reached by all frequencies"
+    if answer.resolution:
+        yield answer.resolution
     if answer.converged and len(answer.frequency) < count:
         yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
     yield tell.ending(answer)

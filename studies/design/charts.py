@@ -19,7 +19,7 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from spline_model import solve_many
-from spline_model.batch import Batch
+from spline_model.batch_paths import Batch
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
