@@ -161,5 +161,3 @@ def test_small_meshes_give_all_their_modes() -> None:
     assert few.frequency == pytest.approx(many.frequency[:3], rel=1e-9)
     with pytest.raises(InvalidParameter, match=r"count: got 10, expected at most 9 modes of this mesh \[1\]"):
         natural_frequencies(model, count=10)
-    with pytest.raises(InvalidParameter, match="mass: got 'none', expected one of consistent, lumped"):
-        natural_frequencies(model, mass="none")
