@@ -5,7 +5,6 @@ import math
 
 import pytest
 
-MODE_KEYS |= {"frequency_Hz", "body_shapes", "slide_frequency_Hz", "resolution"}
 
 
 @pytest.mark.parametrize("length", [1e-3, 0.08485281374238571, 1.0])

@@ -53,7 +53,7 @@ def test_table_is_short_and_readable(case, command):
     outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
     lines = outcome.out.splitlines()
     assert outcome.code == 0
-    assert len(lines) == 4 + 4 + 3 + 4 + 1 + 3 + 1 + 1  # the last but one: errors not estimated
+    assert len(lines) == 4 + 4 + 3 + 4 + 1 + 4 + 1 + 1  # the last but one: errors not estimated
     assert lines[1] == "effects: bending, stretching"
     assert "N m/rad" in lines[3]
     assert lines[7].split()[0] == lines[14].split()[0] == "45.000"
