@@ -64,7 +64,7 @@ def test_what_is_left_out_is_said_until_an_effect_takes_it_in():
     assert validity(replace(answer, effects=(CLAMPED_WIDTH, ANTICLASTIC))).outside == thin[:1]
     _, answer = solved("cross_axis_pivot")
     thick = validity(answer).outside
-    assert [line.split()[0] for line in thick] == ["b/L", "t/L", "strain"]
+    assert [line.split()[0] for line in thick] == ["stress:", "b/L", "t/L", "strain"]
     assert len(validity(replace(answer, effects=(CLAMPED_WIDTH, ROOTS))).outside) == 1
 
 
