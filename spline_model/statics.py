@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
+from spline_model.confirmed import Grid
 from spline_model.continuation.arc_length import follow_arc
 from spline_model.errors import (
     InvalidParameter,
@@ -47,6 +48,7 @@ def solve_statics(
     method: str = "condensed",
     accuracy: float | None = None,
     branch: str = "primary",
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -63,17 +65,18 @@ def solve_statics(
     relative [1]; the control points are raised from the pivot's until the estimated one is
     below, axial modes and quadrature with them, and the solution has its ``estimate``. Default: 1e-4
     of a pivot without a number of control points, else just its number.
-    branch: "primary" or "follow" at a bifurcation. Raises ConvergenceError with the converged part of the
-    path, or with the best one where the accuracy is not reached; returns it as a status with
-    ``raise_on_failure=False``.
+    branch: "primary" or "follow" at a bifurcation. check: whether critical points and an early end of a given
+    number of control points are compared with those of more, and what is not confirmed is not resolved (see
+    ``spline_model.confirmed``). Raises ConvergenceError with the converged part of the path, or with the
+    best one where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
     laps, rotations = Laps(), _rotations(rotation, increments)
 
-    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = pivot.with_control_points(control_points)
+    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
+        given = pivot.on(*grid)
         turn = Turn(
             driven=given.driven,
             rotations=rotations,
@@ -87,7 +90,7 @@ def solve_statics(
         system, path = turn.together() if together else turn.loads_first()
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
-    solution = answered(pivot.design, accuracy, solve, progress, len(rotations))
+    solution = answered(pivot.design, accuracy, solve, progress, len(rotations), check)
     return solution.checked(raise_on_failure)
 
 
@@ -102,6 +105,7 @@ def solve_mechanism(
     branch: str = "primary",
     end: float = 1.0,
     accuracy: float | None = None,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -110,7 +114,7 @@ def solve_mechanism(
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
     both meet, "loads first" as in ``solve_statics``, which then stay, or "together"; so it is
     always with control "arc-length" or another ``end``. control, branch and end as in ``solve_loads``;
-    accuracy as in ``solve_statics``, with control "arc-length" of the state at the end.
+    accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end.
     """
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
@@ -118,8 +122,8 @@ def solve_mechanism(
     require_choice("order", order, ORDERS)
     laps, first = Laps(), order == LOADS_FIRST and control == "load" and end == 1.0
 
-    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = mechanism.with_control_points(control_points)
+    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
+        given = mechanism.on(*grid)
         if first and rotation and has_loads(given.scene):
             turn = Turn(
                 driven=partial(given.driven, body=body),
@@ -138,7 +142,7 @@ def solve_mechanism(
             laps.lap("solve")
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
-    solution = answered(mechanism.design, accuracy, solve, progress, increments)
+    solution = answered(mechanism.design, accuracy, solve, progress, increments, check)
     return solution.checked(raise_on_failure)
 
 
