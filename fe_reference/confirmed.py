@@ -12,7 +12,7 @@ from .refined import finer
 from .solution import ENERGIES, CriticalPoint, StaticSolution, Status
 
 #: Critical points of two meshes are the same within this part of load factor, preload and rotation.
-SAME = 0.02
+SAME = 0.05
 #: States of two meshes are kept while places and torque differ by no more than this part of the largest.
 KEPT = 0.03
 #: Size below which places and torques are round-off, and difference of parameters of the same increment.

@@ -24,7 +24,7 @@ Grid = tuple[str, int]
 MORE = 3
 """Control points that a Bezier strip gets more for the estimate. With two more the estimated error of
 the torque was 0.3 to 3.7 times the true one on 1800 paths, with three 0.7 to 1.3 times."""
-SAME_PLACE = 0.01
+SAME_PLACE = 0.05
 """Relative difference of loads or rotations up to which two critical points are the same one."""
 RESOLVED = 0.03
 """Difference of two states, in the largest displacement, turn and torque, up to which they are kept."""
@@ -129,7 +129,8 @@ def _cut(
         what = f"a {doubt[0].kind} at {_place(doubt[0].load_factor, doubt[0].rotation)}"
         what += f" is at {there} with {more[1]}"
     else:
-        what = f"{_end(answer)}, with {more[1]} {_end(better)}"
+        here = _end(answer) if _at_limit(answer) else answer.message
+        what = f"{here}; with {more[1]} {_end(better)}"
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
     message = f"not resolved with {points} control points: {what}; {remedy(more)}"
     return replace(

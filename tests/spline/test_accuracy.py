@@ -10,6 +10,7 @@ from spline_model import (
     ConvergenceError,
     InvalidParameter,
     Status,
+    confirmed,
     cross_axis_pivot,
     solve_mechanism,
     solve_statics,
@@ -79,7 +80,8 @@ def test_estimate_is_the_true_error(number, accuracy):
 
 def test_effectivity_gate_has_teeth(monkeypatch):
     """Requirement: the check notices an estimate from one control point more, as errors fall unevenly."""
-    monkeypatch.setattr(accuracies, "MORE", gates.teeth("spline_accuracy_effectivity")["more"])
+    for module in (accuracies, confirmed):
+        monkeypatch.setattr(module, "MORE", gates.teeth("spline_accuracy_effectivity")["more"])
     worst = max(misjudged(number, accuracy) for number in range(len(DESIGNS)) for accuracy in ACCURACIES)
     with pytest.raises(AssertionError, match="x the gate"):
         gates.check("spline_accuracy_effectivity", worst)
