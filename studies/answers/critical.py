@@ -1,9 +1,6 @@
 """The critical load of a design: the dead force at the centre of a body at which stability is first lost.
 
-A force is raised from nothing until an eigenvalue of the stiffness vanishes: at a bifurcation, or at a limit
-point, where no equilibrium is left. It counts only if two discretisations have it at the same force; their
-difference is its uncertainty. A design that may be unstable under its weight and pre-strain alone is found so
-first. Of one that softens without a critical point the forces are found at which it turns too far, or yields.
+It counts only if two discretisations have it at the same force; their difference is its uncertainty.
 """
 
 import math
@@ -149,8 +146,7 @@ def critical_load(
         held: whether the rotation of the body is held.
         body: its name; None for that of the case.
 
-    Raises:
-        BadInput: what the model refuses; a design without bodies; one line.
+    Raises BadInput for what the model refuses, and for a design without bodies.
     """
     known, name = [each.name for each in design.bodies], body or design.body
     if name not in known:
@@ -241,7 +237,9 @@ def _told(question: _Question, asked: Asked, path: Any, size: float, lost: Any) 
     unstable = lost is not None and lost.preload < 1.0
     last = float(path.load_factor[-1]) if settled else 0.0
     reached = size * float(lost.load_factor if lost is not None else last)
-    turned = float(path.bodies[question.body][-1, 2]) if settled else math.nan
+    there = float(path.bodies[question.body][-1, 2]) if settled else math.nan
+    if lost is not None and math.isfinite(lost.rotation):
+        there = float(lost.rotation)
     return CriticalLoad(
         **CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)},
         status="converged" if lost is not None else str(path.status.value) if settled else "not_converged",
@@ -250,11 +248,7 @@ def _told(question: _Question, asked: Asked, path: Any, size: float, lost: Any) 
         held=question.held,
         force=None if lost is None else reached,
         reached=reached,
-        turned=math.nan
-        if unstable
-        else turned
-        if lost is None or math.isnan(lost.rotation)
-        else float(lost.rotation),
+        turned=math.nan if unstable else there,
         kind=NONE if lost is None else UNSTABLE if unstable else str(lost.kind),
         preload=float(lost.preload) if lost is not None else 1.0,
         uncertainty=math.nan,

@@ -184,7 +184,7 @@ def test_a_stretched_strip_tells_that_it_is_unstable(element: str) -> None:
         found = []
         for count in elements:
             answer = solve_mechanism(stretched(80.0, count, element), increments=1)
-            assert answer.message.endswith("load factor 0; the last state is unstable")
+            assert "load factor 0; the last state is unstable" in answer.message
             (point,) = answer.critical_points
             assert (point.kind, point.load_factor, point.inertia) == ("bifurcation", 0.0, 1)
             told = re.search(r"the strips buckle at ([\d.]+) % of the natural strains", answer.message)
@@ -219,7 +219,7 @@ def test_a_pressed_pivot_says_what_buckles() -> None:
     assert strips.inertia == answer.inertia[-1] > 1
     assert re.search(r"give way with the body at 2\.\d+ kN, load factor 0\.1", answer.message)
     assert re.search(r"the strips buckle at 1[78]\.\d+ kN, load factor 0\.9", answer.message)
-    assert answer.message.endswith("the last state is unstable")
+    assert "the last state is unstable" in answer.message
 
 
 def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
