@@ -183,7 +183,7 @@ def test_a_stretched_strip_tells_that_it_is_unstable(element: str) -> None:
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         found = []
         for count in elements:
-            answer = solve_mechanism(stretched(80.0, count, element), increments=1)
+            answer = solve_mechanism(stretched(80.0, count, element), increments=1, check=False)
             assert "load factor 0; the last state is unstable" in answer.message
             (point,) = answer.critical_points
             assert (point.kind, point.load_factor, point.inertia) == ("bifurcation", 0.0, 1)
@@ -204,7 +204,8 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         found = []
         for count in elements:
-            _, strips = solve_statics(pressed(elements=count), rotation=0.0, increments=4).critical_points
+            path = solve_statics(pressed(elements=count), rotation=0.0, increments=4, check=False)
+            _, strips = path.critical_points
             found.append(20e3 * strips.load_factor)
         return float(abs(extrapolated(found) / STRIPS_BUCKLE - 1.0))
 
@@ -213,7 +214,7 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
 
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
-    answer = solve_mechanism(pressed(elements=8), increments=4)
+    answer = solve_mechanism(pressed(elements=8), increments=4, check=False)
     tips, strips = answer.critical_points
     assert tips.inertia == 1
     assert strips.inertia == answer.inertia[-1] > 1
