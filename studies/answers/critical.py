@@ -199,8 +199,9 @@ def _agreed(question: _Question, tried: Sequence[Settings], found: Sequence[Crit
     if elements and found[0].apart(found[1]) <= AGREED:
         limit = extrapolate([np.array([each.value]) for each in found])
         value, error = float(limit.value[0]), float(limit.uncertainty[0])
-    name = "preload" if last.kind == UNSTABLE else "force"
-    return replace(last, **{name: value, "uncertainty": error / value})
+    if last.kind == UNSTABLE:
+        return replace(last, preload=value, uncertainty=error / value)
+    return replace(last, force=value, uncertainty=error / value)
 
 
 def _name(settings: Settings) -> str:
@@ -275,7 +276,7 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
         if fine is not None:
             apart.append(math.nan if coarse is None else abs(coarse / fine - 1.0))
     softer = max(apart) if any(forces.values()) else math.nan
-    return replace(found, **forces, softer=softer)
+    return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
 
 
 def _passing(question: _Question, settings: Settings, share: Callable[[Response], Array]) -> float | None:
