@@ -209,8 +209,9 @@ def _attempt(
     coarse, fine = trials.outcome((basis, fewer)), trials.outcome((basis, more))
     if not ends_alike(coarse, fine):
         return None
-    if isinstance(coarse, Unsettled) or isinstance(fine, Unsettled):
-        raise coarse if isinstance(coarse, Unsettled) else fine
+    if isinstance(coarse, Unsettled):
+        raise coarse
+    assert not isinstance(fine, Unsettled), "it ends alike"
     if coarse.status is not Status.CONVERGED and not _in_step(coarse, fine):
         return None
     errors = distances(design, coarse, fine)
