@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array
+from .confirmed import confirmed
 from .control import Control, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
@@ -43,6 +44,7 @@ def solve_mechanism(
     increments: int = 20,
     order: str = LOADS_FIRST,
     accuracy: float | None = None,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -64,6 +66,8 @@ def solve_mechanism(
             the load factor.
         accuracy: wanted error of path, torque, stiffness, strain energy and largest stress, in parts of the
             largest of each; the mesh is doubled until the estimate is below it, and the answer is the limit.
+        check: whether critical points and an early end are compared with those of twice the elements; what
+            is not confirmed is not resolved, see `confirmed`.
         raise_on_failure: whether a path that ends early raises, or is returned with its status.
         progress: called as progress(done, total) after every increment.
 
@@ -79,7 +83,7 @@ def solve_mechanism(
     def solve(model: Model) -> StaticSolution:
         return _solved(model, body, ends, displacement, increments, progress, order=order)
 
-    return _answered(mechanism, accuracy, solve, raise_on_failure)
+    return _answered(mechanism, accuracy, solve, check).checked(raise_on_failure)
 
 
 def solve_loads(
@@ -89,6 +93,7 @@ def solve_loads(
     moment: float = 0.0,
     increments: int = 20,
     accuracy: float | None = None,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -97,7 +102,7 @@ def solve_loads(
     Args:
         model: the model; loads and the driven displacement that its scene names are added.
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
-        increments, accuracy, raise_on_failure, progress: as in `solve_mechanism`.
+        increments, accuracy, check, raise_on_failure, progress: as in `solve_mechanism`.
     """
     require_model(model)
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
@@ -109,15 +114,16 @@ def solve_loads(
         load = full_load(structure_of(each), more=(pull, turn))
         return _solved(each, None, None, None, increments, progress, load=load, watch=True)
 
-    return _answered(model, accuracy, solve, raise_on_failure)
+    return _answered(model, accuracy, solve, check).checked(raise_on_failure)
 
 
 def _answered(
-    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], raise_on_failure: bool
+    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], check: bool
 ) -> StaticSolution:
     """Return the solution of a model, or to an accuracy the limit of its meshes, at the first one's nodes."""
     if accuracy is None:
-        return solve(model).checked(raise_on_failure)
+        answer = solve(model)
+        return confirmed(model, answer, (), solve) if check else answer
     structure = structure_of(model)
     length, force, moment = structure.length, structure.force_unit, structure.moment_unit
     section = model.strips[0].section
@@ -130,9 +136,16 @@ def _answered(
         moved: Array = (places - places[:, :1]) / np.array([length, length, 1.0])
         return moved
 
-    found = limit_of(model, accuracy, solve, units, {"path": path}, JUDGED)
+    solved: list[StaticSolution] = []
+
+    def kept(mesh: Model) -> StaticSolution:
+        solved.append(solve(mesh))
+        return solved[-1]
+
+    found = limit_of(model, accuracy, kept, units, {"path": path}, JUDGED)
+    found = confirmed(found.model, found, solved, solve)
     every = (len(found.stations) - 1) // (found.shape.shape[2] - 1)
-    return replace(found, stations=found.stations[::every]).checked(raise_on_failure)
+    return replace(found, stations=found.stations[::every])
 
 
 def settled_state(

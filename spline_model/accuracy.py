@@ -11,14 +11,26 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import partial
 from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.confirmed import (
+    MORE,
+    SAME_STATE,
+    Grid,
+    Trials,
+    confirmed,
+    ends_alike,
+    finer,
+    moved,
+    parameters,
+    turned,
+)
 from spline_model.design import Design, Discretisation, StripDesign
-from spline_model.errors import InvalidParameter, require_positive
+from spline_model.errors import InvalidParameter, Unsettled, require_positive
 from spline_model.path import Progress
 from spline_model.solution import ErrorEstimate, Status, largest
 from spline_model.static_answers import StaticSolution
@@ -28,13 +40,10 @@ Found = TypeVar("Found")
 
 DEFAULT = 1e-4
 """Relative error of the answer to a design that leaves its control points open."""
-FIRST = 8
-"""Control points of the first trial of such a design."""
+FIRST, FIRST_SPANS = 8, 19
+"""Control points of the first trial of such a design, and of the first with cubic B-splines."""
 DOUBTFUL = 0.03
 """Error of such an answer that is a failure; above DEFAULT its resolution tells it."""
-MORE = 3
-"""Control points that a Bezier strip gets more for the estimate. With two more the estimated error of
-the torque was 0.3 to 3.7 times the true one on 1800 paths, with three 0.7 to 1.3 times."""
 MOST = {"bezier": 20, "bspline": 67}
 """Control points at which the search ends: round-off of a Bezier strip, 64 spans of a B-spline."""
 FIRST_GAIN = 6.0
@@ -48,8 +57,6 @@ below which there is none but round-off."""
 NO_STIFFNESS = 1e-3
 """Part of its largest entry on a path below which one on the diagonal of a body's stiffness is held against
 that part: it may pass through zero."""
-SAME_STATE = 1e-9
-"""The same of states before the end: those of increments are the same, of arcs they are not."""
 SAME_END = 1e-3
 """Difference of load factors, and of rotations [rad], at which paths stop that stop at the same thing."""
 
@@ -81,7 +88,7 @@ class Search(Generic[Found]):
     @property
     def finer(self) -> int:
         """The control points that a trial is checked against: a few more, or twice the spans."""
-        return self.points + MORE if self.grid.basis == "bezier" else 2 * self.points - 3
+        return finer(self.grid.basis, self.points)[1]
 
     @property
     def message(self) -> str:
@@ -159,59 +166,73 @@ def search(
 def answered(
     design: Design,
     accuracy: float | None,
-    solve: Callable[[int | None, Progress | None, bool], StaticSolution],
+    solve: Callable[[Grid, Progress | None, bool], StaticSolution],
     progress: Progress | None,
     increments: int,
+    check: bool = True,
 ) -> StaticSolution:
     """A path with the control points that an accuracy takes, or else the design's.
 
-    solve: the answer with a number of control points, what is told of its increments, and whether sections
-    are by balance, as they are where paths with several numbers are compared.
+    solve: the answer with a discretisation, what is told of its increments, and whether sections are by
+    balance, as they are where paths with several numbers are compared.
+    check: whether critical points and early ends of the design's own control points are compared with those
+    of more.
     """
-    chosen = wanted(accuracy, design)
+    chosen, grid = wanted(accuracy, design), design.discretisation
     if chosen is None:
-        return solve(design.discretisation.control_points, progress, False)
+        own = (grid.basis, grid.points)
+        if not check:
+            return solve(own, progress, False)
+        return confirmed(Trials(lambda trial: solve(trial, progress if trial == own else None, False)), own)
     least = DOUBTFUL if accuracy is None else None
-    solution = _solve_accurately(design, chosen, lambda points: solve(points, None, True), least)
+    trials = Trials(lambda trial: solve(trial, None, True))
+    solution = _solve_accurately(design, chosen, trials, least)
     if progress is not None:
         progress(increments, increments)
     return solution
 
 
-def _solve_accurately(
-    design: Design, accuracy: float, solve: Callable[[int], StaticSolution], least: float | None
-) -> StaticSolution:
+def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: float | None) -> StaticSolution:
     """The path with as many control points as the accuracy takes.
 
-    solve: the answer with a number of control points. An accuracy that is not reached is the status
+    An accuracy that is not reached is the status
     NOT_CONVERGED of the best answer, or only where its error is not below ``least``: the answer's resolution
-    tells it else. A path that stops at the same thing with any number is compared up to
-    there and returned with its reason; where none is followed to the same end, it is that of the most points.
+    tells it else. A path that stops at the same thing with any number is compared up to there and returned
+    with its reason. Where no two numbers lead to the same end, cubic B-splines are tried as well, whose
+    control points are as many as a strip needs anywhere; where they do not either, it is not resolved.
     """
-    solved = cache(solve)
-
-    def attempt(fewer: int, more: int) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
-        coarse, fine = solved(fewer), solved(more)
-        if not _end_alike(coarse, fine):
-            return None
-        errors = distances(design, coarse, fine)
-        return largest(errors.values()), (coarse, errors)
-
-    outcome = search(design, accuracy, attempt)
+    asked = design.discretisation
+    for basis, first in ((asked.basis, asked.control_points), ("bspline", FIRST_SPANS)):
+        grid = replace(asked, basis=basis, control_points=first)
+        attempt = partial(_attempt, design, trials, basis)
+        outcome = search(replace(design, discretisation=grid), accuracy, attempt)
+        if outcome.found is not None or asked.basis == "bspline" or asked.stretch == "consistent":
+            break
     if outcome.found is None:
-        return solved(outcome.trials[-1])
+        return confirmed(trials, (basis, outcome.trials[-1]))
     answer, errors = outcome.found
-    points, trials = outcome.control_points, outcome.trials
-    estimate = ErrorEstimate(accuracy=accuracy, **errors, control_points=points, trials=trials)
+    points, tried = outcome.control_points, outcome.trials
+    estimate = ErrorEstimate(accuracy=accuracy, **errors, control_points=points, trials=tried)
     failed = outcome.error > max(accuracy, least or 0.0)
     if failed and answer.status is Status.CONVERGED:
         answer = replace(answer, status=Status.NOT_CONVERGED, message=outcome.message)
     return replace(answer, estimate=estimate)
 
 
-def _end_alike(one: StaticSolution, other: StaticSolution) -> bool:
-    """Whether two paths have the same status, and where they stop early about the same end."""
-    return one.status is other.status and (one.status is Status.CONVERGED or _in_step(one, other))
+def _attempt(
+    design: Design, trials: Trials, basis: str, fewer: int, more: int
+) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
+    """The largest error of an answer, itself with all errors; None where a finer one does not end alike."""
+    coarse, fine = trials.outcome((basis, fewer)), trials.outcome((basis, more))
+    if not ends_alike(coarse, fine):
+        return None
+    if isinstance(coarse, Unsettled):
+        raise coarse
+    assert not isinstance(fine, Unsettled), "it ends alike"
+    if coarse.status is not Status.CONVERGED and not _in_step(coarse, fine):
+        return None
+    errors = distances(design, coarse, fine)
+    return largest(errors.values()), (coarse, errors)
 
 
 def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> dict[str, float]:
@@ -233,7 +254,7 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
     return {
-        "trajectory": largest((error(_moved, length), error(_turned, 1.0))),
+        "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
         "stiffness": error(lambda path: path.stiffness, moment),
         "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows]),
@@ -254,9 +275,7 @@ def _by_state(stiffness: Array, better: Array) -> float:
 
 def _in_step(one: StaticSolution, other: StaticSolution) -> bool:
     """Whether two paths have the states of the same load factors and rotations, about so where they end."""
-    mine, others = (
-        np.stack((p.load_factor, p.rotation if p.driven else p.load_factor)) for p in (one, other)
-    )
+    mine, others = parameters(one), parameters(other)
     if mine.shape != others.shape:
         return False
     apart = np.abs(mine - others)
@@ -270,20 +289,6 @@ def relative(apart: Array, right: Array, unit: Array) -> Array:
         return np.full(len(right), np.nan)
     off, scale = (np.fmax.reduce(np.abs(each).reshape(len(each), -1), axis=1) for each in (apart, right))
     return np.asarray(off / np.where(scale > NOTHING * unit, scale, unit))
-
-
-def _moved(path: StaticSolution) -> Array:
-    """Displacements x + iy of the bodies, or of the strips' ends where there are none (S, B) [m]."""
-    places = np.stack(list(path.bodies.values()), axis=1) if path.bodies else path.shape[:, :, -1]
-    moved = places - places[0]
-    return np.asarray(moved[..., 0] + 1j * moved[..., 1])
-
-
-def _turned(path: StaticSolution) -> Array:
-    """Rotations of the bodies that are not driven (S, B) [rad]."""
-    if not set(path.bodies) - {path.driven}:
-        return np.zeros((len(path.load_factor), 0))
-    return np.stack([at[:, 2] for name, at in path.bodies.items() if name != path.driven], axis=1)
 
 
 def _modulus(strip: StripDesign) -> float:

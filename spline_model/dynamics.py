@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import MORE, MOST
+from spline_model.accuracy import MOST
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
+from spline_model.confirmed import MORE
 from spline_model.content import starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (

@@ -69,6 +69,14 @@ class Mechanism:
             return self
         return self.with_discretisation(control_points=control_points)
 
+    def on(self, basis: str, control_points: int) -> Self:
+        """The same mechanism with that basis and so many control points a strip, and what goes with them."""
+        grid = self.design.discretisation
+        if (basis, control_points) == (grid.basis, grid.points):
+            return self.with_control_points(control_points)
+        own = {"axial_modes": None, "gauss_points": None}
+        return self.with_discretisation(basis=basis, control_points=control_points, **own)
+
     def in_motion(self) -> Self:
         """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
 

@@ -95,8 +95,6 @@ class _Track:
 
     def advance(self) -> str:
         """One increment in steps, and on the elements on from there; returns why it failed, or nothing."""
-        if self.watch.first is None:
-            self.watch.first = (float(self.factors[0]), self._z()[0])
         if self.follower is None:
             self.follower = Follower(self.watch, self._point(self.states - 1), ())
         follower, known, before = self.follower, len(self.follower.points), self.done - self.follower.done[-1]

@@ -90,6 +90,14 @@ class StaticSolution(Tabulated, Path):
             raise ConvergenceError(self.message, solution=self, load_factor=reached, history=self.history)
         return self
 
+    @property
+    def basis(self) -> str:
+        """Of its strips: "bezier" or "bspline"."""
+        one_span = all(
+            strip.basis.degree == strip.basis.control_points - 1 for strip in self.system.scene.strips
+        )
+        return "bezier" if one_span else "bspline"
+
     @cached_property
     def driven(self) -> str | None:
         """The body whose rotation is driven, if there is one."""

@@ -62,7 +62,7 @@ def sensitivities(
     """
     require_mechanism(asked)
     if asked.design.discretisation.control_points is None:
-        asked = asked.with_control_points(solution.control_points)
+        asked = asked.on(solution.basis, solution.control_points)
     rates = Rates.of(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)

@@ -167,8 +167,10 @@ def _as_fine(asked: Any, solution: Any) -> Any:
     """Return the pivot or mechanism as it was solved: in motion, with the control points or elements that an
     accuracy has taken."""
     if hasattr(asked, "with_control_points"):
-        chosen = getattr(solution, "settings", {}).get("control_points", asked.design.discretisation.points)
-        fine = asked.with_control_points(getattr(solution, "control_points", chosen))
+        grid = asked.design.discretisation
+        chosen = getattr(solution, "settings", {}).get("control_points", grid.points)
+        points = getattr(solution, "control_points", chosen)
+        fine = asked.on(getattr(solution, "basis", grid.basis), points)
         return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
     from fe_reference.refined import finer
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from spline_model.accuracy import MORE
+from spline_model.confirmed import MORE
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_sides
 from studies.design import evaluate

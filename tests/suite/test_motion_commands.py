@@ -6,7 +6,6 @@ import math
 import pytest
 
 
-
 @pytest.mark.parametrize("length", [1e-3, 0.08485281374238571, 1.0])
 def test_a_release_keeps_the_pace_of_its_design(length, case, command):
     """Without duration and step four swings of the design are followed, in steps that resolve them."""
