@@ -215,9 +215,8 @@ def _remedy(settings: Settings) -> str:
     """Return what is finer than the finest that was tried."""
     if isinstance(settings, FeSettings):
         return f"take {2 * settings.elements} elements"
-    if settings.basis == "bezier":
-        return f"leave the number open, or take basis = bspline with {SPANS[1]} control points"
-    return f"take {2 * settings.points - 3} control points"
+    more = f"leave the number open, or take basis = bspline with {SPANS[1]} control points"
+    return more if settings.basis == "bezier" else f"take {2 * settings.points - 3} control points"
 
 
 def _of(question: _Question, settings: Settings) -> CriticalLoad:
@@ -269,12 +268,13 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
 
     shares = {"soft": turn} | ({"yields": stress} if None not in limits else {})
     forces: dict[str, float | None] = {}
-    apart = [0.0]
+    apart = [FOUND]
     for name, share in shares.items():
         coarse, fine = (_passing(question, each, share) for each in tried[-2:])
         forces[name] = fine
         if fine is not None:
-            apart.append(math.nan if coarse is None else abs(coarse / fine - 1.0))
+            same = coarse == fine  # such as both passed without any force
+            apart.append(0.0 if same else abs(coarse / fine - 1.0) if coarse and fine else math.nan)
     softer = max(apart) if any(forces.values()) else math.nan
     return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
 
