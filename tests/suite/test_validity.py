@@ -65,7 +65,8 @@ def test_what_is_left_out_is_said_until_an_effect_takes_it_in():
     _, answer = solved("cross_axis_pivot")
     thick = validity(answer).outside
     assert [line.split()[0] for line in thick] == ["stress:", "b/L", "t/L", "strain"]
-    assert len(validity(replace(answer, effects=(CLAMPED_WIDTH, ROOTS))).outside) == 1
+    left = validity(replace(answer, effects=(CLAMPED_WIDTH, ROOTS))).outside
+    assert [line.split()[0] for line in left] == ["stress:", "strain"]
 
 
 def test_yield():
