@@ -17,6 +17,8 @@ SAME = 0.05
 KEPT = 0.03
 #: Size below which places and torques are round-off, and difference of parameters of the same increment.
 ROUND_OFF = 1e-9
+#: Rotation up to which critical points are held against it, not against their own [rad].
+TURN = 1e-2
 #: Smallest relative difference of two meshes that is printed.
 LEAST = 1e-6
 #: Arrays with a row a state.
@@ -34,7 +36,7 @@ def confirmed(
     Args:
         model: of the answer. solved: answers of meshes so far, itself among them. solve: answers a model.
     """
-    if answer.status is Status.CONVERGED and not answer.critical_points:
+    if answer.load_factor[-1] == 1.0 and not answer.critical_points:
         return answer
     others = [each for each in solved if len(each.states[0]) != len(answer.states[0])]
     other = others[-1] if others else solve(finer(model))
@@ -61,9 +63,10 @@ def _apart(mine: Sequence[CriticalPoint], others: Sequence[CriticalPoint]) -> fl
     if [point.kind for point in mine] != [point.kind for point in others]:
         return np.inf
     places = [
-        np.nan_to_num([[p.load_factor, p.preload, p.rotation] for p in points]) for points in (mine, others)
+        np.nan_to_num([[p.load_factor, p.preload, p.rotation] for p in points]).reshape(-1, 3)
+        for points in (mine, others)
     ]
-    size = np.maximum(np.abs(places).max(axis=0), ROUND_OFF)
+    size = np.maximum(np.abs(places).max(axis=0), (ROUND_OFF, ROUND_OFF, TURN))
     return float((np.abs(places[0] - places[1]) / size).max(initial=0.0))
 
 
@@ -97,7 +100,9 @@ def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[
 
 
 def _end(answer: StaticSolution) -> str:
-    return "the whole path" if _whole(answer) else f"stops at load factor {answer.load_factor[-1]:.6g}"
+    if _whole(answer):
+        return "the whole path"
+    return f"stops at load factor {answer.load_factor[-1]:.6g} ({answer.message})"
 
 
 def _alike(answer: StaticSolution, other: StaticSolution) -> int:

@@ -32,6 +32,8 @@ SAME_STATE = 1e-9
 """Difference of load factors and rotations of states that are the same increment."""
 ROUND_OFF = 1e-9
 """Displacement [m], turn [rad] and torque [N m] that no state is judged by."""
+TURN = 1e-2
+"""Rotation up to which critical points are held against it, not against their own [rad]."""
 LEAST = 1e-6
 """Smallest relative difference that is printed."""
 SPANS = 35
@@ -68,7 +70,8 @@ def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> floa
     for mine, its in zip(one, other, strict=True):
         for name in ("preload", "load_factor", "rotation"):
             a, b = (0.0 if math.isnan(getattr(p, name)) else getattr(p, name) for p in (mine, its))
-            apart = max(apart, abs(a - b) / max(abs(a), abs(b), ROUND_OFF))
+            least = TURN if name == "rotation" else ROUND_OFF
+            apart = max(apart, abs(a - b) / max(abs(a), abs(b), least))
     return apart
 
 
