@@ -135,6 +135,12 @@ class Samples:
         self.energy.append(energy)
         return True
 
+    def drift(self) -> float:
+        """Return the largest error of the balance of energies, over the energy at stake at the end [1]."""
+        balance = np.array(self.energy) @ [*ENERGIES.values()]
+        at_stake = max(self._stake, self.floor)
+        return float(np.abs(balance - balance[0]).max()) / at_stake if at_stake > 0.0 else 0.0
+
     def lost(self) -> float:
         """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
         at_stake = max(self._stake, self.floor)

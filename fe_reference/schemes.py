@@ -109,7 +109,16 @@ class Explicit(Scheme):
         samples.counters.update(steps=piece.steps, force_evaluations=piece.steps + 1)
         return Instant(time=time, y=y, v=v, a=a, acting=acting)
 
+    def remarks(self, samples: Samples, step: float) -> list[str]:
+        """Return that the step [s], though stable, does not keep the energy."""
+        drift = samples.drift()
+        if drift <= DRIFT:
+            return []
+        return [f"the energy drifts by {drift:.1%}: the step of {step:.3g} s is too long: take a shorter one"]
 
+
+#: Error of the balance of energies of explicit steps, over the energy at stake, that is not remarked on.
+DRIFT = 1e-3
 #: Iterations of one step. The tangent of an earlier step serves until the residual falls less than tenfold.
 ITERATIONS = 20
 SLOW = 0.1

@@ -11,7 +11,7 @@ from studies.answers import adapters
 MODELS = ("spline", "fe", "fe-shear")
 ARRAYS = {"time_s", "rotation_rad", "com_x_m", "com_y_m", "kinetic_J", "strain_J", "constraint_residual"}
 KEYS = ARRAYS | {"status", "message", "resolution", "model", "settings", "effects", "frequency_Hz"}
-KEYS |= {"frequency_reason", "rotation_error_rad", "counters", "wall_s"}
+KEYS |= {"frequency_reason", "modes", "rotation_error_rad", "displacement_error_m", "counters", "wall_s"}
 MODE_KEYS = {"status", "message", "model", "settings", "effects", "rotation_rad", "held", "wall_s"}
 MODE_KEYS |= {"frequency_Hz", "body_shapes", "slide_frequency_Hz"}
 
