@@ -18,6 +18,9 @@ from .solution import ErrorEstimate
 from .statics import settled_state
 from .structure import Structure, structure_of
 
+#: Units in the last place that are left of forces that cancel.
+CANCELLED = 100.0
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
@@ -27,7 +30,8 @@ class Modes:
         rotation: rotation of the static state [rad], nan if it was not driven.
         held: whether the rotation of the body is held; if not, the driving torque stays on as it is.
         mass: "consistent" or "lumped".
-        frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi).
+        frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi); 0 of a
+            rigid motion.
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
         body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
         state (size,): reduced coordinates of the static state.
@@ -153,6 +157,9 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
         )
         order = np.argsort(values)
         values, vectors = values[order], vectors[:, order]
+    # of a rigid motion the forces of the elements cancel: what their sizes leave to round-off is no frequency
+    sizes = np.einsum("im,im->m", np.abs(vectors), abs(stiffness) @ np.abs(vectors))
+    values = np.where(np.abs(values) > CANCELLED * np.finfo(float).eps * sizes, values, 0.0)
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]

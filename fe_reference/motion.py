@@ -15,6 +15,8 @@ from .structure import Structure
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
 BLOW_UP = 0.1
+#: Dimensionless forces (over EI/L^2, EI/L) that are none, where round-off is less.
+BALANCED = 1e-9
 #: Part of EI/L that is at stake in any motion.
 FLOOR = 1e-12
 #: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
@@ -62,6 +64,11 @@ class Scheme:
         """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
         raise NotImplementedError
 
+    def balanced(self, at: Instant) -> bool:
+        """Return whether the forces on what is not led are none but round-off."""
+        forces = np.abs(at.acting.force / self.structure.scale)[~self.held]
+        return float(forces.max(initial=0.0)) <= max(BALANCED, self.structure.round_off)
+
     def remarks(self, samples: "Samples", step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""
         return []
@@ -91,6 +98,7 @@ class Samples:
     message: str = ""
     books: Array = field(default_factory=lambda: np.zeros(2))
     content: Array = field(default_factory=lambda: np.zeros(2))
+    still: bool = False
     _stake: float = 0.0
 
     @property
@@ -182,6 +190,7 @@ def course(
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = samples.beside(scheme, now)
         if not samples.time:
+            samples.still = not caught.any() and scheme.balanced(now)
             samples.take(scheme, now, begun)
         for piece in span.pieces(step, chunks):
             after = scheme.go(replace(now, time=piece.time), piece, samples)

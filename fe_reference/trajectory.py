@@ -32,6 +32,7 @@ class Trajectory(Answer):
         history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
         seconds: by part (`Stopwatch`), "start" the static state that is let go.
+        starts_still: whether it starts at rest in equilibrium, to round-off.
         resolution: empty, or what elements and steps leave unresolved.
         rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the
             places of all bodies and free ends [m], by companions with fewer elements and longer steps, or by
@@ -59,6 +60,7 @@ class Trajectory(Answer):
     settings: Mapping[str, float | str]
     history: tuple[tuple[float, ...], ...]
     seconds: Mapping[str, float]
+    starts_still: bool = False
     resolution: str = ""
     rotation_error: float = math.nan
     displacement_error: float = math.nan
@@ -120,5 +122,6 @@ def trajectory(
         history=tuple(motion.history),
         settings=settings,
         seconds=watch.stop("recover"),
+        starts_still=motion.still,
         resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
     )

@@ -20,6 +20,7 @@ from spline_model.accurate_motion import MORE, Task
 from spline_model.basis import SlideModes
 from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
+from spline_model.design import Design
 from spline_model.effects import MixedStretching
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.modes import SLIDE_SHARE, linear_modes
@@ -38,6 +39,8 @@ CARRIED = 1e-3
 """Least share of the energy that counts: a mode with less moves the bodies by some per cent at most."""
 
 
+STILL_FORCE, ROUND_OFF = 1e-9, 16.0
+"""Forces over EI/L^2 that are none, as statics leaves them; units in the last place of those that cancel."""
 UNRESOLVED, STILL = 0.05, 1e-6
 """Largest difference to the companion that is not remarked on: over the swing, and [rad] of a motion that
 hardly is one, as its start differs by that alone."""
@@ -81,7 +84,8 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
     squares, shapes, slide = linear_modes(system, z, motion.mass)
     push, speed = shapes.T @ motion.mass @ acceleration, shapes.T @ motion.mass @ v
     frequency = np.sqrt(np.maximum(squares, 0.0))
-    energy = 0.5 * push**2 / np.maximum(np.abs(squares), np.finfo(float).tiny) + 0.5 * speed**2
+    stored = np.divide(push**2, np.abs(squares), out=np.zeros_like(push), where=squares != 0.0)
+    energy = 0.5 * stored + 0.5 * speed**2
     total = float(energy.sum())
     shares = energy / total if total > 0.0 else np.eye(1, len(energy))[0]
     stretch = _stretching_share(system, z, shapes, squares)
@@ -127,6 +131,18 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     return _resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
 
+def starts_still(start: Start, design: Design) -> bool:
+    """Whether a start at rest is in equilibrium: its forces are none but round-off.
+
+    That is of the largest that cancel, of stretching by displacements of a strip's length.
+    """
+    motion, scales = start.motion, start.motion.system.scales
+    force = (motion.mass @ start.acceleration) * scales.unit[: len(start.v)] / scales.energy
+    stiffest = max(strip.axial_rigidity for strip in design.strips) * scales.length / scales.energy
+    least = max(STILL_FORCE, ROUND_OFF * np.finfo(float).eps * stiffest)
+    return not start.v.any() and float(np.abs(force).max(initial=0.0)) <= least
+
+
 def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -> Array:
     """Share of each mode's strain energy in stretching, (F,)."""
     layout = system.layout
@@ -143,7 +159,7 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
             coupling = hessian[at, :count]
             stiffness += coupling.T @ np.linalg.solve(-hessian[at, at], coupling)
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
-    return np.asarray(strain / np.maximum(np.abs(squares), np.finfo(float).tiny))
+    return np.divide(strain, np.abs(squares), out=np.zeros_like(strain), where=squares != 0.0)
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:

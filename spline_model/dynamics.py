@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from spline_model.accuracy import MORE, MOST
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
-from spline_model.content import unresolved, with_companion
+from spline_model.content import starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
@@ -172,6 +172,7 @@ def _moved(
             "slide_stiffness": mechanism.design.discretisation.slide,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
+        still=partial(starts_still, begun, mechanism.design),
         laps=laps,
     )
 

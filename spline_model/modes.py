@@ -32,6 +32,8 @@ SLIDE_SHARE = 0.5
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""
+ROUND_OFF = 64.0
+"""Units in the last place that a sum of terms that cancel is uncertain by."""
 MASSLESS = 1e-13
 """Directions with less than this of the largest modal mass follow the others statically."""
 
@@ -40,7 +42,7 @@ MASSLESS = 1e-13
 class Modes:
     """Natural modes, lowest first.
 
-    frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
+    frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi), 0 of a rigid motion;
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
     name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
@@ -209,9 +211,20 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     free = _without_massless(free, stiffness, inertia)
     values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free)
     shapes = free @ vectors
+    values = np.where(np.abs(values) > _round_off(stiffness, shapes), values, 0.0)
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
-    share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
+    slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)
+    share = np.divide(slid, np.abs(strain), out=np.zeros_like(slid), where=values != 0.0)
     return values, by @ shapes, share
+
+
+def _round_off(stiffness: Array, shapes: Array) -> Array:
+    """What squared frequencies of shapes of unit modal mass are uncertain by: terms that cancel in them.
+
+    A rigid motion is all cancellation: what is left of it is no frequency, and neither sign is a verdict.
+    """
+    terms = np.einsum("im,ij,jm->m", np.abs(shapes), np.abs(stiffness), np.abs(shapes))
+    return np.asarray(ROUND_OFF * np.finfo(float).eps * terms)
 
 
 def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
@@ -243,17 +256,22 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
 def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     """Squared frequencies and shapes of unit modal mass, lowest first.
 
-    About a stable state by M x = K x / w^2, in which the lowest modes are the largest and keep
-    their digits beside axial ones a thousand times as fast.
+    They are those of M x = (K + s M) x / (w^2 + s), in which the lowest modes are the largest and keep their
+    digits beside axial ones a thousand times as fast. The shift s is zero about a stable state, and else
+    beyond the lowest of w^2.
     """
-    try:
-        inverse, vectors = eigh(mass, stiffness)
-    except np.linalg.LinAlgError:  # K is not positive definite
-        inverse = np.zeros(1)
-    if not inverse[0] > 0.0:
-        values, vectors = eigh(stiffness, mass)
-        return np.asarray(values), np.asarray(vectors)
-    return 1.0 / inverse[::-1], vectors[:, ::-1] / np.sqrt(inverse[::-1])
+    shift = 0.0
+    while True:
+        try:
+            inverse, vectors = eigh(mass, stiffness + shift * mass)
+        except np.linalg.LinAlgError:  # K + s M is not positive definite
+            inverse = np.zeros(1)
+        if inverse[0] > 0.0:
+            return 1.0 / inverse[::-1] - shift, vectors[:, ::-1] / np.sqrt(inverse[::-1])
+        if shift == 0.0:
+            squares = np.abs(eigh(stiffness, mass, eigvals_only=True))
+            shift = max(float(squares[0]), np.finfo(float).eps * float(squares[-1]))
+        shift *= 4.0
 
 
 def _without_massless(free: Array, stiffness: Array, mass: Array) -> Array:

@@ -150,9 +150,10 @@ class Trajectory(Tabulated):
     (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
-    the step leaves unresolved, likewise, and checked: what a companion found; effects: names of the scene's
-    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``newton.Laps``),
-    "start" the static state that is let go; estimate: of the error, where an accuracy was asked for;
+    the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
+    found; effects: names of the scene's effects; counters: steps, halved_steps, newton_iterations, ...;
+    seconds: by part (``newton.Laps``), "start" the static state that is let go; estimate: of the error, where
+    an accuracy was asked for;
     rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad], and of the
     places of all bodies and free ends [m], by companions with finer steps and more control points; nan
     without.
@@ -170,6 +171,7 @@ class Trajectory(Tabulated):
     dissipated: Array
     whole: Whole
     unresolved: Callable[[], str]
+    still: Callable[[], bool]
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
@@ -203,6 +205,11 @@ class Trajectory(Tabulated):
     def resolution(self) -> str:
         """Empty, or what step and control points leave unresolved."""
         return "; ".join(remark for remark in (self.unresolved(), self.checked) if remark)
+
+    @cached_property
+    def starts_still(self) -> bool:
+        """Whether the motion starts at rest in equilibrium, to round-off."""
+        return self.still()
 
     @property
     def control_points(self) -> int:
@@ -260,6 +267,7 @@ class Trajectory(Tabulated):
         body: str,
         settings: dict[str, Any],
         unresolved: Callable[[], str],
+        still: Callable[[], bool],
         laps: Laps,
     ) -> Trajectory:
         """The trajectory of a run; a run that says why it stopped has not converged."""
@@ -279,6 +287,7 @@ class Trajectory(Tabulated):
             dissipated=rows[:, DISSIPATED],
             whole=run.whole,
             unresolved=unresolved,
+            still=still,
             effects=effects,
             counters=run.counters,
             settings={"control_points": points} | settings,

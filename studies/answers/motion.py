@@ -27,8 +27,8 @@ NOTHING_MOVES = (
     "a load a history"
 )
 UNSTABLE = (
-    "nothing moves, but the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: "
-    "turn a body a little before it is let go"
+    "the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: what moves, if "
+    "anything, has grown from round-off; turn a body a little before it is let go"
 )
 
 
@@ -45,6 +45,7 @@ class Motion(Solved):
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
+        starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
         wall_s: time of the motion alone, without the static path to its start [s].
     """
 
@@ -56,6 +57,7 @@ class Motion(Solved):
     dissipated: Array
     constraint_residual: Array
     velocity_residual: Array
+    starts_still: bool = False
     rotation_error: float = math.nan
     displacement_error: float = math.nan
 
@@ -103,6 +105,7 @@ class Motion(Solved):
         given: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
         given |= {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
         own: dict[str, Any] = {name: np.asarray(array, dtype=float) for name, array in given.items()}
+        own["starts_still"] = bool(result.starts_still)
         own |= {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
         if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
             own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
