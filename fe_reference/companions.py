@@ -3,7 +3,7 @@
 Errors of elements and of steps go with their squares. Where a mesh can be made coarser twice, companions have
 a fraction of the elements and longer steps in proportion, and cost little. Their differences show whether the
 errors are those of that order: then a part of the difference is the error, else all of it. A mesh of few
-elements has a companion of twice as many and half the step.
+elements, or one whose companions fail, has one of twice as many and half the step.
 """
 
 import math
@@ -32,7 +32,7 @@ SAFETY = 0.8
 #: Fewest elements of a strip in a companion, and most that one of its elements stands for.
 FEWEST, COARSEST = 4, 10
 #: Ratio of two differences over that of errors of second order, from which on they are of that order.
-OF_ORDER = 0.5
+OF_ORDER = 0.75
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,24 +55,58 @@ def with_companions(model: Model, motion: Trajectory, run: Callable[..., Traject
     """
     if motion.status is not Status.CONVERGED or len(motion.time) < 3:
         return motion
-    levels, spacing = _levels(model, motion), float(motion.time[1])
+    for levels in (_coarse(model, motion), [_level(model, finer(model), 0.5, motion)]):
+        if not levels:
+            continue
+        try:
+            return _compared(model, motion, levels, run)
+        except (ConvergenceError, InvalidParameter) as refusal:
+            remark = f"error not estimated: a companion of other elements: {refusal}"
+    return replace(motion, resolution="; ".join(each for each in (motion.resolution, remark) if each))
+
+
+def _compared(
+    model: Model, motion: Trajectory, levels: list[_Level], run: Callable[..., Trajectory]
+) -> Trajectory:
+    """Return the motion with what companions say of its errors, or raise what they were refused for."""
+    spacing = float(motion.time[1])
     stride = math.ceil(max(level.longest for level in levels) / spacing * (1.0 - 1e-9))
     samples, spacing = (len(motion.time) - 2) // stride, stride * spacing  # the last may be shorter
     found = [moves(model, motion, stride)]
-    try:
-        for level in levels:
-            step = spacing / math.ceil(spacing / level.longest * (1.0 - 1e-9))
-            other = run(level.model, duration=samples * spacing, step=step, samples=samples)
-            if other.message or len(other.time) != samples + 1:
-                raise InvalidParameter("step", step, other.message or "as many instants")
-            found.append(moves(level.model, other, 1))
-    except (ConvergenceError, InvalidParameter) as refusal:
-        remark = (
-            f"error not estimated: a companion of {len(level.model.strips[0].nodes) - 1} elements: {refusal}"
-        )
-        return replace(motion, resolution="; ".join(each for each in (motion.resolution, remark) if each))
-    apart = [[mine[: samples + 1] - its for mine, its in zip(*pair, strict=True)] for pair in pairwise(found)]
-    return _estimated(model, motion, apart, [level.ratio for level in levels], stride)
+    for level in levels:
+        step = spacing / math.ceil(spacing / level.longest * (1.0 - 1e-9))
+        other = run(level.model, duration=samples * spacing, step=step, samples=samples)
+        if other.message or len(other.time) != samples + 1:
+            raise InvalidParameter("step", step, other.message or "as many instants")
+        found.append(moves(level.model, other, 1))
+    ratios = [level.ratio for level in levels]
+    turns, places = (
+        _errors([mine[: samples + 1] - its for mine, its in pairwise(each)], ratios)
+        for each in zip(*found, strict=True)
+    )
+    places = np.linalg.norm(places, axis=2)
+    remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]
+    return replace(
+        motion,
+        rotation_error=float(turns.max(initial=0.0)),
+        displacement_error=float(places.max(initial=0.0)),
+        resolution="; ".join(each for each in remarks if each),
+    )
+
+
+def _errors(apart: list[Array], ratios: list[float]) -> Array:
+    """Return the error of every coordinate (T, ...), of the differences to one or two companions in turn.
+
+    Args:
+        apart: of the motion to the first companion, of this one to the second. ratios: of their steps and
+            elements to those of the motion.
+    """
+    part = np.full(apart[0].shape[1:], 1.0 / abs(ratios[0] ** 2 - 1.0))
+    if len(apart) > 1:
+        growth = OF_ORDER * (ratios[1] ** 2 - ratios[0] ** 2) / (ratios[0] ** 2 - 1.0)
+        first, second = (np.abs(each).max(axis=0) for each in apart)
+        part[second < growth * first] = 1.0
+    return np.asarray(part * np.abs(apart[0]))
 
 
 def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:
@@ -82,12 +116,12 @@ def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Arr
     return poses[..., 2], np.concatenate((poses[..., :2], motion.shape[::stride, free, -1]), axis=1)
 
 
-def _levels(model: Model, motion: Trajectory) -> list[_Level]:
-    """Return two coarser companions, the finer one first, or else one that is finer than the motion."""
+def _coarse(model: Model, motion: Trajectory) -> list[_Level]:
+    """Return two coarser companions, the finer one first; none of a mesh of few elements."""
     elements = len(model.strips[0].nodes) - 1
     every = [k for k in range(2, COARSEST + 1) if elements % k == 0 and elements // k >= FEWEST]
     if len(every) < 2:
-        return [_level(model, finer(model), 0.5, motion)]
+        return []
     first, second = every[0], next((k for k in every if k >= 2 * every[0]), every[1])
     return [_level(model, _coarser(model, k), float(k), motion) for k in (first, second)]
 
@@ -110,35 +144,6 @@ def _stable(model: Model) -> float:
     """Return the critical explicit step at rest [s]."""
     structure, bodies = about_mass_centre(structure_of(model))
     return critical_step(structure, bodies, np.zeros(structure.size))
-
-
-def _estimated(
-    model: Model, motion: Trajectory, apart: list[list[Array]], ratios: list[float], stride: int
-) -> Trajectory:
-    """Return the motion with the errors that the differences to its companions tell.
-
-    Args:
-        apart: of rotations (T, B) [rad] and places (T, P, 2) [m], of the motion to the first companion, of
-            this one to the second. ratios: of their steps and elements to those of the motion. stride: of
-            the instants T.
-    """
-    length = max(strip.length for strip in model.strips)
-    part = 1.0 / abs(ratios[0] ** 2 - 1.0)
-    if len(apart) > 1:
-        sizes = [
-            max(np.abs(turns).max(initial=0.0), np.abs(places).max(initial=0.0) / length)
-            for turns, places in apart
-        ]
-        growth = (ratios[1] ** 2 - ratios[0] ** 2) * part
-        part = part if sizes[1] >= OF_ORDER * growth * sizes[0] else 1.0
-    turns, places = part * np.abs(apart[0][0]), part * np.linalg.norm(apart[0][1], axis=2)
-    remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]
-    return replace(
-        motion,
-        rotation_error=float(turns.max(initial=0.0)),
-        displacement_error=float(places.max(initial=0.0)),
-        resolution="; ".join(each for each in remarks if each),
-    )
 
 
 def _remark(model: Model, motion: Trajectory, turns: Array, places: Array, stride: int) -> str:

@@ -159,7 +159,8 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
             coupling = hessian[at, :count]
             stiffness += coupling.T @ np.linalg.solve(-hessian[at, at], coupling)
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
-    return np.divide(strain, np.abs(squares), out=np.zeros_like(strain), where=squares != 0.0)
+    shares: Array = np.divide(strain, np.abs(squares), out=np.zeros_like(strain), where=squares != 0.0)
+    return shares
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:

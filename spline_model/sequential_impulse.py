@@ -244,6 +244,7 @@ def solve_impulses(
         body=body,
         settings=settings,
         unresolved=partial(_resolution, solver, steps.step),
+        still=lambda: False,
         laps=laps,
     )
 

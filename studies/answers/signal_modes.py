@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy import optimize
 
 from studies.kinds import Array
 
@@ -39,16 +39,17 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
         return []
     spacing = float(time[-1] - time[0]) / (count - 1)
     lines = _lines(value, 1.0 / (spacing * count))
-    if not lines:
+    if not lines.size:
         return []
-    at = np.arange(count) * spacing
+    at = np.linspace(0.0, spacing * (count - 1), count)
     scale = 1.0 / (spacing * count)
 
     def apart(shifts: Array) -> Array:
-        return _fit(at, value, np.array(lines) + scale * shifts)[1]
+        return _fit(at, value, lines + scale * shifts)[1]
 
-    shifts = least_squares(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1).x
-    frequencies = np.array(lines) + scale * shifts
+    fitted: Any = optimize.least_squares(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1)
+    shifts = fitted.x
+    frequencies = lines + scale * shifts
     amplitudes = _fit(at, value, frequencies)[0]
     found = sorted(zip(amplitudes, frequencies, strict=True), reverse=True)
     return [
@@ -58,7 +59,7 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
     ]
 
 
-def _lines(value: Array, resolution: float) -> list[float]:
+def _lines(value: Array, resolution: float) -> Array:
     """Return the frequencies [Hz] of the lines of a record that stand for modes, the largest first."""
     count = len(value)
     window = np.hanning(count)
@@ -73,7 +74,7 @@ def _lines(value: Array, resolution: float) -> list[float]:
             break
         if frequency > resolution and not any(_belongs(frequency, to, resolution) for to in lines):
             lines.append(frequency)
-    return lines
+    return np.array(lines)
 
 
 def _belongs(frequency: float, to: float, resolution: float) -> bool:

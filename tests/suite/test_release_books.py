@@ -29,7 +29,7 @@ def test_a_jolt_of_a_drive_is_work(model, drive, tmp_path, command):
     if drive is BEGINS_MOVING:
         assert max(answer["dissipated_J"]) == 0.0
         assert answer["work_J"][0] == pytest.approx(answer["kinetic_J"][0], rel=1e-9)
-        # kinetic energy of the body at the rate of the drive, about the point that it turns about, found by both models
+        # kinetic energy of the body at the rate of the drive, as both models have it
         assert answer["work_J"][0] == pytest.approx(6.12e-4, rel=2e-2)
     balance = np.sum([answer[f"{name}_J"] for name in ("kinetic", "strain", "gravity", "dissipated")], axis=0)
     balance -= answer["work_J"]
