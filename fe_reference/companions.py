@@ -33,6 +33,9 @@ SAFETY = 0.8
 FEWEST, COARSEST = 4, 10
 #: Ratio of two differences over that of errors of second order, from which on they are of that order.
 OF_ORDER = 0.75
+#: What errors are more than coarser companions of that order tell: fast motions are lost to all of them. On
+#: random releases the estimate was down to 0.41 of the error without it.
+SHARED = 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,7 +108,7 @@ def _errors(apart: list[Array], ratios: list[float]) -> Array:
     if len(apart) > 1:
         growth = OF_ORDER * (ratios[1] ** 2 - ratios[0] ** 2) / (ratios[0] ** 2 - 1.0)
         first, second = (np.abs(each).max(axis=0) for each in apart)
-        part[second < growth * first] = 1.0
+        part = np.where(second < growth * first, 1.0, SHARED * part)
     return np.asarray(part * np.abs(apart[0]))
 
 

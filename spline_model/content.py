@@ -4,7 +4,7 @@ Of the modes that carry energy at the start each wants steps enough. A companion
 where the scene is undamped and free and the steps are not much longer than explicit ones it is the leapfrog,
 whose steps resolve all, so that the difference shows what the motion's own steps and its control points leave
 out together. Else it has the motion's own integrator and step, and shows what the control points leave out; a
-second one of half the step shows what the steps do, and the estimate is the sum.
+second one of a quarter of the step shows what the steps do, and the estimate is the sum.
 """
 
 from __future__ import annotations
@@ -46,6 +46,8 @@ UNRESOLVED, STILL = 0.05, 1e-6
 hardly is one, as its start differs by that alone."""
 MOST_SHORTER = 20.0
 """So many of the companion's explicit steps cost about as much as a default step."""
+FINER, ORDER = 4, 2
+"""Steps of a companion in one of the motion, and the order of the scheme."""
 COMPARED = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
@@ -204,8 +206,9 @@ def _companions(task: Task, motion: Trajectory, spacing: float) -> Iterator[list
     """Companions whose differences add up to the error, and others if one of these fails.
 
     Their steps are whole between two instants ``spacing`` [s] apart. The leapfrog shows the errors of steps
-    and control points together. Where it cannot be used they are apart: half the step leaves a quarter of
-    the error of a scheme of second order, so that the difference is three quarters of it.
+    and control points together. Where it cannot be used they are apart: a quarter of the step leaves a
+    sixteenth of the error of a scheme of second order. Half of it is too near where steps do not resolve
+    all that moves: then the difference was down to a quarter of the error.
     """
     own, step = str(motion.settings["integrator"]), float(motion.settings["step_s"])
     points, steps = motion.control_points, round(spacing / step)
@@ -213,7 +216,8 @@ def _companions(task: Task, motion: Trajectory, spacing: float) -> Iterator[list
     if longest > 0.0 and (own == leapfrog.NAME or step <= MOST_SHORTER * longest):
         yield [(points + MORE, leapfrog.NAME, spacing / math.ceil(spacing / longest), 1.0)]
     if own != leapfrog.NAME:
-        parts = ((points + MORE, steps, 1.0), (points, 2 * steps, 4.0 / 3.0))
+        part = FINER**ORDER / (FINER**ORDER - 1.0)
+        parts = ((points + MORE, steps, 1.0), (points, FINER * steps, part))
         yield [(n, "energy", spacing / many, part) for n, many, part in parts]
 
 

@@ -87,9 +87,9 @@ def solve_motion(
     accuracy : wanted error over the run, of rotations [rad] and of places over the longest strip [1],
         instead of a step: steps and control points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
-    check : whether companions with two control points more and with half the step say how far the motion
-        is uncertain: ``rotation_error``, ``displacement_error``, and in ``resolution`` where that is much.
-        They cost about three other motions, or one by the leapfrog where it can be used; none is made
+    check : whether companions with two control points more and with a quarter of the step say how far the
+        motion is uncertain: ``rotation_error``, ``displacement_error``, and in ``resolution`` where that is
+        much. They cost about five other motions, or one by the leapfrog where it can be used; none is made
         with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.

@@ -1,11 +1,12 @@
 """The modes that a recorded motion contains: their frequencies and amplitudes, from the record alone."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import optimize
 
+from studies.answers.metrics import STILL
 from studies.kinds import Array
 
 #: Amplitude of a mode over that of the largest that counts: less is a ripple.
@@ -35,7 +36,7 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
     one and a half periods has none.
     """
     count = len(value)
-    if count < FEWEST or float(np.ptp(value)) == 0.0:
+    if count < FEWEST or float(np.ptp(value)) <= STILL:
         return []
     spacing = float(time[-1] - time[0]) / (count - 1)
     lines = _lines(value, 1.0 / (spacing * count))
@@ -47,7 +48,8 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
     def apart(shifts: Array) -> Array:
         return _fit(at, value, lines + scale * shifts)[1]
 
-    fitted: Any = optimize.least_squares(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1)
+    solve: Any = optimize.least_squares  # its stub is a module's
+    fitted = solve(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1)
     shifts = fitted.x
     frequencies = lines + scale * shifts
     amplitudes = _fit(at, value, frequencies)[0]
