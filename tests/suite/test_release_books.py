@@ -54,7 +54,7 @@ def test_what_lets_go_of_a_displacement_is_drawn(words, tmp_path, command):
 
 
 def test_explicit_steps_that_lose_energy_are_told():
-    """A light body from 170 deg: the default step is stable, the energy is off by 3 %, and a remark says so."""
+    """A light body from 170 deg: the default step is stable, but the energy is off, as a remark says."""
     light = TABLE_ONE | {"body_mass": 0.0265, "body_moment_of_inertia": 2.65e-5}
     at = {"start": math.radians(170.0), "duration": 0.01, "raise_on_failure": False, "check": False}
     motion = solve_release(cross_axis_pivot(**light, elements=10), **at)
