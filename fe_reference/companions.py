@@ -31,7 +31,8 @@ STILL = 1e-6
 SAFETY = 0.8
 #: Fewest elements of a strip in a companion, and most that one of its elements stands for.
 FEWEST, COARSEST = 4, 10
-#: Ratio of two differences over that of errors of second order, from which on they are of that order.
+#: Ratio of two differences over that of errors of second order, from which on they are of that order, and the
+#: inverse of that up to which they are.
 OF_ORDER = 0.75
 #: What errors are more than coarser companions of that order tell: fast motions are lost to all of them. On
 #: random releases the estimate was down to 0.41 of the error without it.
@@ -104,12 +105,14 @@ def _errors(apart: list[Array], ratios: list[float]) -> Array:
         apart: of the motion to the first companion, of this one to the second. ratios: of their steps and
             elements to those of the motion.
     """
-    part = np.full(apart[0].shape[1:], 1.0 / abs(ratios[0] ** 2 - 1.0))
-    if len(apart) > 1:
-        growth = OF_ORDER * (ratios[1] ** 2 - ratios[0] ** 2) / (ratios[0] ** 2 - 1.0)
-        first, second = (np.abs(each).max(axis=0) for each in apart)
-        part = np.where(second < growth * first, 1.0, SHARED * part)
-    return np.asarray(part * np.abs(apart[0]))
+    part, most = 1.0 / abs(ratios[0] ** 2 - 1.0), np.abs(apart[0])
+    if len(apart) == 1:
+        return np.asarray(part * most)
+    growth = part * (ratios[1] ** 2 - ratios[0] ** 2)
+    first, second = (np.abs(each).max(axis=0) for each in apart)
+    # too little growth: out of phase in all of them; too much: errors of the first companion cancel
+    most = np.where(second > growth / OF_ORDER * first, np.abs(apart[1]), most)
+    return np.asarray(np.where(second < OF_ORDER * growth * first, 1.0, SHARED * part) * most)
 
 
 def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:
