@@ -132,9 +132,9 @@ def _root_length(name: str, value: Any) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class RootCompliance(_Effect):
-    """Clamped ends turn against springs of EI / (root t) [N m]; root: number or "monolithic", the default."""
+    """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC."""
 
-    root: Annotated[float, _root_length] = MONOLITHIC
+    root: Annotated[float, _root_length]
 
 
 #: Every effect that these elements can have.

@@ -23,8 +23,7 @@ class Model:
         records: keyword for the largest number of records of a motion.
         release_options: keywords that every release takes.
         drive: of a rotation in a motion.
-        static_fields, moving_fields, mode_fields: fields along the strips from the design in the model and
-            the states of a path, of a motion, and of what modes are about.
+        static_fields, moving_fields: fields along the strips from the design in the model and its states.
     """
 
     pivot: ModuleType
@@ -38,7 +37,6 @@ class Model:
     drive: type
     static_fields: Callable[[Any, Any], Any]
     moving_fields: Callable[[Any, Any], Any]
-    mode_fields: Callable[[Any, Any], Any]
 
 
 def model_of(settings: Settings) -> Model:
@@ -53,7 +51,6 @@ def model_of(settings: Settings) -> Model:
             drive=loads.DrivenRotation,
             static_fields=section_forces.strip_fields,
             moving_fields=section_forces.strip_fields,
-            mode_fields=section_forces.strip_fields,
         )
     return _spline()
 
@@ -68,7 +65,6 @@ def _spline() -> Model:
         drive=effects.DrivenRotation,
         static_fields=section_forces.static_fields,
         moving_fields=section_forces.moving_fields,
-        mode_fields=section_forces.mode_fields,
     )
 
 
@@ -102,7 +98,6 @@ class Asked:
             given["elements"] = meshes[-1]
         elif hasattr(result, "control_points"):
             given["control_points"] = result.control_points
-            given["basis"] = getattr(result, "basis", given["basis"])
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
     def refusals(self) -> AbstractContextManager[None]:
