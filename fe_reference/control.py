@@ -8,12 +8,13 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from .arrays import Array, Flags, Indices
+from .freedom import loose_coordinates
 from .matrix import Factors, Singular
 from .structure import Evaluation, Structure
 
@@ -22,8 +23,8 @@ ITERATIONS = 25
 #: Dimensionless residual (forces over EI/L^2, moments over EI/L) taken as equilibrium where round-off allows
 #: it.
 TOLERANCE = 1e-10
-#: The factors at the end give one more correction, unless it is longer than this [strip lengths, rad]: then
-#: it is the round-off of the residual over a stiffness that vanishes.
+#: Longest correction that equilibrium asks for [strip lengths, rad]; it is made. A longer one is round-off of
+#: the residual over a stiffness that vanishes, if the next is no shorter.
 LAST = 1e-9
 
 
@@ -53,6 +54,7 @@ class Control:
         span: parameter at both. load (size,): F, or None. shares: of it at both, by default the parameters.
         watched: coordinate of the turn whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
+        props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
     """
 
     structure: Structure
@@ -63,6 +65,7 @@ class Control:
     watched: int | None = None
     settling: bool = False
     shares: tuple[float, float] | None = None
+    props: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def growth(self) -> float:
@@ -110,6 +113,12 @@ class Control:
     def unbalanced(self, residual: Array) -> float:
         """Return the largest residual of the free coordinates, forces over EI/L^2, moments over EI/L."""
         return float(np.abs(residual / self.structure.scale)[self.free].max(initial=0.0))
+
+    def is_round_off(self, balance: Balance) -> bool:
+        """Return whether every residual is below `TOLERANCE`, or below the round-off of its own terms."""
+        structure = self.structure
+        least = TOLERANCE * structure.scale + structure.round_off(balance.at.tangent)
+        return bool((np.abs(balance.residual) <= least)[self.free].all())
 
     def rates(self, y: Array, parameter: float, load_work: float) -> tuple[Array | None, float, float]:
         """Return what p changes at fixed y: r (size,) or None; the potential, once and twice [J]."""
@@ -160,6 +169,8 @@ def spans(
     ways = {centre + k: np.multiply(shares, d) for k, d in enumerate(displacement or ()) if d is not None}
     if rotations is not None:
         ways[at + 2] = np.array([0.0] * (1 + first) + [*rotations])
+    props = loose_coordinates(structure, ways)
+    ways |= {int(k): np.zeros(legs + 1) for k in props}
     values = np.reshape([*ways.values()], (-1, legs + 1)).T
     return [
         Control(
@@ -170,6 +181,7 @@ def spans(
             load=load,
             watched=watched,
             shares=(shares[leg], shares[leg + 1]),
+            props=props,
         )
         for leg in range(legs)
     ]
@@ -197,8 +209,7 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
 
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
     """
-    tolerance = max(TOLERANCE, control.structure.round_off)
-    y, norms = start.copy(), []
+    y, norms, before = start.copy(), [], np.inf
     while True:
         y[control.held] = control.prescribed(parameter)
         for counted in ("residual_evaluations", "tangent_evaluations"):
@@ -206,18 +217,23 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         balance, factors = control.balance(y, parameter), None
         norms.append(control.unbalanced(balance.residual))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
-        if len(norms) > ITERATIONS and norms[-1] > tolerance:
-            failure = f"no equilibrium in {ITERATIONS} iterations"
         if not failure:
             counters["factorisations"] += 1
             try:
                 factors = control.factors(balance)
             except Singular as error:
                 failure = str(error)
-        if factors is not None and norms[-1] <= tolerance:
+        done = factors is None
+        if factors is not None:
             last = factors.solve(balance.residual)
-            y = y - last if np.abs(control.structure.measure * last).max(initial=0.0) <= LAST else y
-        if factors is None or norms[-1] <= tolerance:
+            size = float(np.abs(control.structure.measure * last).max(initial=0.0))
+            done = (size <= LAST or size > 0.5 * before) and control.is_round_off(balance)
+            if size <= LAST or not done:
+                y = y - last
+            before = size
+            if not done and len(norms) > ITERATIONS:
+                done, factors, failure = True, None, f"no equilibrium in {ITERATIONS} iterations"
+        if done:
             return Outcome(
                 y=y,
                 parameter=parameter,
@@ -227,7 +243,6 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
                 factors=factors,
             )
         counters["newton_iterations"] += 1
-        y = y - factors.solve(balance.residual)
 
 
 def taken(control: Control, y: Array, parameter: float) -> Outcome:

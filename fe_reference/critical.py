@@ -113,6 +113,7 @@ def _point(control: Control, kind: str, y: Array, parameter: float, inertia: int
         rotation=_rotation(control, y),
         inertia=inertia,
         text=f"{what} at {', '.join(_places(control, y, parameter))}" if what else "",
+        preload=parameter if control.settling else 1.0,
     )
 
 

@@ -9,19 +9,21 @@ from typing import Annotated, Any
 import numpy as np
 
 from .arrays import Array
-from .effects import DEFAULT_EFFECTS, DrivenDisplacement, Effects
-from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, within
-from .loads import DrivenRotation, drive_spans, full_load
+from .companions import with_companions
+from .effects import DEFAULT_EFFECTS, Effects
+from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
+from .freedom import loose_coordinates
+from .loads import DrivenRotation, drive_spans
 from .mass import about_mass_centre, carried_over
-from .model import Model
+from .model import Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, course
 from .refined import limit_of
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
-from .statics import settled_state
+from .statics import state_at_start
 from .structure import structure_of
-from .trajectory import Trajectory, trajectory, with_companion
+from .trajectory import Trajectory, trajectory
 
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
@@ -74,6 +76,8 @@ class Run(Checked):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.drive is not None:
+            require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
         if self.start is not None and not self.settled:
             raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
         if self.accuracy is not None and (self.step is not None or not self.explicit):
@@ -89,6 +93,7 @@ class Run(Checked):
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
     """Let a pivot go at rest from the static state at a rotation: `solve_motion` of the one body there is."""
+    require_model(pivot)
     pivot.body_index(None)
     return solve_motion(pivot, start=start, duration=duration, **options)
 
@@ -107,9 +112,10 @@ def solve_motion(
     Args:
         mechanism: strips, bodies and effects; both elements and both integrators go together. Masses are
             lumped.
-        check: whether a motion with fewer elements says how far the rotation is uncertain: `rotation_error`,
-            and in `resolution` where that is much. It costs an eighth of the motion, half an implicit one;
-            none is made with an accuracy.
+        check: whether companions of other elements and steps say how far the motion is uncertain:
+            `rotation_error`, `displacement_error`, and in `resolution` where that is much. They cost about
+            a third of the motion, or eight of it with less than sixteen elements; none is made with an
+            accuracy.
         raise_on_failure: whether a motion that ends early raises, or is returned with its status.
         asked: duration [s], and what else a `Run` knows.
 
@@ -122,6 +128,8 @@ def solve_motion(
         ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
             blew up, a step had no solution or the accuracy was not reached: carries what there is.
     """
+    require_model(mechanism)
+    require_kind("check", check, bool, "True or False")
     run = Run(**asked)
     if run.accuracy is not None:
         return _limit(mechanism, run, run.accuracy).checked(raise_on_failure)
@@ -138,7 +146,8 @@ def _limit(model: Model, run: Run, accuracy: float) -> Trajectory:
     judged = ("rotation", "shape")
     motion = limit_of(model, accuracy, partial(_moved, run=run), units, turns, judged, relative=False)
     errors = {} if motion.estimate is None else motion.estimate.errors
-    return replace(motion, rotation_error=errors.get("rotation", np.nan))
+    places = errors.get("shape", np.nan) * structure_of(model).length
+    return replace(motion, rotation_error=errors.get("rotation", np.nan), displacement_error=places)
 
 
 def _moved(model: Model, run: Run) -> Trajectory:
@@ -160,26 +169,20 @@ def checked(
     body: str | None = None,
     drive: DrivenRotation | None = None,
 ) -> Trajectory:
-    """Return a motion with its `rotation_error` and `resolution`, by a companion of fewer elements.
+    """Return a motion with its estimated errors and `resolution`, by companions of fewer elements.
 
     Args:
         model, start, body, drive: as of the motion, which began in equilibrium.
     """
     names = ("integrator", "spectral_radius")
     settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
-    if not model.bodies or (body is None and len(model.bodies) > 1):
-        return motion
-    settings |= {"start": start, "body": body, "drive": drive, "check": False}
-    return with_companion(model, motion, body, partial(solve_motion, **settings))
+    settings |= {"start": start, "body": body, "drive": drive, "check": False, "raise_on_failure": False}
+    return with_companions(model, motion, partial(solve_motion, **settings))
 
 
 def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
     """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
-    load = full_load(structure_of(model), time=0.0)
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None:
-        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
-    y, remark = settled_state(model, run.start, run.body, run.increments, load)
+    y, remark = state_at_start(model, run.start, run.body, run.increments)
     return y, [f"the way to the start: {remark}"] if remark else []
 
 
@@ -227,10 +230,11 @@ def _first_frequency(model: Model) -> float:
     """Return the first frequency about the shape at rest, of inertia and elasticity alone [Hz]."""
     kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
     bare = replace(model, effects=Effects.read(kept, {}))
-    frequency = float(natural_frequencies(bare, rotation=None, count=1, mass="lumped").frequency[0])
-    if frequency <= 0.0:
+    rigid = len(loose_coordinates(structure_of(bare), ()))
+    found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
+    if not (found > 0.0).any():
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
-    return frequency
+    return float(found[found > 0.0][0])
 
 
 def _cheaper(model: Model, run: Run) -> str:

@@ -132,9 +132,9 @@ def _root_length(name: str, value: Any) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class RootCompliance(_Effect):
-    """Clamped ends turn against springs of EI / (root t) [N m]; root: number, or "monolithic": MONOLITHIC."""
+    """Clamped ends turn against springs of EI / (root t) [N m]; root: number or "monolithic", the default."""
 
-    root: Annotated[float, _root_length]
+    root: Annotated[float, _root_length] = MONOLITHIC
 
 
 #: Every effect that these elements can have.

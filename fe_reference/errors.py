@@ -98,6 +98,13 @@ def count(name: str, value: Any, minimum: int = 1) -> int:
     return int(value)
 
 
+def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
+    """Refuse anything but an object of this kind; one that fills pages is named by its own."""
+    if not isinstance(value, kind):
+        told = value if value is None or isinstance(value, int | float | str | dict) else type(value).__name__
+        raise InvalidParameter(name, told, expected)
+
+
 def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     """Return `value` if it is one of the names in `known`."""
     if value not in known:

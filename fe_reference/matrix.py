@@ -21,6 +21,9 @@ from .mesh import Carried, turned
 #: Where the entries of the rows of a matrix are, and where its factors have theirs.
 Lines = tuple[Indices, Indices, Indices, Indices]
 
+#: Part of a diagonal entry below which what elimination leaves of it is round-off, its sign of no meaning.
+GRAIN = 2.0**-48
+
 
 class Singular(ArithmeticError):
     """A matrix that has no inverse."""
@@ -66,7 +69,7 @@ def _times(starts: Indices, rows: Indices, data: Array, x: Array, out: Array) ->
 
 @kernel()
 def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> int:
-    """Write L within the envelope and D; return the number of negative entries of D, -1 if one is zero.
+    """Write L within the envelope and D; return the number of negative entries of D, -1 if one is round-off.
 
     Row i of L begins in column first[i], at low[begin[i]].
     """
@@ -79,11 +82,11 @@ def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> 
         d[i] = 1.0
         if held[i]:
             continue
-        pivot = 0.0
+        pivot = size = 0.0
         for p in range(starts[i], starts[i + 1]):
             j = rows[p]
             if j == i:
-                pivot = data[p]
+                pivot, size = data[p], abs(data[p])
             elif j < i and not held[j]:
                 low[at + j] = data[p]
         for j in range(first[i], i):
@@ -95,7 +98,7 @@ def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> 
             entry = low[at + j] / d[j]
             pivot -= entry * low[at + j]
             low[at + j] = entry
-        if pivot == 0.0 or not np.isfinite(pivot):
+        if abs(pivot) <= GRAIN * size or not np.isfinite(pivot):
             return -1
         d[i] = pivot
         negative += pivot < 0.0
@@ -183,7 +186,7 @@ class Symmetric:
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
         negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, low, d)
         if negative < 0:
-            raise Singular("the tangent is singular")
+            raise Singular("the tangent is singular to round-off")
         return Factors(p, held, low, d, negative)
 
 

@@ -6,7 +6,7 @@ radians.
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from .effects import (
     PreStrain,
     TipForce,
 )
-from .errors import Checked, InvalidParameter, choice, not_negative, pair, positive, within
+from .errors import Checked, InvalidParameter, choice, not_negative, pair, positive, require_kind, within
 
 ELEMENTS = ("corotational", "reissner")
 #: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
@@ -274,3 +274,9 @@ class Model:
     def strip_index(self, name: str) -> int:
         """Return the place of the strip of this name."""
         return self.strip_names.index(choice("strip", name, self.strip_names))
+
+
+def require_model(value: Any) -> None:
+    """Refuse what is no model of this package, such as a mechanism of the splines."""
+    made = "what cross_axis_pivot or compliant_mechanism of fe_reference returns"
+    require_kind("mechanism", value, Model, made)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import LinAlgError, eigh
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
@@ -11,12 +11,18 @@ from .arrays import Array, Flags
 from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
+from .freedom import NothingHolds, loose_coordinates
 from .mass import MASSES, mass_matrix
-from .model import Model
+from .model import Model, require_model
 from .refined import Quantities, refine
 from .solution import ErrorEstimate
-from .statics import settled_state
+from .statics import settled_state, state_at_start
 from .structure import Structure, structure_of
+
+#: Stiffness of a rigid motion over the sum of the terms that cancel in it.
+ROUND_OFF = 1e-14
+#: First shift of squared frequencies where the stiffness is not positive definite, in parts of their mean.
+SHIFT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,7 +33,8 @@ class Modes:
         rotation: rotation of the static state [rad], nan if it was not driven.
         held: whether the rotation of the body is held; if not, the driving torque stays on as it is.
         mass: "consistent" or "lumped".
-        frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi).
+        frequency (C,): [Hz], ascending; negative where the state is unstable: -growth rate / (2 pi); 0 of a
+            rigid motion.
         shapes (C, G, P, 2): displacements of the nodes, of unit modal mass [m / sqrt(kg m^2)].
         body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
         state (size,): reduced coordinates of the static state.
@@ -59,7 +66,8 @@ def natural_frequencies(
 
     The state is in equilibrium with the rotation driven, and with the driven displacement, gravity, natural
     strains and all loads in full. Free are then the rotation, unless it is held, and a driven displacement
-    without a history: what drove them acts on as it is.
+    without a history: what drove them acts on as it is. Where nothing holds the model against its loads in
+    full, the state is the one in which its motion starts.
 
     Args:
         pivot: the model.
@@ -78,13 +86,17 @@ def natural_frequencies(
             rotation that is held but not driven.
         ConvergenceError: the static state cannot be reached, or the accuracy is not.
     """
+    require_model(pivot)
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
-        y, _ = settled_state(model, rotation, body, increments)
+        try:
+            y, _ = settled_state(model, rotation, body, increments)
+        except NothingHolds:  # under the loads in full
+            y, _ = state_at_start(model, rotation, body, increments)
         modes = _modes(structure_of(model), y, _held(model, body, held), kind, count)
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
@@ -153,6 +165,10 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
         )
         order = np.argsort(values)
         values, vectors = values[order], vectors[:, order]
+    rigid = np.argsort(np.abs(values))[: len(loose_coordinates(structure, np.flatnonzero(~free)))]
+    shapes = vectors[:, rigid]
+    least = ROUND_OFF * np.einsum("im,im->m", np.abs(shapes), abs(stiffness) @ np.abs(shapes))
+    values[rigid[np.abs(np.einsum("im,im->m", shapes, stiffness @ shapes)) <= least]] = 0.0
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]
@@ -166,10 +182,20 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
     own = mass[strips:, strips:].toarray()
     _available(wanted, int(np.linalg.matrix_rank(own)))
     # largest inverses first: a body without rotary inertia leaves the mass matrix singular
-    inverse, vectors = eigh(own, shapes.T @ (stiffness @ shapes))
+    bodies, shift = shapes.T @ (stiffness @ shapes), 0.0
+    while True:
+        try:
+            inverse, vectors = eigh(own, bodies + shift * own)
+            break
+        except LinAlgError:  # a rigid motion, or an unstable state
+            shift = max(10.0 * shift, SHIFT * float(np.trace(bodies) / np.trace(own)))
+            if not np.isfinite(shift):
+                raise InvalidParameter(
+                    "inertia", "none of a body that can move freely", "mass [kg]"
+                ) from None
     order = np.argsort(inverse)[::-1][:wanted]
     values = 1.0 / inverse[order]
-    return values, shapes @ vectors[:, order] * np.sqrt(values)
+    return values - shift, shapes @ vectors[:, order] * np.sqrt(values)
 
 
 def _available(wanted: int, available: int) -> int:

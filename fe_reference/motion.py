@@ -15,6 +15,8 @@ from .structure import Structure
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
 BLOW_UP = 0.1
+#: Dimensionless forces (over EI/L^2, EI/L) that are none, where round-off is less.
+BALANCED = 1e-9
 #: Part of EI/L that is at stake in any motion.
 FLOOR = 1e-12
 #: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
@@ -62,6 +64,13 @@ class Scheme:
         """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
         raise NotImplementedError
 
+    def balanced(self, at: Instant) -> bool:
+        """Return whether the forces on what is not led are none but round-off."""
+        least = BALANCED * self.structure.scale + self.structure.round_off(
+            self.structure.evaluate(at.y).tangent
+        )
+        return bool((np.abs(at.acting.force) <= least)[~self.held].all())
+
     def remarks(self, samples: "Samples", step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""
         return []
@@ -91,6 +100,7 @@ class Samples:
     message: str = ""
     books: Array = field(default_factory=lambda: np.zeros(2))
     content: Array = field(default_factory=lambda: np.zeros(2))
+    still: bool = False
     _stake: float = 0.0
 
     @property
@@ -135,6 +145,12 @@ class Samples:
         self.energy.append(energy)
         return True
 
+    def drift(self) -> float:
+        """Return the largest error of the balance of energies, over the energy at stake at the end [1]."""
+        balance = np.array(self.energy) @ [*ENERGIES.values()]
+        at_stake = max(self._stake, self.floor)
+        return float(np.abs(balance - balance[0]).max()) / at_stake if at_stake > 0.0 else 0.0
+
     def lost(self) -> float:
         """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
         at_stake = max(self._stake, self.floor)
@@ -171,10 +187,12 @@ def course(
         y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = samples.kinetic(scheme, y, caught) - samples.kinetic(scheme, y, v)
-        samples.books += (0.0, -gained) if span.begins else (gained, 0.0)
+        # what a catch takes from the motion is lost; what a drive gives it, by a jump of rates too, is work
+        samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = samples.beside(scheme, now)
         if not samples.time:
+            samples.still = not caught.any() and scheme.balanced(now)
             samples.take(scheme, now, begun)
         for piece in span.pieces(step, chunks):
             after = scheme.go(replace(now, time=piece.time), piece, samples)

@@ -108,7 +108,9 @@ class Path:
             self.states.append(self._state(taken(self.control, y, self.control.span[0]), None))
         except Singular as error:
             raise InvalidParameter(
-                "strips", "a model that can move freely", "clamps that hold it [1]"
+                "strips",
+                "a model that can move freely",
+                "clamps that hold it, or stiffnesses less far apart [1]",
             ) from error
 
     def turn_to(self, control: Control) -> None:

@@ -95,7 +95,7 @@ def _stiffness_between(
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
     written = (structure.work[0], at.ends, at.matrices, structure.work[1])
     own = _between(structure.tables, u, v, w, rest, written)
-    return own + float(at.curvature[:, 1] @ (one[structure.turns] * other[structure.turns]))
+    return float(own) + float(at.curvature[:, 1] @ (one[structure.turns] * other[structure.turns]))
 
 
 @kernel()

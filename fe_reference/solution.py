@@ -39,8 +39,8 @@ class CriticalPoint:
     kind: "limit point" of the load factor, or where a driven rotation has no stiffness at fixed loads;
     "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
     load_factor [1]; rotation of the driven body [rad], nan without one; inertia: negative eigenvalues after
-    it; text: what happens at which load, "" for the stationary torque of a path without loads, which is not
-    unstable.
+    it; preload: share of gravity and natural strains that acts there [1]; text: what happens at which load,
+    "" for the stationary torque of a path without loads, which is not unstable.
     """
 
     kind: str
@@ -48,6 +48,7 @@ class CriticalPoint:
     rotation: float
     inertia: int
     text: str
+    preload: float = 1.0
 
 
 class Stopwatch:

@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array
+from .confirmed import confirmed
 from .control import Control, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
+from .freedom import require_balance
 from .law import FORCES
 from .loads import full_load
-from .model import Model
+from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import limit_of
 from .section_forces import strip_fields
@@ -28,6 +30,7 @@ JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
 
 def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
     """Drive the rotation of the one body there is from 0 to `rotation` [rad]: `solve_mechanism` of it."""
+    require_model(pivot)
     pivot.body_index(None)
     return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
 
@@ -41,6 +44,7 @@ def solve_mechanism(
     increments: int = 20,
     order: str = LOADS_FIRST,
     accuracy: float | None = None,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -62,6 +66,8 @@ def solve_mechanism(
             the load factor.
         accuracy: wanted error of path, torque, stiffness, strain energy and largest stress, in parts of the
             largest of each; the mesh is doubled until the estimate is below it, and the answer is the limit.
+        check: whether critical points and an early end are compared with those of twice the elements; what
+            is not confirmed is not resolved, see `confirmed`.
         raise_on_failure: whether a path that ends early raises, or is returned with its status.
         progress: called as progress(done, total) after every increment.
 
@@ -71,12 +77,13 @@ def solve_mechanism(
         ConvergenceError: the path ended early; carries the converged part. The accuracy was not reached;
             carries the best answer.
     """
+    require_model(mechanism)
     ends = None if rotation is None else several("rotation", rotation, "rad")
 
     def solve(model: Model) -> StaticSolution:
         return _solved(model, body, ends, displacement, increments, progress, order=order)
 
-    return _answered(mechanism, accuracy, solve, raise_on_failure)
+    return _answered(mechanism, accuracy, solve, check).checked(raise_on_failure)
 
 
 def solve_loads(
@@ -86,6 +93,7 @@ def solve_loads(
     moment: float = 0.0,
     increments: int = 20,
     accuracy: float | None = None,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -94,8 +102,9 @@ def solve_loads(
     Args:
         model: the model; loads and the driven displacement that its scene names are added.
         force: final force (2,) [N], fixed in space. moment: final moment [N m].
-        increments, accuracy, raise_on_failure, progress: as in `solve_mechanism`.
+        increments, accuracy, check, raise_on_failure, progress: as in `solve_mechanism`.
     """
+    require_model(model)
     pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
     if len(pull) != 2:
         raise InvalidParameter("force", force, "two components [N]")
@@ -105,15 +114,16 @@ def solve_loads(
         load = full_load(structure_of(each), more=(pull, turn))
         return _solved(each, None, None, None, increments, progress, load=load, watch=True)
 
-    return _answered(model, accuracy, solve, raise_on_failure)
+    return _answered(model, accuracy, solve, check).checked(raise_on_failure)
 
 
 def _answered(
-    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], raise_on_failure: bool
+    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], check: bool
 ) -> StaticSolution:
     """Return the solution of a model, or to an accuracy the limit of its meshes, at the first one's nodes."""
     if accuracy is None:
-        return solve(model).checked(raise_on_failure)
+        answer = solve(model)
+        return confirmed(model, answer, (), solve) if check else answer
     structure = structure_of(model)
     length, force, moment = structure.length, structure.force_unit, structure.moment_unit
     section = model.strips[0].section
@@ -126,9 +136,16 @@ def _answered(
         moved: Array = (places - places[:, :1]) / np.array([length, length, 1.0])
         return moved
 
-    found = limit_of(model, accuracy, solve, units, {"path": path}, JUDGED)
+    solved: list[StaticSolution] = []
+
+    def kept(mesh: Model) -> StaticSolution:
+        solved.append(solve(mesh))
+        return solved[-1]
+
+    found = limit_of(model, accuracy, kept, units, {"path": path}, JUDGED)
+    found = confirmed(found.model, found, solved, solve)
     every = (len(found.stations) - 1) // (found.shape.shape[2] - 1)
-    return replace(found, stations=found.stations[::every]).checked(raise_on_failure)
+    return replace(found, stations=found.stations[::every])
 
 
 def settled_state(
@@ -137,10 +154,12 @@ def settled_state(
     body: str | None = None,
     increments: int = 20,
     load: Array | None = None,
+    starts: bool = False,
 ) -> tuple[Array, str]:
     """Return the coordinates (size,) in equilibrium at a driven rotation [rad], and a remark on the path.
 
     The load (size,) is by default that of the scene in full, as is its driven displacement. Errors as above.
+    Where a motion `starts` there, rigid motions that nothing resists are held until then, whatever it takes.
     """
     structure = structure_of(model)
     load = full_load(structure) if load is None else load
@@ -148,8 +167,18 @@ def settled_state(
     still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
     if still and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
-    solution = _solved(model, body, ends, None, increments, None, load=load).checked()
+    solution = _solved(model, body, ends, None, increments, None, load=load, starts=starts).checked()
     return solution.states[-1], solution.message
+
+
+def state_at_start(
+    model: Model, rotation: float | None, body: str | None = None, increments: int = 20
+) -> tuple[Array, str]:
+    """Return the state in which a motion starts: loads and drives are as their histories begin."""
+    load, led = full_load(structure_of(model), time=0.0), model.effects.find(DrivenDisplacement)
+    if led is not None:
+        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
+    return settled_state(model, rotation, body, increments, load, starts=True)
 
 
 def _solved(
@@ -163,6 +192,7 @@ def _solved(
     order: str = LOADS_FIRST,
     load: Array | None = None,
     watch: bool = False,
+    starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
@@ -186,6 +216,8 @@ def _solved(
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
+    for state in () if starts else path.states:
+        require_balance(structure, path.control.props, state.balance.residual, acting)
     return _packed(path, controls, steps, clock, None if which is None else model.body_names[which])
 
 

@@ -147,20 +147,15 @@ class Structure:
         acting = {"the weight": Gravity, "the natural strains": PreStrain}
         return " and ".join(word for word, kind in acting.items() if self.model.effects.find(kind))
 
-    @cached_property
-    def round_off(self) -> float:
-        """Return the dimensionless residual below which round-off decides.
+    def round_off(self, tangent: Symmetric) -> Array:
+        """Return the residual [N, N m] of every coordinate below which round-off decides (size,).
 
-        Displacements of order L carry an error of one unit in the last place: relative to an element of
-        length l it is a strain of L/l of it, hence a force of EA L/l (or kGA L/l, if that is part of the
-        element and larger); and a turn of the chord of L/l of it, hence a force of 12 EI L/l^3. The factor 4
-        covers the few operations between them.
+        Displacements of order L and turns of order 1 carry an error of one unit in the last place, and a
+        residual what this is worth by the entries of its row of the tangent. The factor 4 covers the few
+        operations between them. Short elements have large entries, their neighbours have not.
         """
-        e = self.elements
-        rigidity = np.maximum(e.axial_rigidity, e.shear_rigidity) if self.shear else e.axial_rigidity
-        axial = np.max(rigidity * self.length / e.length) / self.force_unit
-        bending = np.max(12.0 * e.flexural_rigidity * self.length / e.length**3) / self.force_unit
-        return float(4.0 * np.finfo(float).eps * (axial + bending))
+        terms = Symmetric(tangent.pattern, np.abs(tangent.data)).times(1.0 / self.measure)
+        return np.asarray(4.0 * np.finfo(float).eps * terms)
 
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""

@@ -10,17 +10,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.confirmed import (
+    MORE,
+    SAME_STATE,
+    Grid,
+    Trials,
+    confirmed,
+    ends_alike,
+    finer,
+    moved,
+    parameters,
+    turned,
+)
 from spline_model.design import Design, Discretisation, StripDesign
-from spline_model.errors import InvalidParameter, require_positive
+from spline_model.errors import InvalidParameter, Unsettled, require_positive
 from spline_model.path import Progress
-from spline_model.solution import ErrorEstimate, Status
+from spline_model.solution import ErrorEstimate, Status, largest
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -28,13 +40,10 @@ Found = TypeVar("Found")
 
 DEFAULT = 1e-4
 """Relative error of the answer to a design that leaves its control points open."""
-FIRST = 8
-"""Control points of the first trial of such a design."""
+FIRST, FIRST_SPANS = 8, 19
+"""Control points of the first trial of such a design, and of the first with cubic B-splines."""
 DOUBTFUL = 0.03
 """Error of such an answer that is a failure; above DEFAULT its resolution tells it."""
-MORE = 3
-"""Control points that a Bezier strip gets more for the estimate. With two more the estimated error of
-the torque was 0.3 to 3.7 times the true one on 1800 paths, with three 0.7 to 1.3 times."""
 MOST = {"bezier": 20, "bspline": 67}
 """Control points at which the search ends: round-off of a Bezier strip, 64 spans of a B-spline."""
 FIRST_GAIN = 6.0
@@ -45,24 +54,41 @@ GAINS = (2.0, 12.0)
 NOTHING = 1e-9
 """Displacement in lengths, turn [rad], torque in stiffness times 1 rad, and force in moment over length,
 below which there is none but round-off."""
-SAME_STATE = 1e-9
-"""The same of states before the end: those of increments are the same, of arcs they are not."""
+NO_STIFFNESS = 1e-3
+"""Part of its largest entry on a path below which one on the diagonal of a body's stiffness is held against
+that part: it may pass through zero."""
 SAME_END = 1e-3
 """Difference of load factors, and of rotations [rad], at which paths stop that stop at the same thing."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Search(Generic[Found]):
-    """How a search ended: the best answer with its estimated error [1] and control points, and all trials.
+@dataclass(kw_only=True)
+class Search(Generic[Found]):
+    """Which numbers of control points a design tries, and the best of them: every answer is chosen by this.
 
-    found: None, and the error inf, if no number of control points has an answer.
+    accuracy: wanted error [1]; grid: discretisation of the design, whose number of control points, or FIRST,
+    is the first trial. points: of the next trial, or of the last one when it has ``ended``; trials: that were
+    made. error: the least estimated one [1], inf where no trial had an answer, with that many control_points;
+    found: its answer.
     """
 
     accuracy: float
-    error: float
-    control_points: int
-    trials: tuple[int, ...]
-    found: Found | None
+    grid: Discretisation
+    error: float = math.inf
+    found: Found | None = None
+    ended: bool = False
+    trials: tuple[int, ...] = ()
+    points: int = field(init=False)
+    control_points: int = field(init=False)
+    levels: list[tuple[int, float]] = field(init=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        own = self.grid.control_points
+        self.points = self.control_points = FIRST if own is None else own
+
+    @property
+    def finer(self) -> int:
+        """The control points that a trial is checked against: a few more, or twice the spans."""
+        return finer(self.grid.basis, self.points)[1]
 
     @property
     def message(self) -> str:
@@ -73,6 +99,36 @@ class _Search(Generic[Found]):
             f"accuracy {self.accuracy:.3g} is not reached with up to {self.trials[-1]} control points: the "
             f"least estimated error is {self.error:.2g}, with {self.control_points}; ask for no less"
         )
+
+    def judge(self, error: float | None, found: Found | None = None) -> bool:
+        """Take the estimated error of a trial, None of one without an answer; whether it is the best so far.
+
+        Sets the points of the next trial, unless the accuracy is reached or there are no more.
+        """
+        self.trials, better = (*self.trials, self.points), False
+        if error is not None:
+            self.levels.append((self.points, error))
+            if better := error < self.error:
+                self.error, self.found, self.control_points = error, found, self.points
+        most = max(MOST[self.grid.basis], self.trials[0])
+        self.ended = self.error <= self.accuracy or self.points == most
+        if not self.ended:
+            following = self.finer if self.grid.basis == "bspline" else self._expected()
+            self.points = min(following, most)
+        return better
+
+    def _expected(self) -> int:
+        """The count at which the accuracy is expected, from the errors known so far.
+
+        The one that an estimate was made with is solved already: a count a little below costs more than it.
+        """
+        if not self.levels or self.levels[-1][0] != self.points:
+            return self.points + MORE
+        (n, error), gain = self.levels[-1], FIRST_GAIN
+        if len(self.levels) > 1:
+            before, larger = self.levels[-2]
+            gain = float(np.clip((larger / error) ** (1.0 / (n - before)), *GAINS))
+        return n + max(MORE, math.ceil(math.log(error / self.accuracy) / math.log(gain)))
 
 
 def wanted(accuracy: float | None, design: Design) -> float | None:
@@ -90,121 +146,100 @@ def wanted(accuracy: float | None, design: Design) -> float | None:
     return accuracy
 
 
-def _finer(grid: Discretisation) -> int:
-    """The control points that a discretisation is checked against: a few more, or twice the spans."""
-    return grid.points + MORE if grid.basis == "bezier" else 2 * grid.points - 3
-
-
 def search(
     design: Design,
     accuracy: float,
     attempt: Callable[[int, int], tuple[float, Found] | None],
-) -> _Search[Found]:
+) -> Search[Found]:
     """Raise the control points, from those of the design on, until the estimate is below ``accuracy``.
 
     attempt: solves with two numbers of control points and returns the estimated error of the first, and its
     answer, or None where they do not have one.
     """
-    grid = design.discretisation
-    if grid.control_points is None:
-        grid = replace(grid, control_points=FIRST)
-    most = max(MOST[grid.basis], grid.points)
-    best: _Search[Found] = _Search(
-        accuracy=accuracy, error=math.inf, control_points=grid.points, trials=(), found=None
-    )
-    levels: list[tuple[int, float]] = []
-    while True:
-        n, outcome = grid.points, attempt(grid.points, _finer(grid))
-        best = replace(best, trials=(*best.trials, n))
-        if outcome is not None:
-            levels.append((n, outcome[0]))
-            if outcome[0] < best.error:
-                best = replace(best, error=outcome[0], control_points=n, found=outcome[1])
-        if best.error <= accuracy or n == most:
-            return best
-        following = _finer(grid) if grid.basis == "bspline" else _next_count(levels, accuracy, n)
-        grid = replace(grid, control_points=min(following, most))
-
-
-def _next_count(levels: list[tuple[int, float]], accuracy: float, tried: int) -> int:
-    """The count at which the accuracy is expected, from the (count, error) known so far.
-
-    The one that an estimate was made with is solved already: a count a little below costs more than it.
-    """
-    if not levels or levels[-1][0] != tried:
-        return tried + MORE
-    (n, error), gain = levels[-1], FIRST_GAIN
-    if len(levels) > 1:
-        before, larger = levels[-2]
-        gain = float(np.clip((larger / error) ** (1.0 / (n - before)), *GAINS))
-    return n + max(MORE, math.ceil(math.log(error / accuracy) / math.log(gain)))
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=design.discretisation)
+    while not outcome.ended:
+        tried = attempt(outcome.points, outcome.finer)
+        outcome.judge(*((None,) if tried is None else tried))
+    return outcome
 
 
 def answered(
     design: Design,
     accuracy: float | None,
-    solve: Callable[[int | None, Progress | None, bool], StaticSolution],
+    solve: Callable[[Grid, Progress | None, bool], StaticSolution],
     progress: Progress | None,
     increments: int,
+    check: bool = True,
 ) -> StaticSolution:
     """A path with the control points that an accuracy takes, or else the design's.
 
-    solve: the answer with a number of control points, what is told of its increments, and whether sections
-    are by balance, as they are where paths with several numbers are compared.
+    solve: the answer with a discretisation, what is told of its increments, and whether sections are by
+    balance, as they are where paths with several numbers are compared.
+    check: whether critical points and early ends of the design's own control points are compared with those
+    of more.
     """
-    chosen = wanted(accuracy, design)
+    chosen, grid = wanted(accuracy, design), design.discretisation
     if chosen is None:
-        return solve(design.discretisation.control_points, progress, False)
+        own = (grid.basis, grid.points)
+        if not check:
+            return solve(own, progress, False)
+        return confirmed(Trials(lambda trial: solve(trial, progress if trial == own else None, False)), own)
     least = DOUBTFUL if accuracy is None else None
-    solution = _solve_accurately(design, chosen, lambda points: solve(points, None, True), least)
+    trials = Trials(lambda trial: solve(trial, None, True))
+    solution = _solve_accurately(design, chosen, trials, least)
     if progress is not None:
         progress(increments, increments)
     return solution
 
 
-def _solve_accurately(
-    design: Design, accuracy: float, solve: Callable[[int], StaticSolution], least: float | None
-) -> StaticSolution:
+def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: float | None) -> StaticSolution:
     """The path with as many control points as the accuracy takes.
 
-    solve: the answer with a number of control points. An accuracy that is not reached is the status
+    An accuracy that is not reached is the status
     NOT_CONVERGED of the best answer, or only where its error is not below ``least``: the answer's resolution
-    tells it else. A path that stops at the same thing with any number is compared up to
-    there and returned with its reason; where none is followed to the same end, it is that of the most points.
+    tells it else. A path that stops at the same thing with any number is compared up to there and returned
+    with its reason. Where no two numbers lead to the same end, cubic B-splines are tried as well, whose
+    control points are as many as a strip needs anywhere; where they do not either, it is not resolved.
     """
-    solved = cache(solve)
-
-    def attempt(fewer: int, more: int) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
-        coarse, fine = solved(fewer), solved(more)
-        if not _end_alike(coarse, fine):
-            return None
-        errors = distances(design, coarse, fine)
-        return max(errors.values()), (coarse, errors)
-
-    outcome = search(design, accuracy, attempt)
+    asked = design.discretisation
+    for basis, first in ((asked.basis, asked.control_points), ("bspline", FIRST_SPANS)):
+        grid = replace(asked, basis=basis, control_points=first)
+        attempt = partial(_attempt, design, trials, basis)
+        outcome = search(replace(design, discretisation=grid), accuracy, attempt)
+        if outcome.found is not None or asked.basis == "bspline" or asked.stretch == "consistent":
+            break
     if outcome.found is None:
-        return solved(outcome.trials[-1])
+        return confirmed(trials, (basis, outcome.trials[-1]))
     answer, errors = outcome.found
-    estimate = ErrorEstimate(
-        accuracy=accuracy,
-        **errors,
-        control_points=outcome.control_points,
-        trials=outcome.trials,
-    )
-    failed = outcome.error > max(accuracy, least or 0.0)
+    points, tried = outcome.control_points, outcome.trials
+    estimate = ErrorEstimate(accuracy=accuracy, **errors, control_points=points, trials=tried)
+    # the stiffness of a body may pass through zero: by itself it is no failure that was not asked about
+    judged = (error for name, error in errors.items() if least is None or name != "body_stiffness")
+    failed = largest(judged) > max(accuracy, least or 0.0)
     if failed and answer.status is Status.CONVERGED:
         answer = replace(answer, status=Status.NOT_CONVERGED, message=outcome.message)
     return replace(answer, estimate=estimate)
 
 
-def _end_alike(one: StaticSolution, other: StaticSolution) -> bool:
-    """Whether two paths have the same status, and where they stop early about the same end."""
-    return one.status is other.status and (one.status is Status.CONVERGED or _in_step(one, other))
+def _attempt(
+    design: Design, trials: Trials, basis: str, fewer: int, more: int
+) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
+    """The largest error of an answer, itself with all errors; None where a finer one does not end alike."""
+    coarse, fine = trials.outcome((basis, fewer)), trials.outcome((basis, more))
+    if not ends_alike(coarse, fine):
+        return None
+    if isinstance(coarse, Unsettled):
+        raise coarse
+    assert not isinstance(fine, Unsettled), "it ends alike"
+    if coarse.status is not Status.CONVERGED and not _in_step(coarse, fine):
+        return None
+    errors = distances(design, coarse, fine)
+    return largest(errors.values()), (coarse, errors)
 
 
 def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> dict[str, float]:
     """Errors of an answer against a better one by the names of ``ErrorEstimate``, each over the largest
-    magnitude on its path.
+    magnitude on its path but the stiffness of the body; nan of what there is none of.
 
     Places over the largest displacement, turns over the largest turn, section forces over the largest force
     and the largest moment. What is none but round-off is held against its unit: strip length, rad, EI/L.
@@ -217,49 +252,45 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
 
     def error(of: Callable[[StaticSolution], Array], unit: float) -> float:
         mine, right = of(answer)[rows], of(better)[rows]
-        return _relative(mine - right, right, unit)
+        return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
     return {
-        "trajectory": max(error(_moved, length), error(_turned, 1.0)),
+        "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
         "stiffness": error(lambda path: path.stiffness, moment),
-        "section_forces": max(error(lambda path: path.bending_moment, moment), forces),
+        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows]),
+        "energy": error(lambda path: path.energies.sum(axis=1), moment),
+        "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
         "stress": error(lambda path: _stress(design, path), stress),
     }
 
 
+def _by_state(stiffness: Array, better: Array) -> float:
+    """Largest error of entries of a body's stiffness (S, 3, 3) over the root of the product of their diagonal
+    entries in that state: they fall by powers of ten along a path. nan where there is none."""
+    size = np.abs(np.diagonal(better, axis1=1, axis2=2))
+    size = np.sqrt(np.fmax(size, NO_STIFFNESS * np.fmax.reduce(size, axis=0)))
+    shares = np.abs(stiffness - better) / (size[:, :, None] * size[:, None, :])
+    return float(np.fmax.reduce(shares, axis=None))
+
+
 def _in_step(one: StaticSolution, other: StaticSolution) -> bool:
     """Whether two paths have the states of the same load factors and rotations, about so where they end."""
-    mine, others = (
-        np.stack((p.load_factor, p.rotation if p.driven else p.load_factor)) for p in (one, other)
-    )
+    mine, others = parameters(one), parameters(other)
     if mine.shape != others.shape:
         return False
     apart = np.abs(mine - others)
     return bool(apart[:, :-1].max(initial=0.0) <= SAME_STATE and apart[:, -1].max() <= SAME_END)
 
 
-def _relative(apart: Array, right: Array, unit: float) -> float:
-    """Largest of the differences over the largest that is right, or over the unit; 0 of nothing."""
-    if right.size == 0 or np.isnan(right).all():
-        return 0.0
-    scale = float(np.abs(right).max())
-    return float(np.abs(apart).max()) / (scale if scale > NOTHING * unit else unit)
-
-
-def _moved(path: StaticSolution) -> Array:
-    """Displacements x + iy of the bodies, or of the strips' ends where there are none (S, B) [m]."""
-    places = np.stack(list(path.bodies.values()), axis=1) if path.bodies else path.shape[:, :, -1]
-    moved = places - places[0]
-    return np.asarray(moved[..., 0] + 1j * moved[..., 1])
-
-
-def _turned(path: StaticSolution) -> Array:
-    """Rotations of the bodies that are not driven (S, B) [rad]."""
-    if not set(path.bodies) - {path.driven}:
-        return np.zeros((len(path.load_factor), 0))
-    return np.stack([at[:, 2] for name, at in path.bodies.items() if name != path.driven], axis=1)
+def relative(apart: Array, right: Array, unit: Array) -> Array:
+    """Largest of D differences (D, ...) over the largest that is right, or over their units (D,); nan of
+    nothing."""
+    if right.size == 0:
+        return np.full(len(right), np.nan)
+    off, scale = (np.fmax.reduce(np.abs(each).reshape(len(each), -1), axis=1) for each in (apart, right))
+    return np.asarray(off / np.where(scale > NOTHING * unit, scale, unit))
 
 
 def _modulus(strip: StripDesign) -> float:

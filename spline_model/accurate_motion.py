@@ -1,5 +1,7 @@
 """A motion to a wanted accuracy: steps and control points until the estimated error is below it.
 
+It is that of every coordinate: rotations of all bodies, and places of bodies and free ends over a strip.
+
 Runs with other steps differ by what the steps are worth, runs with other strips by what the
 control points are worth. Free motions take the leapfrog, whose steps resolve the axial waves that
 a release excites. With damping, loads, drives or massless strips the energy-consistent scheme converges
@@ -46,7 +48,7 @@ LARGEST_PART, SMALLEST_PART = 0.7, 0.1
 EXPLICIT_RATIO = 4.0 / 3.0
 """Coarse explicit step over the fine one."""
 ORDER = 2
-"""Order of the leapfrog in the rotation; it is four in the phase of the waves alone."""
+"""Order of the leapfrog in the bodies' motion; it is four in the phase of the waves alone."""
 DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
@@ -64,6 +66,11 @@ class Task:
     drive: DrivenRotation | None
     duration: float
     solve: Callable[..., Trajectory]
+
+    @property
+    def length(self) -> float:
+        """Length of the longest strip [m], in which displacements count."""
+        return max(strip.length for strip in self.mechanism.design.strips)
 
     @cached_property
     def frequency(self) -> float:
@@ -106,7 +113,7 @@ class Task:
 
 
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
-    """The motion whose estimated error of the rotation is below ``accuracy`` [rad].
+    """The motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a strip.
 
     Control points are raised from those of the mechanism on, and the slide stiffness with
     them. The estimate is the correction that the order of the scheme and two control points
@@ -128,7 +135,8 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
             control_points=n,
             runs=runs.count,
         )
-        stuck = estimate.time > SHARE * accuracy
+        # a motion that stops may go on with more control points; one whose steps do not converge does not
+        stuck = SHARE * accuracy < estimate.time < math.inf
         if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
             return _answer(fine, estimate, every)
         n += MORE
@@ -217,21 +225,21 @@ class _Runs:
     def solved(self, n: int, fineness: float) -> tuple[Trajectory, Array, float]:
         """The fine run, and what coarser ones say that it lacks.
 
-        That is the correction (S,) of its rotation by the order of the scheme [rad], and how far the runs
-        depart from that order [rad].
+        That is the correction (S, K) of its coordinates by the order of the scheme, and how far the runs
+        depart from that order.
         """
         steps = self.steps(n, fineness)
         fine, coarser = self.run(n, steps), self.coarser(n, fineness)
-        change = self.rotation(fine) - coarser
+        change = self.moves(fine) - coarser
         if self.explicit:
             return fine, change / (EXPLICIT_RATIO**ORDER - 1.0), DOUBT * _largest(change)
-        before = coarser - self.rotation(self.run(n, steps // 4))
+        before = coarser - self.moves(self.run(n, steps // 4))
         return fine, change / 3.0, _largest(before - 4.0 * change) / 4.0
 
     def coarser(self, n: int, fineness: float) -> Array:
-        """Rotation (S,) of the second finest run [rad]."""
+        """Coordinates (S, K) of the second finest run."""
         steps = self.steps(n, fineness)
-        return self.rotation(self.run(n, 3 * steps // 4 if self.explicit else steps // 2))
+        return self.moves(self.run(n, 3 * steps // 4 if self.explicit else steps // 2))
 
     def steps(self, n: int, fineness: float) -> int:
         """Steps of the finest run between two instants."""
@@ -239,11 +247,15 @@ class _Runs:
             return FINE * math.ceil(self.spacing / (FINE * fineness * self.critical(n)))
         return int(fineness)
 
-    def rotation(self, run: Trajectory) -> Array:
-        """Rotation at the instants (S,) [rad]; nan for a run that stopped."""
+    def moves(self, run: Trajectory) -> Array:
+        """Rotations of all bodies [rad], places of bodies and free ends over a strip [1], at the instants.
+
+        They are (S, K); nan for a run that stopped.
+        """
         if run.status is not Status.CONVERGED:
-            return np.full(self.instants + 1, np.nan)
-        return run.rotation[:: (len(run.time) - 1) // self.instants]
+            return np.array(math.nan)
+        turns, places = run.moves((len(run.time) - 1) // self.instants)
+        return np.hstack((turns, places.reshape(len(places), -1) / self.task.length))
 
     def _run(self, n: int, steps: int) -> Trajectory:
         self.count += 1

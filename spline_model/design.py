@@ -16,6 +16,7 @@ from spline_model.effects.boundary import GROUND
 from spline_model.effects.elastic import MEASURES
 from spline_model.errors import (
     InvalidParameter,
+    is_finite,
     require_choice,
     require_count,
     require_not_negative,
@@ -175,6 +176,10 @@ class StripDesign:
         require_positive("youngs_modulus", self.youngs_modulus, "Pa")
         require_positive("density", self.density, "kg/m^3")
         require_positive("length", self.chord, "m")
+        if not (is_finite(self.poisson_ratio) and -1.0 < self.poisson_ratio <= 0.5):
+            raise InvalidParameter(
+                "poisson_ratio", self.poisson_ratio, "a number above -1 and at most 0.5 [1]"
+            )
         if not abs(self.rise) < self.chord / 2:
             raise InvalidParameter("rise", self.rise, f"less than half the chord, {self.chord / 2:g} [m]")
 

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import MORE, MOST
+from spline_model.accuracy import MOST
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
-from spline_model.content import unresolved, with_companion
+from spline_model.confirmed import MORE
+from spline_model.content import starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
     InvalidParameter,
     require_choice,
     require_finite,
+    require_kind,
     require_positive,
 )
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import settle
 from spline_model.motion import energy_consistent, leapfrog, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
@@ -30,7 +32,6 @@ from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
-from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 
 __all__ = ["INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
@@ -42,6 +43,8 @@ INTEGRATORS: dict[str, Callable[..., Moves]] = {
     leapfrog.NAME: leapfrog.Stepper,
 }
 """What makes of a start what advances it."""
+MOST_IN_MOTION = 14
+"""Control points at which a motion that stops is given up, where their number is left open."""
 STEP = 5e-5
 """Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
@@ -72,7 +75,8 @@ def solve_motion(
     and driven displacements likewise. Then the driven rotation lets go, and so does a driven
     displacement without a history; one with a history goes on holding. Loads go on as value times
     history(t), constant before its first and after its last time. start None: no rotation is driven;
-    under loads without a history such a mechanism stands still.
+    under loads without a history such a mechanism stands still. Rigid motions that nothing holds are held
+    until the start.
 
     Parameters
     ----------
@@ -83,72 +87,101 @@ def solve_motion(
     integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
         are dynamic), or for free scenes of which no strip is damped or massless "leapfrog", the
         fastest.
-    accuracy : wanted error of the rotation over the run [rad] instead of a step: steps and control
-        points are chosen, and the trajectory has its ``estimate``.
+    accuracy : wanted error over the run, of rotations [rad] and of places over the longest strip [1],
+        instead of a step: steps and control points are chosen, and the trajectory has its ``estimate``.
     records : largest number of records; default every step, or with an accuracy 128 a swing or more.
-    check : whether a motion with two control points more says how far the rotation is uncertain:
-        ``rotation_error``, and in ``resolution`` where that is much. It costs about another motion, or
-        less; none is made with an accuracy, which has its own estimate, or with ``after``.
+    check : whether companions with two control points more and with a quarter of the step say how far the
+        motion is uncertain: ``rotation_error``, ``displacement_error``, and in ``resolution`` where that is
+        much. They cost about five other motions, or one by the leapfrog where it can be used; none is made
+        with an accuracy, which has its own estimate, or with ``after``.
     after : a motion of this mechanism to go on with from its last record, instead of ``start``;
         time, work, losses and the clock of loads and drives run on.
 
+    Where the control points are left open and the start is not reached or the motion stops, more are tried.
+
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
+    require_mechanism(mechanism)
+    require_kind("check", check, bool, "True or False")
+    if drive is not None:
+        require_kind("drive", drive, DrivenRotation, "a DrivenRotation or None")
+    if after is not None:
+        require_kind("after", after, Trajectory, "a motion of this mechanism or None")
     _check(integrator, duration, start, step, accuracy)
     if accuracy is not None and after is not None:
         raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
-    laps, body = Laps(), mechanism.design.body_named(body)
-    mechanism, held = _settled(mechanism, start, body) if after is None else (mechanism.in_motion(), None)
+    body = mechanism.design.body_named(body)
     if accuracy is not None:
+        reached, _ = next(_settled(mechanism, start, body))
         task = Task(
-            mechanism=mechanism, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
+            mechanism=reached, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
         )
         return solve_accurately(task, accuracy, records)
+    asked = _Asked(body, drive, duration, step, records, integrator)
+    if after is not None:
+        return _moved(mechanism.in_motion(), None, asked, Laps(), after).counted_on(after)
+    trajectory = _followed(mechanism, start, asked)
+    return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
+
+
+class _Asked(NamedTuple):
+    """What ``solve_motion`` is asked for beside the mechanism and its start."""
+
+    body: str
+    drive: DrivenRotation | None
+    duration: float
+    step: float | None
+    records: int | None
+    integrator: str
+
+
+def _followed(mechanism: Mechanism, start: float | None, asked: _Asked) -> Trajectory:
+    """The motion; where control points are left open and it stops, with more of them, or the longest one."""
+    found: list[Trajectory] = []
+    laps = Laps()
+    for chosen, held in _settled(mechanism, start, asked.body):
+        found.append(_moved(chosen, held, asked, laps))
+        if found[-1].status is Status.CONVERGED:
+            return found[-1]
+        if found[-1].control_points >= MOST_IN_MOTION:
+            break
+        laps = Laps()
+    return max(found, key=lambda each: float(each.time[-1]))
+
+
+def _moved(
+    mechanism: Mechanism, held: Later | None, asked: _Asked, laps: Laps, after: Trajectory | None = None
+) -> Trajectory:
+    """The motion with given control points, from where it is held or after another one."""
     laps.lap("start")
-    scene = mechanism.released()
+    scene, drive, integrator = mechanism.released(), asked.drive, asked.integrator
     motion = set_in_motion(compile_scene(scene if drive is None else scene.with_effects(drive)))
     laps.lap("compile")
     begun = _begin(motion, held, after)
     laps.lap("start")
-    trajectory = _run(mechanism, begun, body, scene, (duration, step, records), integrator, laps)
-    if after is not None:
-        return trajectory.counted_on(after)
-    return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
-
-
-def _run(
-    mechanism: Mechanism,
-    begun: Start,
-    body: str,
-    scene: Scene,
-    asked: tuple[float, float | None, int | None],
-    integrator: str,
-    laps: Laps,
-) -> Trajectory:
-    """The motion from its start on; scene: without drives; asked: duration, step and records."""
-    (duration, step, records), layout = asked, begun.motion.system.layout
     if integrator != "leapfrog":
-        begun.motion.require_material()
-    if step is None:
-        step = _default_step(integrator, begun, duration)
-    steps = Steps.of(duration, step, records, layout.size + layout.coordinate_count + 7)
+        motion.require_material()
+    step = _default_step(integrator, begun, asked.duration) if asked.step is None else asked.step
+    width = motion.system.layout.size + motion.system.layout.coordinate_count + 7
+    steps = Steps.of(asked.duration, step, asked.records, width)
     laps.lap("compile")
     stepper, ran = INTEGRATORS[integrator], integrator
-    if integrator == "energy" and begun.motion.massless:
+    if integrator == "energy" and motion.massless:
         stepper, ran = quasi_static.stepper, quasi_static.NAME
     run = carry(stepper(begun), steps)
     laps.lap("solve")
     return Trajectory.of(
-        begun.motion.system,
+        motion.system,
         run,
         effects=mechanism.effects,
-        body=body,
+        body=asked.body,
         settings={
             "integrator": ran,
             "step_s": steps.step,
             "slide_stiffness": mechanism.design.discretisation.slide,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
+        still=partial(starts_still, begun, mechanism.design),
         laps=laps,
     )
 
@@ -169,7 +202,7 @@ def checked(
     body: str | None = None,
     drive: DrivenRotation | None = None,
 ) -> Trajectory:
-    """A motion with what two control points more make of it: ``rotation_error`` and ``resolution``.
+    """A motion with what companions make of it: its estimated errors and its ``resolution``.
 
     Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
     """
@@ -187,21 +220,26 @@ def checked(
     return with_companion(task, trajectory)
 
 
-def _settled(mechanism: Mechanism, start: float | None, body: str) -> tuple[Mechanism, Later]:
+def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[tuple[Mechanism, Later]]:
     """The mechanism as it swings, and the states of ``settle`` at whose end it starts.
 
-    Where its control points are left open it gets more until statics reaches the start, or ConvergenceError.
+    Where its control points are left open more of them follow. ConvergenceError if statics reaches the start
+    with none of them.
     """
-    grid, chosen = mechanism.design.discretisation, mechanism.in_motion()
-    points, most = grid.points, grid.points if grid.control_points is not None else MOST[grid.basis]
-    while True:
+    grid, failed, reached = mechanism.design.discretisation, None, False
+    most = grid.points if grid.control_points is not None else MOST[grid.basis]
+    for points in sorted({*range(grid.points, most, MORE), most}):
+        chosen = mechanism if points == grid.points else mechanism.with_control_points(points)
+        chosen = chosen.in_motion()
         try:
-            return chosen, settle(chosen.at_start(), start, body=body)
-        except ConvergenceError:
-            if points == most:
-                raise
-            points = min(points + MORE, most)
-            chosen = mechanism.with_control_points(points).in_motion()
+            held = settle(chosen.at_start(), start, body=body, starts=True)
+        except ConvergenceError as error:
+            failed = failed or error
+            continue
+        reached = True
+        yield chosen, held
+    if failed is not None and not reached:
+        raise failed
 
 
 def _begin(motion: Motion, held: Later | None, after: Trajectory | None) -> Start:

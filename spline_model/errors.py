@@ -20,6 +20,19 @@ class InvalidParameter(ValueError):
         return f"{name}: got {got!r}, expected {expected}"
 
 
+class Unsettled(InvalidParameter):
+    """A scene without an equilibrium under all of its weight and pre-strain.
+
+    Attributes
+    ----------
+    critical_points : met while they grew, the last one where they could not go on, if that was found.
+    """
+
+    def __init__(self, message: str, critical_points: tuple[Any, ...]) -> None:
+        super().__init__("scene", message, "an equilibrium under all of its weight and pre-strain")
+        self.critical_points = critical_points
+
+
 class ConvergenceError(RuntimeError):
     """A path that could not be followed to its end.
 
@@ -88,6 +101,13 @@ def require_count(name: str, value: int, lowest: int, highest: int | None = None
     if not is_count or value < lowest or (highest is not None and value > highest):
         upper = "" if highest is None else f" and <= {highest}"
         raise InvalidParameter(name, value, f"an integer >= {lowest}{upper}")
+
+
+def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
+    """Refuse anything but an object of this kind; one that fills pages is named by its own."""
+    if not isinstance(value, kind):
+        told = value if value is None or isinstance(value, int | float | str | dict) else type(value).__name__
+        raise InvalidParameter(name, told, expected)
 
 
 def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:

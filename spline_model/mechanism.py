@@ -22,7 +22,8 @@ from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, require_kind
+from spline_model.rigid import propped
 from spline_model.scene import Body, Effect, Scene, Strip
 
 HERE = (0.0, 0.0)
@@ -68,6 +69,14 @@ class Mechanism:
             return self
         return self.with_discretisation(control_points=control_points)
 
+    def on(self, basis: str, control_points: int) -> Self:
+        """The same mechanism with that basis and so many control points a strip, and what goes with them."""
+        grid = self.design.discretisation
+        if (basis, control_points) == (grid.basis, grid.points):
+            return self.with_control_points(control_points)
+        own = {"axial_modes": None, "gauss_points": None}
+        return self.with_discretisation(basis=basis, control_points=control_points, **own)
+
     def in_motion(self) -> Self:
         """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
 
@@ -88,6 +97,15 @@ class Mechanism:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
         return self.with_effects(drive)
+
+    def propped(self, rotation: float | None = None, body: str | None = None) -> Self:
+        """The same with props where rigid motions are free beside a drive to a rotation, if there is one."""
+        drives = [] if rotation is None else [DrivenRotation(body=self.design.body_named(body), angle=0.0)]
+        known, made = len(drives), propped(self.with_effects(*drives))
+        if len(made.effects) == len(self.scene.effects) + known:
+            return self
+        props = made.effects[len(self.scene.effects) + known :]
+        return replace(self, scene=self.with_effects(*props))
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
@@ -158,3 +176,9 @@ def compliant_mechanism(
         effects=(*build(names, given, design), *attachments),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
+
+
+def require_mechanism(value: Any) -> None:
+    """Refuse what is no mechanism of this package, such as one of the elements."""
+    made = "what cross_axis_pivot or compliant_mechanism of spline_model returns"
+    require_kind("mechanism", value, Mechanism, made)

@@ -16,11 +16,12 @@ from spline_model.compile import System, compile_scene
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
+from spline_model.rigid import Unheld, propped, require_unborne
 from spline_model.sections import STATIONS
 from spline_model.solution import FrequencyEstimate, Later
 from spline_model.statics import solve_mechanism
@@ -32,15 +33,24 @@ SLIDE_SHARE = 0.5
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""
+ROUND_OFF = 64.0
+"""Units in the last place that a sum of terms that cancel is uncertain by."""
 MASSLESS = 1e-13
 """Directions with less than this of the largest modal mass follow the others statically."""
+
+GRAIN = 1e-13
+"""Part of the largest squared frequency below which the smallest is round-off of it."""
+SLOW = 1e-8
+"""Part of the largest 1 / w^2 down to which modes count as slow."""
+ROUND_OFF = 1e-14
+"""Squared frequency of a rigid motion, over the sum of the terms that cancel in its stiffness."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
     """Natural modes, lowest first.
 
-    frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi);
+    frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi), 0 of a rigid motion;
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
     name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
@@ -78,8 +88,11 @@ def natural_frequencies(
     on as a dead moment (``held=True`` fixes it), and the driven displacements without a history, whose
     forces act on. accuracy: wanted relative error of all frequencies [1], for which the control points are
     raised and the modes have their ``estimate``; default 1e-4 without a number of control points, else just
-    that number. Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
+    that number. Where nothing holds the mechanism against its loads in full, the state is that in which its
+    motion starts, with loads and drives as their histories begin.
+    Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
     """
+    require_mechanism(pivot)
     require_count("count", count, 1)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
@@ -124,7 +137,7 @@ def _accurate_modes(
 
 def _apart(frequency: Array, better: Array) -> float:
     """Largest relative difference of frequencies."""
-    least = NEARLY_NONE * float(np.abs(better).max(initial=0.0))
+    least = max(NEARLY_NONE * float(np.abs(better).max(initial=0.0)), np.finfo(float).tiny)
     return float((np.abs(frequency - better) / np.maximum(np.abs(better), least)).max(initial=0.0))
 
 
@@ -138,7 +151,10 @@ def _modes(
         scene = scene.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
     system = compile_scene(scene)
     layout = system.layout
-    z = static_state(mechanism, rotation, increments, body)[: layout.size]
+    try:
+        z = static_state(mechanism, rotation, increments, body)[: layout.size]
+    except Unheld:  # under the loads in full: about the start of its motion
+        z = static_state(mechanism.at_start(), rotation, increments, body, starts=True)[: layout.size]
     values, vectors, share = linear_modes(system, z, system.mass)
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
@@ -162,29 +178,51 @@ def _modes(
 
 
 def static_state(
-    mechanism: Mechanism, rotation: float | None = None, increments: int = 20, body: str | None = None
+    mechanism: Mechanism,
+    rotation: float | None = None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
 ) -> Array:
     """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
 
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
-    pre-strain act in full; the multipliers of displacements that let go are left out.
+    pre-strain act in full; the multipliers of displacements that let go are left out. starts: as in
+    ``solve_mechanism``.
     """
-    z = settle(mechanism, rotation, increments, body).array[-1]
+    mechanism = mechanism.propped(rotation, body)
+    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
-    kept = [i for i, each in constraints if not (isinstance(each, DrivenDisplacement) and each.lets_go)]
+    kept = [
+        i
+        for i, each in constraints
+        if not (getattr(each, "prop", False) or (isinstance(each, DrivenDisplacement) and each.lets_go))
+    ]
     return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
 
 
 def settle(
-    mechanism: Mechanism, rotation: float | None, increments: int = 20, body: str | None = None
+    mechanism: Mechanism,
+    rotation: float | None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
 ) -> Later:
     """The unknowns of the path to that state, with all multipliers."""
     loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
     if rotation is not None or loaded:
-        return solve_mechanism(mechanism, rotation=rotation, increments=increments, body=body).unknowns
-    return follow(compile_scene(mechanism.scene), []).unknowns
+        return solve_mechanism(
+            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
+        ).unknowns
+    system = compile_scene(propped(mechanism.scene))
+    path = follow(system, [])
+    if not starts:
+        require_unborne(system, path.reactions)
+    return path.unknowns
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
@@ -207,11 +245,23 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
     inertia = by.T @ mass @ by
     free = _without_massless(free, stiffness, inertia)
-    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free)
+    rigid = len(propped(system.scene).effects) - len(system.scene.effects)
+    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     shapes = free @ vectors
+    values = np.where(np.abs(values) > _round_off(stiffness, shapes), values, 0.0)
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
-    share = np.einsum("im,ij,jm->m", shapes, slide, shapes) / np.abs(strain)
+    slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)
+    share = np.divide(slid, np.abs(strain), out=np.zeros_like(slid), where=values != 0.0)
     return values, by @ shapes, share
+
+
+def _round_off(stiffness: Array, shapes: Array) -> Array:
+    """What squared frequencies of shapes of unit modal mass are uncertain by: terms that cancel in them.
+
+    A rigid motion is all cancellation: what is left of it is no frequency, and neither sign is a verdict.
+    """
+    terms = np.einsum("im,ij,jm->m", np.abs(shapes), np.abs(stiffness), np.abs(shapes))
+    return np.asarray(ROUND_OFF * np.finfo(float).eps * terms)
 
 
 def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
@@ -240,20 +290,26 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
     return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
 
 
-def _sorted_modes(stiffness: Array, mass: Array) -> tuple[Array, Array]:
-    """Squared frequencies and shapes of unit modal mass, lowest first.
+def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Array]:
+    """Squared frequencies and shapes of unit modal mass, lowest first; 0 of at most so many rigid motions.
 
-    About a stable state by M x = K x / w^2, in which the lowest modes are the largest and keep
-    their digits beside axial ones a thousand times as fast.
+    Slow modes by M x = K x / w^2, in which they are the largest and keep their digits beside axial ones many
+    thousand times as fast; K is shifted by a part of M where it is not positive definite. Fast ones by
+    K x = w^2 M x.
     """
-    try:
-        inverse, vectors = eigh(mass, stiffness)
-    except np.linalg.LinAlgError:  # K is not positive definite
-        inverse = np.zeros(1)
-    if not inverse[0] > 0.0:
-        values, vectors = eigh(stiffness, mass)
-        return np.asarray(values), np.asarray(vectors)
-    return 1.0 / inverse[::-1], vectors[:, ::-1] / np.sqrt(inverse[::-1])
+    values, vectors = (np.asarray(found) for found in eigh(stiffness, mass))
+    shift = 0.0
+    if values[0] <= GRAIN * values[-1]:
+        shift = 2.0 * abs(values[0]) + GRAIN * values[-1]
+    inverse, slow = eigh(mass, stiffness + shift * mass)
+    kept = np.flatnonzero(inverse[::-1] > SLOW * inverse[-1])
+    values[kept] = 1.0 / inverse[::-1][kept] - shift
+    vectors[:, kept] = slow[:, ::-1][:, kept] / np.sqrt(inverse[::-1][kept])
+    loose = np.argsort(np.abs(values))[:rigid]
+    size = np.abs(vectors[:, loose])
+    least = ROUND_OFF * (np.einsum("im,ij,jm->m", size, np.abs(stiffness), size) + shift)
+    values[loose[np.abs(values[loose]) <= least]] = 0.0
+    return values, vectors
 
 
 def _without_massless(free: Array, stiffness: Array, mass: Array) -> Array:

@@ -15,10 +15,17 @@ Array = NDArray[np.float64]
 Change = Callable[[Array, float], tuple[Array, float]]
 
 TOLERANCE = 1e-11
-"""Largest residual of a solved state, in EI/L^2, EI/L, L and rad."""
+"""Largest residual of a solved state, in EI/L^2, EI/L, L and rad of the longest and the stiffest strip."""
 FLOOR = 1e-8
-"""Below this a residual that Newton no longer halves is the round-off of the residual itself
-(it grows with EA L^2 / EI in the paper's stretch form); above it, that is a failure."""
+"""The same where neither residual nor correction shrinks: the round-off of the residual, which grows with
+EA L^2 / EI in the paper's stretch form, over a stiffness that vanishes."""
+LAST = 1e-6
+"""Largest correction, in lengths and rad, behind which a residual below its tolerance tells of equilibrium:
+what is left is the square of the correction. The residual alone does not tell, where a strip is softer by
+orders than the one in whose units it is measured."""
+ROUND_OFF = 1e-9
+"""Corrections that are smaller and no longer shrink are round-off, whatever the residual: short strips
+between long ones answer the last digit of a place with large forces in balance, which move nothing."""
 MOST_ITERATIONS = 15
 """From a tangent predictor Newton takes two to four; more than this is a wrong start."""
 
@@ -57,29 +64,39 @@ class Newton:
 
 
 def solve(work: Followed, start: Array, load_factor: float, change: Change | None = None) -> Newton:
-    """Newton from ``start``, until the residual is below TOLERANCE.
+    """Newton from ``start``, until residual and correction are small or corrections no longer shrink.
 
     change: of the unknowns and of the load factor, from both; by default the latter is fixed.
     """
     z, energies, reason = start.copy(), (np.nan, np.nan), ""
     norms: list[float] = []
+    before, last = np.inf, (z, load_factor)
     for iteration in range(MOST_ITERATIONS + 1):
         energies = work.evaluate(z, load_factor)
         norms.append(work.norm())
-        stalled = len(norms) > 1 and norms[-1] > 0.5 * norms[-2]
-        if norms[-1] <= TOLERANCE or (stalled and norms[-1] <= FLOOR):
+        if len(norms) > 1 and norms[-2] <= TOLERANCE and not norms[-1] <= TOLERANCE:
+            z, load_factor = last  # a correction that spoils what was balanced: nothing is stiff along it
+            energies = work.evaluate(z, load_factor)
             break
         if not np.isfinite(norms[-1]):
             reason = "the residual is not finite"
             break
-        if iteration == MOST_ITERATIONS:
-            reason = f"no convergence in {MOST_ITERATIONS} iterations (residual {norms[-1]:.1e})"
+        if norms[-1] <= TOLERANCE and before <= LAST:
             break
         try:
             moved, more = change(z, load_factor) if change else (work.solve(-work.gradient), 0.0)
         except np.linalg.LinAlgError as error:
             reason = str(error)
             break
+        size = work.size(moved)
+        floored = norms[-1] <= FLOOR and len(norms) > 1 and norms[-1] > 0.5 * norms[-2]
+        stalled = size > 0.5 * before and (size <= ROUND_OFF or floored)
+        if stalled or (norms[-1] <= TOLERANCE and size <= ROUND_OFF):
+            break
+        if iteration == MOST_ITERATIONS:
+            reason = f"no convergence in {MOST_ITERATIONS} iterations (residual {norms[-1]:.1e})"
+            break
+        last, before = (z, load_factor), size
         z, load_factor = z + moved, load_factor + more
         work.counters.newton_iterations += 1
     return Newton(z=z, load_factor=load_factor, energies=energies, norms=tuple(norms), reason=reason)

@@ -14,7 +14,7 @@ from spline_model.continuation.followed import Point
 from spline_model.continuation.follower import Follower, equilibrium, first_point
 from spline_model.continuation.point import stand
 from spline_model.continuation.watch import BRANCHES, Watch
-from spline_model.errors import require_choice
+from spline_model.errors import InvalidParameter, require_choice
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.reduced.states import by_state
@@ -95,8 +95,6 @@ class _Track:
 
     def advance(self) -> str:
         """One increment in steps, and on the elements on from there; returns why it failed, or nothing."""
-        if self.watch.first is None:
-            self.watch.first = (float(self.factors[0]), self._z()[0])
         if self.follower is None:
             self.follower = Follower(self.watch, self._point(self.states - 1), ())
         follower, known, before = self.follower, len(self.follower.points), self.done - self.follower.done[-1]
@@ -163,7 +161,10 @@ class _Track:
     def _point(self, state: int) -> Point:
         """A state as a point to go on from."""
         z, factor = self._z()[state], float(self._rows("load_factor")[state])
-        return stand(self.work, z, factor, self.work.evaluate(z, factor))
+        try:
+            return stand(self.work, z, factor, self.work.evaluate(z, factor))
+        except np.linalg.LinAlgError as error:
+            raise InvalidParameter("scene", str(error), "strips that can move, but not freely") from error
 
     def path(self, message: str) -> Path:
         """What was followed, told what it is watched for."""

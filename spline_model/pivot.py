@@ -19,7 +19,7 @@ from spline_model.design import (
     swinging_slide_stiffness,
 )
 from spline_model.effects.registry import DEFAULT_EFFECTS
-from spline_model.errors import InvalidParameter, require_positive
+from spline_model.errors import InvalidParameter, require_finite, require_positive
 from spline_model.mechanism import Mechanism, compliant_mechanism
 
 __all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "swinging_slide_stiffness"]
@@ -152,6 +152,12 @@ def _clamps_at_rest(
 ) -> list[tuple[complex, complex]]:
     """Clamped points x + iy of each strip, from the ground to the body, crossing at r L."""
     require_positive("length", length, "m")
+    for name, value, unit in (
+        ("inclination", inclination, "rad"),
+        ("crossing_ratio", crossing_ratio, "1"),
+        ("orientation", orientation, "rad"),
+    ):
+        require_finite(name, value, unit)
     if not 0 < inclination < math.pi / 2:
         raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
     if not 0 < crossing_ratio < 1:

@@ -56,7 +56,7 @@ class Turn:
         """
         branch, total = self.branch, self.increments + len(self.rotations)
         whole = compile_scene(self.driven(0.0))
-        turned = compile_scene(_steady(self.driven(self._largest)))
+        turned = compile_scene(steady(self.driven(self._largest)))
         self.laps.lap("compile")
         factors = np.linspace(0.0, 1.0, self.increments + 1)[1:]
         before = self._part(whole, list(factors), None, branch, 0, total)
@@ -127,7 +127,7 @@ class Turn:
         return follow(system, factors, told, start=start, branch=branch, method=self.method)
 
 
-def _steady(scene: Scene) -> Scene:
+def steady(scene: Scene) -> Scene:
     """The scene with loads and driven displacements in full at any load factor."""
     timed = Sized | DrivenDisplacement
     effects = (replace(e, steady=True) if isinstance(e, timed) else e for e in scene.effects)

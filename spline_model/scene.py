@@ -127,8 +127,12 @@ class Scene:
     @property
     def driven_row(self) -> int | None:
         """Index in z of the driven rotation's torque, if there is one."""
-        drives = (i for i, each in enumerate(self.of(Constraint)) if isinstance(each, DrivenRotation))
-        return next((self.layout.multipliers[i][0] for i in drives), None)
+        turns = (
+            i
+            for i, each in enumerate(self.of(Constraint))
+            if isinstance(each, DrivenRotation) and not each.prop
+        )
+        return next((self.layout.multipliers[i][0] for i in turns), None)
 
     @cached_property
     def clamps(self) -> dict[tuple[str, str], slice]:

@@ -15,6 +15,7 @@ from spline_model.effects import GROUND, MixedStretching
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.motion.start import axial_rigidity
+from spline_model.scene import Scene
 from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 
 Array = NDArray[np.float64]
@@ -54,8 +55,12 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     Shear force and reactions are those of balance with the clamps: exact but for the solver's
     residual. N and M follow from the strains and show the error of too few control points.
     """
-    system = compile_scene(mechanism.scene)
-    return _fields(mechanism, system, _known(system, states), moving=False)
+    return _static_fields(mechanism, mechanism.scene, states)
+
+
+def mode_fields(mechanism: Mechanism, states: Array) -> StripFields:
+    """Fields of the static states (S, N) that natural modes are about: without what lets go in a motion."""
+    return _static_fields(mechanism, mechanism.released(), states)
 
 
 def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
@@ -67,9 +72,14 @@ def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
     at a free one but for that error. Axial forces are those of the shape, as some integrators
     keep none; of inextensible strips those that the states hold.
     """
-    system = compile_scene(mechanism.scene)
+    system = compile_scene(mechanism.released())
     known = _with_axial_forces(system, _known(system, states))
     return _fields(mechanism, system, known, moving=True)
+
+
+def _static_fields(mechanism: Mechanism, scene: Scene, states: Array) -> StripFields:
+    system = compile_scene(scene)
+    return _fields(mechanism, system, _known(system, states), moving=False)
 
 
 def _known(system: System, states: Array) -> Array:

@@ -33,7 +33,7 @@ from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import Problem, Space
 from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import linear_modes, static_state
 from spline_model.motion.arrays import zeros
 from spline_model.motion.moves import Steps, carry
@@ -220,6 +220,7 @@ def solve_impulses(
 
     Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
     """
+    require_mechanism(pivot)
     mechanism = pivot.in_motion()
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
@@ -244,6 +245,7 @@ def solve_impulses(
         body=body,
         settings=settings,
         unresolved=partial(_resolution, solver, steps.step),
+        still=lambda: False,
         laps=laps,
     )
 

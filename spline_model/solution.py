@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property, partial
@@ -16,7 +17,15 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ERRORS = ("trajectory", "torque", "stiffness", "section_forces", "stress")
+ERRORS = (
+    "trajectory",
+    "torque",
+    "stiffness",
+    "body_stiffness",
+    "energy",
+    "section_forces",
+    "stress",
+)
 """What an accuracy of a static path is about."""
 TORQUE_SHARE = 4.5
 """Error of torque and energy over the squared moment defect, at most: 2.3 to 4.3 over crossing ratios
@@ -52,7 +61,8 @@ class CriticalPoint:
     back; "bifurcation" otherwise.
     load_factor; rotation of the driven body [rad], nan without one; z (N,) unknowns; mode (Q,)
     change of the coordinates, its largest entry one strip length or 1 rad (for a limit of the
-    torque the turn at fixed loads); inertia: that of the tangent after it.
+    torque the turn at fixed loads); inertia: that of the tangent after it; preload: the share of weight and
+    pre-strain that acts.
     """
 
     kind: str
@@ -61,6 +71,7 @@ class CriticalPoint:
     z: Array
     mode: Array
     inertia: int
+    preload: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,13 +197,19 @@ def resolution(defect: NDArray[np.float64]) -> str:
     )
 
 
+def largest(errors: Iterable[float]) -> float:
+    """The largest of errors, those left out that are nan: of what there is none of."""
+    return max((each for each in errors if not math.isnan(each)), default=math.nan)
+
+
 @dataclass(frozen=True, kw_only=True)
 class ErrorEstimate:
     """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
 
     trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
-    not driven; torque, stiffness, section_forces, stress (the largest over a strip of the rectangular section
-    that A and I imply): largest error over the largest magnitude on the path.
+    not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
+    energy, section_forces, stress (the largest over a strip of the rectangular section that A and I imply):
+    largest error over the largest magnitude on the path. nan of what a path does not have.
     control_points that were chosen; trials: numbers of control points that were tried.
     Leaves out what more control points do not mend: the theory's own simplifications.
     """
@@ -201,6 +218,8 @@ class ErrorEstimate:
     trajectory: float
     torque: float
     stiffness: float
+    body_stiffness: float
+    energy: float
     section_forces: float
     stress: float
     control_points: int
@@ -209,16 +228,24 @@ class ErrorEstimate:
     @property
     def largest(self) -> float:
         """The largest of the errors, which ``accuracy`` is about."""
-        return max(float(getattr(self, name)) for name in ERRORS)
+        return largest(float(getattr(self, name)) for name in ERRORS)
 
     @property
     def remark(self) -> str:
         """Empty, or what is more uncertain than the accuracy."""
-        missed = [name for name in ERRORS if not getattr(self, name) <= self.accuracy]
-        if not missed:
-            return ""
-        errors = ", ".join(f"{name.replace('_', ' ')} {getattr(self, name):.1e}" for name in missed)
-        return f"estimated error above {self.accuracy:g} with {self.control_points} control points: {errors}"
+        return remark(
+            {name: float(getattr(self, name)) for name in ERRORS}, self.accuracy, self.control_points
+        )
+
+
+def remark(errors: Mapping[str, float], accuracy: float, control_points: int) -> str:
+    """Empty, or which errors of an answer with that many control points are above its accuracy."""
+    missed = ", ".join(
+        f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
+    )
+    return (
+        f"estimated error above {accuracy:g} with {control_points} control points: {missed}" if missed else ""
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,11 +263,11 @@ class FrequencyEstimate:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionEstimate:
-    """Estimated error of the rotation of a motion that was solved to an ``accuracy`` [rad].
+    """Estimated error of a motion that was solved to an ``accuracy`` [rad].
 
-    rotation: its largest error over the motion, of the steps (``time``) and of the control points
-    (``space``) together, which may cancel in part; control_points that were chosen; runs that
-    it took.
+    rotation: the largest error over the motion, of rotations [rad] and of places over the longest strip [1],
+    of the steps (``time``) and of the control points (``space``) together, which may cancel in part;
+    control_points that were chosen; runs that it took.
     """
 
     accuracy: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +16,7 @@ from spline_model.effects import DrivenRotation
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
-from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
+from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import whole_tangents
 from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
@@ -44,7 +45,8 @@ class StaticSolution(Tabulated, Path):
     displacements, from the tangent. What is known along the strips is made when it is asked for;
     balanced: see ``Sections``; effects: names of what was assembled;
     seconds: by part, see ``spline_model.newton.Laps``; control_points: of a strip;
-    estimate: of the error, where the control points were chosen for an accuracy.
+    estimate: of the error, where the control points were chosen for an accuracy; asked: the body that was
+    asked for, if one was.
     """
 
     system: System
@@ -53,12 +55,21 @@ class StaticSolution(Tabulated, Path):
     seconds: dict[str, float]
     control_points: int
     estimate: ErrorEstimate | None = None
+    asked: str | None = None
 
     @classmethod
     def of(
-        cls, system: System, path: Path, effects: Sequence[str], laps: Laps, *, balanced: bool = False
+        cls,
+        system: System,
+        path: Path,
+        effects: Sequence[str],
+        laps: Laps,
+        *,
+        balanced: bool = False,
+        asked: str | None = None,
     ) -> Self:
-        """The answer of a mechanism with these effects from its path; balanced: see ``Sections``."""
+        """The answer of a mechanism with these effects from its path; balanced: see ``Sections``; asked: the
+        body that was asked for."""
         scene, known = system.scene, vars(path)
         if scene.of(DrivenRotation):
             known = known | {"load_factor": np.abs(path.load_factor)}
@@ -66,6 +77,7 @@ class StaticSolution(Tabulated, Path):
             **known,
             system=system,
             balanced=balanced,
+            asked=asked,
             effects=tuple(name for name in effects if name not in MOTION_ONLY),
             control_points=max((strip.basis.control_points for strip in scene.strips), default=0),
             seconds=laps.lap("recover"),
@@ -77,6 +89,14 @@ class StaticSolution(Tabulated, Path):
             reached = float(self.load_factor[-1])
             raise ConvergenceError(self.message, solution=self, load_factor=reached, history=self.history)
         return self
+
+    @property
+    def basis(self) -> str:
+        """Of its strips: "bezier" or "bspline"."""
+        one_span = all(
+            strip.basis.degree == strip.basis.control_points - 1 for strip in self.system.scene.strips
+        )
+        return "bezier" if one_span else "bspline"
 
     @cached_property
     def driven(self) -> str | None:
@@ -175,7 +195,20 @@ class StaticSolution(Tabulated, Path):
         discretisation; dead loads act at centres and have no stiffness there. nan where a strip that cannot
         stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
         """
-        return _body_stiffness(require_reduced(self.system), self.states, body or self._watched_name)
+        body = body or self._watched_name
+        return self.own_stiffness if body == self.asked else self._stiffness_of(body)
+
+    @cached_property
+    def own_stiffness(self) -> Array:
+        """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
+        without one, and for printed forces."""
+        body = self.asked or self.driven or (next(iter(self.bodies)) if len(self.bodies) == 1 else None)
+        if body is None or reduced(self.system, longest=math.inf) is None:
+            return np.full((len(self.work), 3, 3), np.nan)
+        return self._stiffness_of(body)
+
+    def _stiffness_of(self, body: str) -> Array:
+        return _body_stiffness(require_reduced(self.system), self.states, body)
 
     @property
     def resolution(self) -> str:
@@ -213,10 +246,10 @@ def _body_stiffness(model: Reduced, states: Array, body: str) -> Array:
     own, y = np.arange(at, at + 3), from_unknowns(model, states)
     rest = np.setdiff1d(np.arange(model.size), [*own, *model.bodies.held[model.bodies.held < model.size]])
     found = np.full((len(states), 3, 3), np.nan)
-    for k, tangent in enumerate(whole_tangents(model, y)[1] * model.energy):
-        inner = tangent[np.ix_(rest, rest)]
-        if np.linalg.cond(inner) < SINGULAR:
-            moves = np.linalg.solve(inner, tangent[np.ix_(rest, own)])
-            found[k] = tangent[np.ix_(own, own)] - tangent[np.ix_(own, rest)] @ moves
+    tangents = whole_tangents(model, y)[1] * model.energy
+    inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
+    regular = np.linalg.cond(inner, 1) < SINGULAR
+    moves = np.linalg.solve(inner[regular], beside[regular])
+    found[regular] = tangents[regular][:, own[:, None], own] - beside[regular].swapaxes(1, 2) @ moves
     unit = np.array([model.length, model.length, 1.0])
     return np.asarray(found / (unit[:, None] * unit))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
+from spline_model.confirmed import Grid
 from spline_model.continuation.arc_length import follow_arc
 from spline_model.errors import (
     InvalidParameter,
@@ -20,11 +21,12 @@ from spline_model.errors import (
     require_count,
     require_finite,
 )
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
 from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
+from spline_model.rigid import require_unborne
 from spline_model.scene import Scene
 from spline_model.solution import Path
 from spline_model.static_answers import StaticSolution
@@ -47,6 +49,7 @@ def solve_statics(
     method: str = "condensed",
     accuracy: float | None = None,
     branch: str = "primary",
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -63,17 +66,19 @@ def solve_statics(
     relative [1]; the control points are raised from the pivot's until the estimated one is
     below, axial modes and quadrature with them, and the solution has its ``estimate``. Default: 1e-4
     of a pivot without a number of control points, else just its number.
-    branch: "primary" or "follow" at a bifurcation. Raises ConvergenceError with the converged part of the
-    path, or with the best one where the accuracy is not reached; returns it as a status with
-    ``raise_on_failure=False``.
+    branch: "primary" or "follow" at a bifurcation. check: whether critical points and an early end of a given
+    number of control points are compared with those of more, and what is not confirmed is not resolved (see
+    ``spline_model.confirmed``). Raises ConvergenceError with the converged part of the path, or with the
+    best one where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
+    require_mechanism(pivot)
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
     laps, rotations = Laps(), _rotations(rotation, increments)
 
-    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = pivot.with_control_points(control_points)
+    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
+        given = pivot.on(*grid)
         turn = Turn(
             driven=given.driven,
             rotations=rotations,
@@ -87,7 +92,7 @@ def solve_statics(
         system, path = turn.together() if together else turn.loads_first()
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
 
-    solution = answered(pivot.design, accuracy, solve, progress, len(rotations))
+    solution = answered(pivot.design, accuracy, solve, progress, len(rotations), check)
     return solution.checked(raise_on_failure)
 
 
@@ -102,6 +107,8 @@ def solve_mechanism(
     branch: str = "primary",
     end: float = 1.0,
     accuracy: float | None = None,
+    starts: bool = False,
+    check: bool = True,
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
@@ -110,16 +117,19 @@ def solve_mechanism(
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
     both meet, "loads first" as in ``solve_statics``, which then stay, or "together"; so it is
     always with control "arc-length" or another ``end``. control, branch and end as in ``solve_loads``;
-    accuracy as in ``solve_statics``, with control "arc-length" of the state at the end.
+    accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end. starts:
+    whether a motion starts at the end, until which rigid motions that nothing holds are held, whatever that
+    takes; else a load along one raises InvalidParameter.
     """
+    require_mechanism(mechanism)
     if rotation is not None:
         require_finite("rotation", rotation, "rad")
     require_count("increments", increments, 1)
     require_choice("order", order, ORDERS)
     laps, first = Laps(), order == LOADS_FIRST and control == "load" and end == 1.0
 
-    def solve(control_points: int | None, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = mechanism.with_control_points(control_points)
+    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
+        given = mechanism.on(*grid).propped(rotation, body)
         if first and rotation and has_loads(given.scene):
             turn = Turn(
                 driven=partial(given.driven, body=body),
@@ -136,9 +146,11 @@ def solve_mechanism(
                 scene, increments=increments, end=end, control=control, branch=branch, progress=told
             )
             laps.lap("solve")
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
+        if not starts:
+            require_unborne(system, path.reactions)
+        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
-    solution = answered(mechanism.design, accuracy, solve, progress, increments)
+    solution = answered(mechanism.design, accuracy, solve, progress, increments, check)
     return solution.checked(raise_on_failure)
 
 

@@ -15,7 +15,7 @@ from importlib import import_module  # noqa: E402
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.files import forget_stale  # noqa: E402
-from studies.registry import COMMANDS, PLACES  # noqa: E402
+from studies.registry import COMMANDS, FORMER, PLACES  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -65,6 +65,9 @@ def _dispatch(words: list[str]) -> int:
     if not words:
         parser.print_help()
         return 0
+    if words[0] in FORMER:
+        print(f"studies: {words[0]} is now called {FORMER[words[0]]}", file=sys.stderr)
+        words = [FORMER[words[0]], *words[1:]]
     name = parser.parse_args(words[:1]).command
     if forget_stale():
         print("studies: the kernels' source has changed: they are compiled anew", file=sys.stderr)
@@ -81,7 +84,7 @@ def command_of(name: str) -> tuple[Command, Parser]:
 
 
 def _overview() -> Parser:
-    lines = "\n".join(f"  {name:12s} {text}" for name, text in COMMANDS.items())
+    lines = "\n".join(f"  {name:13s} {text}" for name, text in COMMANDS.items())
     parser = Parser(
         prog="python -m studies",
         description="Studies of the cross-axis flexural pivot, by splines and by finite elements.\n\n"

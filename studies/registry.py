@@ -20,7 +20,7 @@ COMMANDS: dict[str, str] = {
     "release": "let go of a driven pivot and report its motion",
     "modes": "report natural frequencies, at rest or at a rotation",
     "export": "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
-    "capacity": "say which force a design bears before it buckles",
+    "critical-load": "find the force at which a design loses its stability",
     "compare": "hold designs, or models, against one another",
     "converge": "refine both models on a design until an accuracy is reached",
     "audit": "say what each effect of a scene is worth, and which are enough",
@@ -41,6 +41,7 @@ COMMANDS: dict[str, str] = {
 }
 #: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
 PLACES: dict[str, str] = {
+    "critical-load": "studies.commands.critical_load",
     "markers": "studies.commands.interactive:markers",
     "calibrate": "studies.commands.interactive:calibrate",
     "list": "studies.registry:listed",
@@ -49,6 +50,9 @@ PLACES: dict[str, str] = {
     "verify": "studies.commands.results:verify",
     "status": "studies.commands.results:status",
 }
+
+#: Former name of a command -> its name.
+FORMER: dict[str, str] = {"capacity": "critical-load"}
 
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
 #: the line below that constant says it.

@@ -210,6 +210,10 @@ class Followed:
         """Largest entry of the dimensionless residual."""
         return float(np.abs(self.gradient * self.unit).max() / self.energy)
 
+    def size(self, change: Array) -> float:
+        """Largest entry of a change of the coordinates, in lengths and rad."""
+        return float(np.abs(change / self.unit)[: self.count].max())
+
     def solve(self, right_side: Array) -> Array:
         """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
         unit, energy = self.unit, self.energy

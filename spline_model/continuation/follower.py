@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.point import reached
 from spline_model.continuation.watch import Watch
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, Unsettled
 from spline_model.newton import Newton, solve
 
 Array = NDArray[np.float64]
@@ -200,9 +200,10 @@ def _grown(watch: Watch) -> Array:
     newton = solve(growing, growing.state(growing.system.rest), 0.0)
     begin = _held(growing, newton)
     follower = Follower(own, begin, newton.norms)
-    own.first = (0.0, begin.z)
     message = follower.advance(1.0)
+    shared = (replace(each, load_factor=0.0, preload=each.load_factor) for each in own.critical)
+    watch.settled = tuple(shared)
     if message:
-        raise InvalidParameter("scene", message, "an equilibrium under all of its weight and pre-strain")
+        raise Unsettled(message, watch.settled)
     watch.leaves, watch.before = own.leaves, own.remark()
     return follower.here.z

@@ -23,6 +23,8 @@ BLOCK = 64
 FASTEST = 1e13
 """Rate of an unknown, dimensionless, from which on a tangent is singular: strips of a slenderness of 1e5 have
 forces of 1e11, round-off in the place of a pivot gives 1e15."""
+NO_STIFFNESS = 1e-14
+"""Stiffness of a driven rotation that is none, over the sum of the terms that cancel in it."""
 NOT_TRACKED = -1
 """Inertia of a state whose forces have no potential: its tangent is not symmetric."""
 
@@ -67,13 +69,21 @@ def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, f
         rate=rate,
         slope=1.0,
         turn=None if row is None else found[:, 1].copy(),
-        stiffness=np.nan if row is None else float(found[row, 1]),
+        stiffness=np.nan if row is None else _of_drive(work, row, found[:, 1]),
         inertia=inertia,
         energies=energies,
         potential=work.potential(z, load_factor, energies),
         conjugate=conjugate,
         conjugate_rate=curvature - float(push @ rate),
     )
+
+
+def _of_drive(work: Followed, row: int, turn: Array) -> float:
+    """The stiffness of the driven rotation at fixed loads; 0 where it is the round-off of its terms, as that
+    of a pendulum that nothing pulls down: the sign of what is no stiffness tells of no critical point."""
+    turned = int(np.abs(work.hessian[row]).argmax())
+    terms = float(np.abs(np.delete(work.hessian[turned] * turn, row)).sum())
+    return float(turn[row]) if abs(turn[row]) > NO_STIFFNESS * terms else 0.0
 
 
 def reached(work: Followed, found: Newton) -> tuple[Point | None, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,8 @@ from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
 from spline_model.continuation.followed import Followed, Point
+from spline_model.continuation.place import Place
 from spline_model.continuation.point import directed, done_by_load_factor, jumped, reached
-from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
-from spline_model.effects.base import Constraint, Load
 from spline_model.newton import correct
 from spline_model.solution import CriticalPoint, Path, Status
 
@@ -30,12 +28,8 @@ UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more 
 LARGEST_CHANGE = 0.02
 """Largest relative change of stiffness with twice the Gauss points of a state that is kept."""
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
-STEEP = 5.0
-"""Rate of a path over its mean rate so far from which on it ends at a limit point, where it is infinite."""
-PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
-"""Prefixes by their powers of ten."""
-PLAIN = 1e-2, 1e4
-"""Sizes of forces and moments that are readable without one."""
+BEYOND = 24
+"""Steps in the arc length that look for the limit point beyond a path's last state."""
 
 
 class Watch:
@@ -47,15 +41,15 @@ class Watch:
 
     by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
     whether the path is to leave its branch at the next bifurcation; place: what a load factor is
-    called; before: what is to be said of what came before the path; first: load factor and z of its
-    first state.
+    called; before: what is to be said of what came before the path, and settled: its critical points.
     """
 
     def __init__(self, work: Followed, *, leaves: bool, by_load: bool) -> None:
         self.work, self.leaves, self.by_load = work, leaves, by_load
-        self.place, self.before = _Place(system=None if work.grows else work.system), ""
+        self.place, self.before = Place(system=None if work.grows else work.system), ""
         self.critical: list[CriticalPoint] = []
-        self.note, self.first = "", None  # type: str, tuple[float, Array] | None
+        self.settled: tuple[CriticalPoint, ...] = ()
+        self.note = ""
         self._finer: Followed | None = None
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
@@ -129,14 +123,47 @@ class Watch:
         return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
 
     def stopped(self, here: Point, aim: float, reason: str) -> str:
-        """That a path goes no further than ``here`` on its way to a load factor, and why."""
-        assert self.first is not None, "set with the first state"
-        factor, first = self.first
-        count, unit = self.work.count, self.work.unit
-        went, goes = (np.linalg.norm((change / unit)[:count]) for change in (here.z - first, here.rate))
-        if self.is_resolved(here) and goes * abs(here.load_factor - factor) > STEEP * went:
-            reason = f"it buckles, a limit point: the stiffness vanishes there ({reason})"
+        """That a path goes no further than ``here`` on its way to a load factor, and why.
+
+        A limit point in between is kept as a critical point.
+        """
+        limit = self._limit(here, aim) if self.is_resolved(here) else None
+        if limit is not None:
+            self.critical.append(limit)
+            reason = f"it buckles, a {limit.kind}: the stiffness vanishes there ({reason})"
         return f"stopped between {self.place.between(here.load_factor, aim)}: {reason}"
+
+    def _limit(self, here: Point, aim: float) -> CriticalPoint | None:
+        """The limit point that the path from a stable state on goes over in its arc length, if it does."""
+        work, onward = self.work, math.copysign(1.0, aim - here.load_factor)
+        beyond = Watch(work, leaves=False, by_load=False)
+        point = directed(work, here, onward * here.rate / work.unit, onward)
+        step = 2.0 * abs((aim - here.load_factor) / point.slope)
+        for _ in range(BEYOND):
+            ahead = beyond._ahead(point, step)
+            if ahead is None:
+                step /= 4.0
+            elif beyond.critical:
+                return next((each for each in beyond.critical if each.kind != BIFURCATION), None)
+            else:
+                point, step = ahead, 2.0 * step
+        return None
+
+    def _ahead(self, point: Point, step: float) -> Point | None:
+        """The next point of a path in its arc length; None if none is found."""
+        work, normal = self.work, point.rate / self.work.unit
+        normal[work.count :] = 0.0
+        predicted, factor = point.z + step * point.rate, point.load_factor + step * point.slope
+        found = correct(work, predicted, factor, normal, point.slope)
+        if found.reason or self.refuse(point, predicted, found.z, found.load_factor):
+            return None
+        ahead, _ = reached(work, found)
+        if ahead is None:
+            return None
+        ahead = directed(work, ahead, normal, point.slope)
+        moved = np.linalg.norm(((ahead.z - point.z) / work.unit)[: work.count])
+        length = float(np.hypot(moved, ahead.load_factor - point.load_factor))
+        return None if self._judged(point, ahead, length)[1] else ahead
 
     def remark(self, inertia: int = 0) -> str:
         """Where a path that reached its end passed critical points, and whether its last state, with that
@@ -160,7 +187,7 @@ class Watch:
             status=Status.NOT_CONVERGED if message else Status.CONVERGED,
             message=message or self.remark(int(rows["inertia"][-1])),
             work=work - work[0],
-            critical_points=tuple(self.critical),
+            critical_points=(*self.settled, *self.critical),
             counters=dict(vars(self.work.counters)),
             history=tuple(history),
             **rows,
@@ -186,80 +213,6 @@ def _leave(work: Followed, crossing: Crossing) -> Point | None:
         if point is not None:
             return point
     return None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Place:
-    """What the load factors of a path are called, with rotation [deg], ways [mm], forces [N], moments [N m].
-
-    system: None where they are shares of weight and pre-strain.
-    """
-
-    system: System | None
-
-    def at(self, load_factor: float, rotation: float = math.nan) -> str:
-        """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
-        if self.system is None:
-            return f"{100 * load_factor:.6g} % of weight and pre-strain"
-        if self._is_steady:
-            return self._acting(load_factor, rotation).strip(" ()")
-        return f"load factor {self._share(load_factor):.6g}{self._acting(load_factor, rotation)}"
-
-    def between(self, last: float, following: float) -> str:
-        """Two neighbouring places."""
-        if self.system is None:
-            return f"{100 * last:.6g} and {self.at(following)}"
-        if self._is_steady:
-            return f"{self.at(last)} and {self.at(following)}"
-        acting = self._acting(following, math.nan)
-        return f"load factor {self._share(last):.6g} and {self._share(following):.6g}{acting}"
-
-    @property
-    def _is_steady(self) -> bool:
-        """Whether loads or driven displacements act in full at any load factor, the rotation's alone."""
-        assert self.system is not None
-        return any(getattr(effect, "steady", False) for effect in self.system.scene.effects)
-
-    def _share(self, load_factor: float) -> float:
-        """The share of the loads: of a driven rotation its size, to whichever side it goes."""
-        assert self.system is not None
-        return load_factor if self.system.scene.driven_row is None else abs(load_factor)
-
-    def _acting(self, load_factor: float, rotation: float) -> str:
-        assert self.system is not None
-        parts = _drives(self.system, load_factor, rotation) + _loads(self.system, load_factor)
-        return f" ({', '.join(parts)})" if parts else ""
-
-
-def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
-    parts = []
-    for drive in system.scene.of(Constraint):
-        if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
-            angle = load_factor * drive.angle if math.isnan(rotation) else rotation
-            parts.append(f"rotation {math.degrees(angle):.5g} deg")
-        elif isinstance(drive, DrivenDisplacement) and any(drive.parts.values()):
-            share = 1.0 if drive.steady else abs(load_factor)
-            parts.append(f"displacement {1e3 * share * math.hypot(*drive.parts.values()):.4g} mm")
-    return parts
-
-
-def _loads(system: System, load_factor: float) -> list[str]:
-    parts = []
-    for load in system.scene.of(Load):
-        share = 1.0 if getattr(load, "steady", False) else load_factor
-        if isinstance(load, AppliedMoment) and load.moment:
-            parts.append(f"moment {_sized(share * load.moment)}N m")
-        elif isinstance(load, AppliedForce | TipForce) and any(load.force):
-            parts.append(f"force {_sized(abs(share) * math.hypot(*load.force))}N")
-    return parts
-
-
-def _sized(value: float) -> str:
-    """A number with four digits and the prefix that spares it a power of ten."""
-    if value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]:
-        return f"{value:.4g} "
-    power = max(-9, min(9, 3 * math.floor(math.log10(abs(value)) / 3)))
-    return f"{value / 10.0**power:.4g} {PREFIXES[power]}"
 
 
 def _meaning(system: System, kind: str) -> str:

@@ -71,7 +71,8 @@ class DrivenRotation(Constraint):
     In a motion it acts in ``held``, from - to [s], and changes by angle x the change of
     history(t) from where the body is when it begins; a body that is caught loses the velocity
     that the drive does not have. Its multiplier is the torque
-    that has to be applied to the body [N m]; positive counter-clockwise.
+    that has to be applied to the body [N m]; positive counter-clockwise. A ``prop`` only keeps a free
+    rigid motion from being indeterminate (``spline_model.rigid``).
     """
 
     rows: ClassVar[int] = 1
@@ -79,6 +80,7 @@ class DrivenRotation(Constraint):
     angle: float
     history: History = STEADY
     held: tuple[float, float] = ALWAYS
+    prop: bool = False
 
     def __post_init__(self) -> None:
         require_finite("angle", self.angle, "rad")
@@ -95,7 +97,7 @@ class DrivenDisplacement(Constraint):
 
     The paper's "two other driving constraints" (section 4). Without a history it holds the start of
     a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
-    multipliers are the applied force [N].
+    multipliers are the applied force [N]. A ``prop`` is as that of ``DrivenRotation``.
     """
 
     body: str
@@ -103,6 +105,7 @@ class DrivenDisplacement(Constraint):
     history: History | None = None
     held: tuple[float, float] = ALWAYS
     steady: bool = False
+    prop: bool = False
 
     def __post_init__(self) -> None:
         if not self.parts or not all(math.isfinite(part) for part in self.parts.values()):

@@ -201,7 +201,7 @@ def _taken_up(design: Design) -> Iterator[Effect]:
     yield from ()
 
 
-def _root_compliance(design: Design, root: float | str) -> Iterator[Effect]:
+def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterator[Effect]:
     """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0."""
     if root != "monolithic" and not (not isinstance(root, str) and is_finite(root) and root >= 0.0):
         raise InvalidParameter("root", root, '"monolithic" or a number >= 0, its length over the thickness')

@@ -213,8 +213,8 @@ def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int
 class Stepper(Moves):
     """A scene that the scheme advances; active (D,) is 1 for each drive that holds.
 
-    Drives begin and end at their times and start from where the body is; a body that is caught
-    changes its velocity at once, and what that costs counts as dissipated.
+    Drives begin and end at their times and start from where the body is. A body that is caught
+    changes its velocity at once: energy that it loses counts as dissipated, energy that it gains as work.
     """
 
     def __init__(self, start: Start) -> None:
@@ -262,9 +262,10 @@ class Stepper(Moves):
         v, lost = self.motion.catch(z, v, self.active, time, span)
         self._model.set_velocity(self._state, v)
         lost /= self.motion.system.scales.energy
-        if (self.active > before).any():
+        # energy is lost where a drive catches a body, not where it changes its own rate; gained it is by work
+        if lost > 0.0 and (self.active > before).any():
             self._state.totals[1] += lost
-        else:  # a drive that changes its own rate does work
+        else:
             self._state.totals[0] -= lost
 
     def kept(self) -> list[Array]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.effects import Clamp
 from spline_model.motion.start import Motion
 from spline_model.newton import Laps
 from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
@@ -50,6 +51,14 @@ class Whole:
         """z (R, N) and v (R, Q)."""
         z, v = self.make()
         return z[:: self.every], v[:: self.every]
+
+    def free_ends(self, every: int) -> Array:
+        """Places of the strips' ends that no clamp holds, of every so many of the records (R, E, 2) [m]."""
+        system = self.motion.system
+        held = {(clamp.strip, clamp.end) for clamp in system.scene.of(Clamp)}
+        free = [strip.name for strip in system.scene.strips if (strip.name, "end") not in held]
+        ends = np.array([system.layout.strip(name).stop for name in free], dtype=int)
+        return self.both[0][::every, ends[:, None] + np.array([-2, -1])] if free else np.zeros((1, 0, 2))
 
     @cached_property
     def gaps(self) -> Array:
@@ -141,11 +150,13 @@ class Trajectory(Tabulated):
     (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
-    the step leaves unresolved, likewise, and checked: what a companion found; effects: names of the scene's
-    effects; counters: steps, halved_steps, newton_iterations, ...; seconds: by part (``newton.Laps``),
-    "start" the static state that is let go; estimate: of the error, where an accuracy was asked for;
-    rotation_error: largest difference of the rotation to a companion's with two control points more
-    [rad], nan without one.
+    the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
+    found; effects: names of the scene's effects; counters: steps, halved_steps, newton_iterations, ...;
+    seconds: by part (``newton.Laps``), "start" the static state that is let go; estimate: of the error, where
+    an accuracy was asked for;
+    rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad], and of the
+    places of all bodies and free ends [m], by companions with finer steps and more control points; nan
+    without.
     """
 
     status: Status
@@ -160,12 +171,14 @@ class Trajectory(Tabulated):
     dissipated: Array
     whole: Whole
     unresolved: Callable[[], str]
+    still: Callable[[], bool]
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
     seconds: dict[str, float]
     estimate: MotionEstimate | None = None
     rotation_error: float = math.nan
+    displacement_error: float = math.nan
     checked: str = ""
 
     @property
@@ -193,6 +206,11 @@ class Trajectory(Tabulated):
         """Empty, or what step and control points leave unresolved."""
         return "; ".join(remark for remark in (self.unresolved(), self.checked) if remark)
 
+    @cached_property
+    def starts_still(self) -> bool:
+        """Whether the motion starts at rest in equilibrium, to round-off."""
+        return self.still()
+
     @property
     def control_points(self) -> int:
         """Control points of a strip."""
@@ -207,6 +225,19 @@ class Trajectory(Tabulated):
     def centre(self) -> Array:
         """Centre of the body, (T, 2) [m]."""
         return self.bodies[self.body][:, :2]
+
+    def moves(self, every: int = 1) -> tuple[Array, Array]:
+        """Rotations of all bodies (R, B) [rad], and places of them and of free ends (R, P, 2) [m].
+
+        They are those of every so many of the records.
+        """
+        poses = np.array([place[::every] for place in self.bodies.values()]).reshape(
+            len(self.bodies), len(self.time[::every]), 3
+        )
+        ends = self.whole.free_ends(every)
+        places = np.moveaxis(poses[..., :2], 0, 1)
+        ends = np.broadcast_to(ends, (len(places), *ends.shape[1:]))
+        return poses[..., 2].T, np.concatenate((places, ends), axis=1)
 
     def counted_on(self, before: Trajectory) -> Trajectory:
         """With time, work and losses counted on from the end of the one before."""
@@ -236,6 +267,7 @@ class Trajectory(Tabulated):
         body: str,
         settings: dict[str, Any],
         unresolved: Callable[[], str],
+        still: Callable[[], bool],
         laps: Laps,
     ) -> Trajectory:
         """The trajectory of a run; a run that says why it stopped has not converged."""
@@ -255,6 +287,7 @@ class Trajectory(Tabulated):
             dissipated=rows[:, DISSIPATED],
             whole=run.whole,
             unresolved=unresolved,
+            still=still,
             effects=effects,
             counters=run.counters,
             settings={"control_points": points} | settings,

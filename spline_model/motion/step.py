@@ -10,6 +10,7 @@ import math
 from spline_model.motion.project import condense, to_reduced, turn_bodies, turn_roots
 from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, move_strip
+from spline_model.newton import ROUND_OFF
 from spline_model.strip.compiled import called, part
 
 STEPS, HALVED, NEWTON, FACTORISATIONS, REFUSED, WHOLE = range(6)
@@ -182,7 +183,7 @@ def solve_rows(count, matrix, x):
 
 @called(entered=True)
 def improve(strips, masses, work):
-    """Newton's correction of dy from the assembled step; False if the bodies' system is singular."""
+    """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular."""
     poses, modes = masses.inertia.size, strips.compliance.shape[1]
     own, outer, dy, free, x = strips.own, strips.outer, work.dy, work.free, work.x
     count = 0
@@ -195,13 +196,15 @@ def improve(strips, masses, work):
         for j in range(count):
             work.system[i, j] = work.tangent[free[i], free[j]]
     if not solve_rows(count, work.system, x):
-        return False
+        return -1.0
+    size = 0.0
     for i in range(work.reduced.size):
         work.reduced[i] = 0.0
     for i in range(count):
         work.reduced[free[i]] = x[i]
         if free[i] < poses:
             dy[free[i]] += x[i]
+            size = max(size, abs(x[i]))
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)
@@ -214,6 +217,7 @@ def improve(strips, masses, work):
                 total -= h[i, j] * change[j]
             change[i] = total / h[i, i]
             dy[at + i] += change[i]
+            size = max(size, abs(change[i]))
         for k in range(modes):
             if k < outer:
                 dy[at + own + k] += change[ends + k]
@@ -222,7 +226,7 @@ def improve(strips, masses, work):
                 for j in range(ends):
                     strain += right[k, j] * change[j]
                 dy[at + own + k] += strips.gain[s, k] * strain
-    return True
+    return size
 
 
 @part()
@@ -265,7 +269,7 @@ def guess_step(h, state, strips, masses, work):
 
 @part()
 def newton(time, h, active, state, strips, masses, tolerance, work, counters):
-    """Solve one step for dy; True if the residual came below tolerance.
+    """Solve one step for dy; True if the residual came below tolerance, or corrections are round-off.
 
     Rotations of more than a quarter turn in one step are refused: the Cayley map has a pole at a half turn.
     """
@@ -276,18 +280,20 @@ def newton(time, h, active, state, strips, masses, tolerance, work, counters):
             i = masses.drive_at[d]
             dy = driven_to(d, time + h, masses) - state.y[i]
             work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
-    before = math.inf
+    before, size, last = math.inf, math.inf, math.inf
     for _ in range(MOST_ITERATIONS):
         norm = assemble(h, state, strips, masses, work)
         if not norm < 1e12:
             return False
-        if norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before):
+        rounded = size <= ROUND_OFF and size > 0.5 * last
+        if norm <= tolerance or rounded or (norm <= 1e3 * tolerance and norm > 0.5 * before):
             largest = 0.0
             for i in range(2, masses.inertia.size, 3):
                 largest = max(largest, abs(work.dy[i]))
             return largest <= 2.0
-        before = norm
-        if not improve(strips, masses, work):
+        before, last = norm, size
+        size = improve(strips, masses, work)
+        if size < 0.0:
             return False
         counters[NEWTON] += 1
         counters[FACTORISATIONS] += 1

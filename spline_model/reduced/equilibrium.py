@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from spline_model.checks import SLOWEST_SPEED
+from spline_model.newton import FLOOR, LAST, ROUND_OFF
 from spline_model.reduced.arrays import (
     CHANGE,
     FORCE,
@@ -59,13 +60,32 @@ def carry(row, bodies, space):
 
 
 @called()
+def _correction(bodies, strips, arrays):
+    """The correction of a state just assembled, poses in MOVE and w and a in SPARE; its size but for a's."""
+    space, move, change, largest = arrays.space, arrays.space.vectors[MOVE], arrays.space.states[SPARE], 0.0
+    own, modes, poses = 2 * arrays.shape.order.size - 6, strips.compliance.shape[1], bodies.rest.size
+    _solve_bodies(bodies, space)
+    move_strips(1.0, arrays, change)
+    for i in range(poses):
+        largest = max(largest, abs(move[i]))
+    for s in range(strips.roots.size):
+        at = poses + s * (own + modes)
+        for i in range(at, at + own):
+            largest = max(largest, abs(change[i]))
+    return largest
+
+
+@called()
 def newton(y, load, early, arrays, tolerance, counters):
     """Solve in place at the held coordinates in y; the negative eigenvalues, or -1 where it fails, and the
     last residual, behind which there is one correction more: NEARLY none, or ``early`` one whose square is.
+
+    Where corrections no longer shrink, they are round-off: see ``spline_model.newton``.
     """
-    bodies, space, before = arrays.bodies, arrays.space, np.inf
+    bodies, space, before, worse = arrays.bodies, arrays.space, np.inf, np.inf
     free, poses, change = bodies.free, bodies.rest.size, space.states[SPARE]
     raw, move = space.vectors[RAW], space.vectors[MOVE]
+    small = math.sqrt(CLOSE * tolerance) if early else NEARLY * tolerance
     for trial in range(MOST_ITERATIONS + 1):
         norm = assemble(y, load, arrays)
         counters[EVALUATIONS] += 1
@@ -76,22 +96,21 @@ def newton(y, load, early, arrays, tolerance, counters):
         negative = factorise(bodies.free, space.tangent, space.factors, bodies.load.size - poses)
         if negative == SINGULAR:
             return -1, norm
-        done = norm <= (math.sqrt(CLOSE * tolerance) if early else NEARLY * tolerance) or (
-            norm <= 1e3 * tolerance and norm > 0.5 * before
-        )
+        size = _correction(bodies, arrays.strips, arrays)
+        done = norm <= small and size <= LAST
+        floored = norm <= FLOOR and norm > 0.5 * worse
+        done = done or (size > 0.5 * before and (size <= ROUND_OFF or floored))
         if not done and trial == MOST_ITERATIONS:
             return -1, norm
-        before = norm
-        _solve_bodies(bodies, space)
+        before, worse = size, norm
         for i in range(poses):
             y[i] += move[i]
-        move_strips(1.0, arrays, change)
         for i in range(poses, y.size):
             y[i] += change[i]
         if done:  # with a last correction, whose own residual is of second order
             return max(0, negative + int(space.out[NEGATIVE])), norm
         counters[ITERATIONS] += 1
-    return -1, before
+    return -1, worse
 
 
 @called()

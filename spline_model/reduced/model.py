@@ -188,7 +188,7 @@ def _bodies_of(system: System, outer: int) -> Bodies | None:
     for part in (load, weight):
         part[: len(rest)] /= force
         part[2 : len(rest) : 3] /= length
-    held, turns = [places[c] for c in drives.coordinate.tolist()], drives.turns.tolist()
+    held, rows = [places[c] for c in drives.coordinate.tolist()], drives.row.tolist()
     if len(set(held)) != len(held):
         return None
     return Bodies(
@@ -197,7 +197,7 @@ def _bodies_of(system: System, outer: int) -> Bodies | None:
         weight=weight,
         free=np.array([i for i in range(len(rest) + outer) if i not in held], dtype=np.int64),
         held=np.array(held, dtype=np.int64),
-        driven=turns.index(1) if 1 in turns else -1,
+        driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
     )
 
 

@@ -15,7 +15,7 @@ from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.layout import Layout
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.numbers import in_order
@@ -56,12 +56,13 @@ def sensitivities(
     reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
     the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
     the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes
-    with the design. Bodies keep their mass. Refuses what the elements do not know: printed forces, own
-    potentials. Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization
-    (1992), ch. 7.
+    with the design. Bodies keep their mass. Refuses what the elements do not know: printed
+    forces. Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization (1992),
+    ch. 7.
     """
+    require_mechanism(asked)
     if asked.design.discretisation.control_points is None:
-        asked = asked.with_control_points(solution.control_points)
+        asked = asked.on(solution.basis, solution.control_points)
     rates = Rates.of(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)

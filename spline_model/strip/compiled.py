@@ -8,8 +8,9 @@ reassociate but keeps nan and infinity, by which a failed solve is seen.
 
 from __future__ import annotations
 
+import logging
 import math
-from functools import lru_cache, partial
+from functools import cache, lru_cache, partial
 
 import numpy as np
 from numba import njit, types
@@ -91,9 +92,15 @@ class _Inside(_Kernel):
         raise TypeError(f"{self.py_func.__qualname__}: got a call from Python, expected one from a kernel")
 
 
-_compiled = partial(
-    njit, cache=True, nogil=True, fastmath=FAST, error_model="numpy", _nrt=False, no_cfunc_wrapper=True
-)
+_compiled = partial(njit, nogil=True, fastmath=FAST, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+
+
+@cache
+def _say_unkept():
+    logging.getLogger("spline_model").warning(
+        "spline_model: got no writable place for compiled kernels, expected one beside the source, in the "
+        "user's cache or as NUMBA_CACHE_DIR: they are compiled anew each time"
+    )
 
 
 def kernel(*, pipeline_class=_Short, entered=False, **options):
@@ -102,10 +109,14 @@ def kernel(*, pipeline_class=_Short, entered=False, **options):
     entered: a part is called from Python too; with two callers it stays a function of its own.
     """
     inside = issubclass(pipeline_class, _Parts) and not entered
-    compiled = _compiled(pipeline_class=pipeline_class, no_cpython_wrapper=inside, **options)
+    compiled = partial(_compiled, pipeline_class=pipeline_class, no_cpython_wrapper=inside, **options)
 
     def decorated(function):
-        made = compiled(function)
+        try:
+            made = compiled(cache=True)(function)
+        except RuntimeError:  # of numba, which finds nowhere to keep it
+            _say_unkept()
+            made = compiled()(function)
         if isinstance(made, CPUDispatcher):
             made.__class__ = _Inside if inside else _Kernel
         return made

@@ -129,7 +129,7 @@ def answer_release(
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
     answer = Motion.of(asked, result, wall_s=wall_s, solve_s=timing.median_part)
-    return _weighed(answer, design, settings, start) if answer.message == NOTHING_MOVES else answer
+    return _weighed(answer, settings, start) if answer.starts_still and answer.converged else answer
 
 
 def answer_modes(
@@ -174,15 +174,18 @@ def answer_modes(
     return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
 
 
-def _weighed(still: Motion, design: Design, settings: Settings, start: float | None) -> Motion:
-    """Return a motion that stands still; it says so where its equilibrium is unstable.
+def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
+    """Return a motion that starts in equilibrium; it says so, and where that is unstable.
 
     Not asked where a load or a drive has a history: modes are about the state under full loads.
     """
-    if design.history or any("history" in table for table in design.effects.tables.values()):
-        return still
+    design = answer.design
+    histories = (table.get("history") for table in design.effects.tables.values())
+    if design.history or design.held or any(histories):
+        return answer
     fall = answer_modes(design, settings, rotation=start, count=1).falls_in
-    return still if fall is None else replace(still, message=UNSTABLE.format(fall))
+    message = NOTHING_MOVES if fall is None else UNSTABLE.format(fall)
+    return replace(answer, message=message, resolution="")
 
 
 def _solve_s(result: Any) -> float:

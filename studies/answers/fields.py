@@ -10,7 +10,8 @@ from studies.answers.models import Model, effects_of, mode_bodies, model_of
 from studies.answers.response import Answered, assembled, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import GROUND
-from studies.cases.mechanism import Sectioned, Strip
+from studies.cases.mechanism import Strip
+from studies.cases.section import Sectioned
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -38,6 +39,7 @@ class _Part(Sectioned):
     area: float
     second_moment_of_area: float
     section_depth: None = None
+    width: None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,8 +167,10 @@ def _as_fine(asked: Any, solution: Any) -> Any:
     """Return the pivot or mechanism as it was solved: in motion, with the control points or elements that an
     accuracy has taken."""
     if hasattr(asked, "with_control_points"):
-        chosen = getattr(solution, "settings", {}).get("control_points", asked.design.discretisation.points)
-        fine = asked.with_control_points(getattr(solution, "control_points", chosen))
+        grid = asked.design.discretisation
+        chosen = getattr(solution, "settings", {}).get("control_points", grid.points)
+        points = getattr(solution, "control_points", chosen)
+        fine = asked.on(getattr(solution, "basis", grid.basis), points)
         return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
     from fe_reference.refined import finer
 
@@ -207,7 +211,7 @@ def _motion(model: Model, asked: Any, result: Any) -> dict[str, Any]:
 
 def _modes(model: Model, asked: Any, result: Any) -> dict[str, Any]:
     count = len(result.frequency)
-    still = _arrays(model.static_fields(asked, np.asarray(result.state)[None]))
+    still = _arrays(model.mode_fields(asked, np.asarray(result.state)[None]))
     moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
     return {
         "status": "converged",

@@ -23,7 +23,8 @@ class Model:
         records: keyword for the largest number of records of a motion.
         release_options: keywords that every release takes.
         drive: of a rotation in a motion.
-        static_fields, moving_fields: fields along the strips from the design in the model and its states.
+        static_fields, moving_fields, mode_fields: fields along the strips from the design in the model and
+            the states of a path, of a motion, and of what modes are about.
     """
 
     pivot: ModuleType
@@ -37,6 +38,7 @@ class Model:
     drive: type
     static_fields: Callable[[Any, Any], Any]
     moving_fields: Callable[[Any, Any], Any]
+    mode_fields: Callable[[Any, Any], Any]
 
 
 def model_of(settings: Settings) -> Model:
@@ -51,6 +53,7 @@ def model_of(settings: Settings) -> Model:
             drive=loads.DrivenRotation,
             static_fields=section_forces.strip_fields,
             moving_fields=section_forces.strip_fields,
+            mode_fields=section_forces.strip_fields,
         )
     return _spline()
 
@@ -65,6 +68,7 @@ def _spline() -> Model:
         drive=effects.DrivenRotation,
         static_fields=section_forces.static_fields,
         moving_fields=section_forces.moving_fields,
+        mode_fields=section_forces.mode_fields,
     )
 
 
@@ -98,6 +102,7 @@ class Asked:
             given["elements"] = meshes[-1]
         elif hasattr(result, "control_points"):
             given["control_points"] = result.control_points
+            given["basis"] = getattr(result, "basis", given["basis"])
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
     def refusals(self) -> AbstractContextManager[None]:

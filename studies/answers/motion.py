@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,16 @@ import numpy as np
 from studies.answers.metrics import Frequency, swing_frequency
 from studies.answers.models import Asked, mode_bodies
 from studies.answers.response import Answered, Solved
+from studies.answers.signal_modes import SignalMode, signal_modes
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
 #: Arrays that a model may lack which keeps its constraints exactly, and everywhere.
 RESIDUALS = ("constraint_residual", "velocity_residual")
 
+#: Amplitude of the second mode over the first up to which one mode carries a motion: a passage through the
+#: rest tolerates as much of a ripple.
+CARRIED = 0.2
 #: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
 STILL = 1e-16
 NOTHING_MOVES = (
@@ -22,8 +27,8 @@ NOTHING_MOVES = (
     "a load a history"
 )
 UNSTABLE = (
-    "nothing moves, but the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: "
-    "turn a body a little before it is let go"
+    "the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: what moves, if "
+    "anything, has grown from round-off; turn a body a little before it is let go"
 )
 
 
@@ -34,11 +39,13 @@ class Motion(Solved):
     Attributes:
         settings: discretisation keywords, integrator and step.
         status: "converged", "not_converged" or "unstable".
-        rotation_error: estimated error of the rotation, by a companion motion [rad]; NaN without one.
+        rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the
+            places of all bodies and free ends [m], by companion motions; NaN without.
         time: (T,) [s]; empty when statics does not reach the start.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
+        starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
         wall_s: time of the motion alone, without the static path to its start [s].
     """
 
@@ -50,7 +57,9 @@ class Motion(Solved):
     dissipated: Array
     constraint_residual: Array
     velocity_residual: Array
+    starts_still: bool = False
     rotation_error: float = math.nan
+    displacement_error: float = math.nan
 
     @property
     def energy_error(self) -> float:
@@ -64,14 +73,26 @@ class Motion(Solved):
         scale = max(float(np.abs(part).max()) for part in parts)
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
+    @cached_property
+    def modes(self) -> list[SignalMode]:
+        """Frequencies that the rotation contains, with amplitudes, the largest first."""
+        return signal_modes(self.time, self.rotation)
+
     @property
     def swing(self) -> Frequency:
-        """Frequency of the rotation's swing about its rest, or why there is none."""
+        """Frequency of the rotation's swing about its rest, or why there is none.
+
+        There is none where no single mode carries the rotation.
+        """
+        if len(self.modes) > 1 and self.modes[1].amplitude_rad > CARRIED * self.modes[0].amplitude_rad:
+            parts = (f"{f:.5g} Hz ({math.degrees(a):.3g} deg)" for f, a in self.modes)
+            reason = f"the rotation contains {len(self.modes)} modes: {', '.join(parts)}"
+            return Frequency(value=math.nan, reason=reason)
         return swing_frequency(self.time, self.rotation)
 
     @property
     def frequency(self) -> float:
-        """Frequency of the rotation's swing about its rest [Hz]; NaN without a whole swing."""
+        """Frequency of the rotation's swing about its rest [Hz]; NaN without a whole swing of one mode."""
         return self.swing.value
 
     @classmethod
@@ -84,7 +105,8 @@ class Motion(Solved):
         given: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
         given |= {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
         own: dict[str, Any] = {name: np.asarray(array, dtype=float) for name, array in given.items()}
-        own["rotation_error"] = getattr(result, "rotation_error", math.nan)
+        own["starts_still"] = bool(result.starts_still)
+        own |= {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
         if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
             own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
         return cls(**cls.about(asked, result) | cls.ended(result) | own | seconds)
@@ -120,6 +142,13 @@ class Spectrum(Answered):
     body_shapes: Array
     slide_frequency: Array
     wall_s: float = 0.0
+
+    @property
+    def resolution(self) -> str:
+        """Return that the accuracy is missed, which the control points or elements were chosen for, or ""."""
+        accuracy = (self.estimate or {}).get("accuracy", math.inf)
+        missed = self.largest_error > accuracy
+        return f"the accuracy of {accuracy:g} is not reached by all frequencies" if missed else ""
 
     @property
     def falls_in(self) -> float | None:

@@ -134,7 +134,6 @@ class SwingReference:
         frequency: of the limit [Hz].
         uncertainty: (T,) of the rotation [rad]; centre_uncertainty: (T, 2) [m].
         frequency_uncertainty: relative [1].
-        levels: the motions that it was taken from, the finest last.
     """
 
     swing: Swing
@@ -142,7 +141,6 @@ class SwingReference:
     uncertainty: Array
     centre_uncertainty: Array
     frequency_uncertainty: float
-    levels: tuple[Motion, ...]
 
 
 def sampled(motion: Motion, instants: Array) -> Swing:
@@ -151,15 +149,22 @@ def sampled(motion: Motion, instants: Array) -> Swing:
     return Swing(time=instants, **found)
 
 
-def swing_reference(problem: Problem, *, duration: float, instants: Array) -> SwingReference:
+def swing_reference(
+    problem: Problem,
+    *,
+    duration: float,
+    instants: Array,
+    meshes: Sequence[int] = SWING_MESHES,
+    element: str = "corotational",
+) -> SwingReference:
     """Release `problem` from the end of its path on the meshes and return their limit at `instants` [s].
 
     Raises:
         NoReference: a motion stopped early.
     """
     levels = []
-    for elements in SWING_MESHES:
-        settings = FeSettings(elements=elements)
+    for elements in meshes:
+        settings = FeSettings(elements=elements, element=element)
         answer = answer_release(problem, settings, duration=duration, records=RECORDS)
         if not answer.converged:
             raise NoReference(f"reference with {elements} elements: {answer.message}")
@@ -180,5 +185,4 @@ def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference
         uncertainty=rotation.uncertainty,
         centre_uncertainty=limits["centre"].uncertainty,
         frequency_uncertainty=abs(swing_frequency(instants, before).value / frequency - 1.0),
-        levels=tuple(levels),
     )

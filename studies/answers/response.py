@@ -1,7 +1,8 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
+import math
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,8 +11,13 @@ import numpy as np
 from studies.answers.models import Asked
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
-from studies.cases.mechanism import Sectioned
+from studies.cases.section import Sectioned
 from studies.kinds import Array
+
+#: Parts of an estimate that are no error.
+CHOSEN = ("accuracy", "control_points", "trials", "meshes")
+#: What the models call the error of the bodies' places.
+PLACES = ("trajectory", "path")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +49,16 @@ class Answered:
     def converged(self) -> bool:
         """Whether all that was asked for was reached."""
         return self.status == "converged"
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Estimated errors by name, NaN of what there is none of; empty where nothing estimates them."""
+        return {name: float(e) for name, e in (self.estimate or {}).items() if name not in CHOSEN}
+
+    @property
+    def largest_error(self) -> float:
+        """The largest estimated error; NaN where nothing estimates one."""
+        return float(np.fmax.reduce([math.nan, *self.errors.values()]))
 
     @property
     def body(self) -> str | None:
@@ -192,7 +208,39 @@ class Response(Solved):
         """Return the neutral form of a model's path; seconds: its times."""
         arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
         own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
-        return cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
+        answer = cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
+        return answer._with_shift()
+
+    def _with_shift(self) -> "Response":
+        """Return the answer of a pivot that estimates its path with the error of the centre shift as well."""
+        found = dict(self.estimate or {})
+        known = next((found[name] for name in PLACES if name in found), None)
+        if known is None or self.crossing is None:
+            return self
+        accuracy = found["accuracy"]
+        error = float(shift_error(np.array([known]), self.centre[None], self.centre_shift[None])[0])
+        remarks = [self.resolution]
+        if error > accuracy:
+            remarks.append(f"estimated error of the centre shift {error:.1e}, above {accuracy:g}")
+        return replace(
+            self, estimate=found | {"centre_shift": error}, resolution="; ".join(filter(None, remarks))
+        )
+
+
+def shift_error(error: Array, centre: Array, shift: Array) -> Array:
+    """Return errors of centre shifts (D,) [1], from those of the bodies' places, of D paths to given turns.
+
+    The shift errs as the centre does, but it is much smaller, so that in parts of the largest shift it errs
+    more. nan where nothing shifts.
+
+    Args:
+        error: of the places, in parts of the largest displacement (D,) [1].
+        centre, shift: (D, S, 2) [m].
+    """
+    moved, shifted = (
+        np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)
+    )
+    return np.asarray(error * moved / np.where(shifted > 0.0, shifted, np.nan))
 
 
 def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:

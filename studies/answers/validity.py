@@ -219,7 +219,19 @@ def validity(answer: "Response") -> Validity:
     strips = strips_of(answer.design, answer)
     ratios = ("width_ratio", "curvature_ratio", "thickness_ratio", "strain")
     most = {name: max(float(getattr(strip, name)) for strip in strips) for name in ratios}
-    return Validity(**most, outside=tuple(told(RULES, strips, answer.effects)))
+    outside = (*assumed(answer.design), *told(RULES, strips, answer.effects))
+    return Validity(**most, outside=outside)
+
+
+def assumed(design: Design) -> Iterator[str]:
+    """Yield the sentence that stresses are of rectangles that no one named, if any are."""
+    depths = {strip.name: 1e3 * strip.depth for strip in design.strips if strip.depth_is_assumed}
+    if depths:
+        deep = f"{', '.join(depths)} as {', '.join({f'{each:.4g} mm': 1 for each in depths.values()})} deep"
+        yield (
+            f"stress: takes {deep}, rectangles of the area and second moment that are given; "
+            "section_depth_m names another depth, as of a round rod its diameter"
+        )
 
 
 def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:

@@ -207,13 +207,9 @@ def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any
     static.numberOfLoadSteps = steps
     static.verboseMode = 0
     if tuned:
-        static.adaptiveStep = False
-        static.stepInformation = 0
         static.computeLoadsJacobian = 0
-        static.newton.useModifiedNewton = True
         static.newton.modifiedNewtonContractivity = CONTRACTION
-        static.newton.relativeTolerance = tolerance
-        _choose_solver(system, asked)
+        _tune(system, asked, static, tolerance)
     return asked
 
 
@@ -223,13 +219,9 @@ def _dynamic(system: System, duration: float, steps: int, tolerance: float, radi
     moving = asked.timeIntegration
     moving.endTime = duration
     moving.numberOfSteps = steps
-    moving.adaptiveStep = False
-    moving.stepInformation = 0
     moving.verboseMode = 0
-    moving.newton.useModifiedNewton = True
-    moving.newton.relativeTolerance = tolerance
     moving.generalizedAlpha.spectralRadius = radius
-    _choose_solver(system, asked)
+    _tune(system, asked, moving, tolerance)
     return asked
 
 
@@ -241,8 +233,12 @@ def _quiet(system: System) -> Any:
     return asked
 
 
-def _choose_solver(system: System, asked: Any) -> None:
-    """Choose the faster linear solver for the number of coordinates."""
+def _tune(system: System, asked: Any, solver: Any, tolerance: float) -> None:
+    """Set fixed steps and modified Newton, and the faster linear solver for the number of coordinates."""
+    solver.adaptiveStep = False
+    solver.stepInformation = 0
+    solver.newton.useModifiedNewton = True
+    solver.newton.relativeTolerance = tolerance
     kinds = system.exu.LinearSolverType
     size = system.mbs.systemData.ODE2Size() + system.mbs.systemData.AEsize()
     asked.linearSolver.solverType = kinds.EigenSparse if size >= SPARSE_FROM else kinds.EigenDense

@@ -17,7 +17,7 @@ class CaseError(BadInput):
 def parsed(path: str | Path) -> dict[str, Any]:
     """Return the document at `path`; CaseError if it cannot be read or is not TOML."""
     try:
-        text = Path(path).read_bytes().decode("utf-8")
+        text = Path(path).read_bytes().decode("utf-8-sig")
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}), expected a TOML case file") from None
     except UnicodeDecodeError:

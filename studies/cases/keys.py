@@ -60,7 +60,12 @@ MOMENTS = keys_of(
     ("second_moment_m4", "second_moment_of_area", positive("m^4"), "b h^3 / 12 of width_m and thickness_m",
      "1.6667e-12", "second moment I of the section's area, for bending in the plane"),
 )
-SECTION = (*SIDES, *MOMENTS)
+(DEPTH,) = keys_of(
+    "section",
+    ("section_depth_m", "section_depth", positive("m"), "sqrt(12 I / A), that of the rectangle",
+     "0.001", "depth in the plane of bending of a section that is no rectangle, for stresses"),
+)
+SECTION = (*SIDES, *MOMENTS, DEPTH)
 
 MATERIAL = NAMED, *_VALUES = keys_of(
     "material",
@@ -102,8 +107,6 @@ KEYS = (
     *(replace(key, section="strip") for key in SECTION),
     *keys_of(
         "strip",
-        ("section_depth_m", "section_depth", positive("m"), "sqrt(12 I / A), that of the rectangle",
-         "0.001", "depth of a section that is no rectangle in the plane of bending, for stresses"),
         ("orientation_deg", "orientation", ROTATION, "0",
          "0", "turns the whole pivot about A1, the ground clamp of strip 1, counter-clockwise; "
          "loads and gravity keep their directions"),

@@ -8,47 +8,22 @@ from typing import TYPE_CHECKING, Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION
 from studies.cases.rules import FREE, shown
+from studies.cases.section import (
+    Sectioned,
+    completed,
+    inherited,
+    out_of_scale,
+    refuse_both,
+    too_heavy,
+    without,
+)
 
 if TYPE_CHECKING:  # a template of a case waits for no arrays
-    from studies.kinds import Array
+    pass
 
 Values = Mapping[str, Any]
-
-
-class Sectioned:
-    """What has a section: modulus, area, second moment and, where it is no rectangle, its depth [m]."""
-
-    youngs_modulus: float
-    area: float
-    second_moment_of_area: float
-    section_depth: float | None
-
-    @property
-    def depth(self) -> float:
-        """Depth of the section [m]: as given, or that of the rectangle with its A and I."""
-        depth: float = self.rectangle()["thickness"] if self.section_depth is None else self.section_depth
-        return depth
-
-    def rectangle(self) -> dict[str, Any]:
-        """Return width and thickness [m] of the rectangle with its A and I."""
-        return rectangle_of(self.area, self.second_moment_of_area)
-
-    def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
-        """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: the depth).
-
-        Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the
-        clamps' notches.
-
-        Args:
-            axial_force: N, any shape [N].
-            bending_moment: M, the same shape [N m].
-        """
-        modulus, inertia = self.youngs_modulus, self.second_moment_of_area
-        axial = axial_force / (modulus * self.area)
-        bending = bending_moment * self.depth / (2.0 * modulus * inertia)
-        return abs(axial) + abs(bending)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,11 +112,8 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         **document.values(path, SECTION, document.table(path, content, "section"), "section"),
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
-    _refuse_both(path, shared, "section")
-    bodies = tuple(
-        Body(**document.values(path, keys.BODY, given, label))
-        for label, given in _each(path, content, "bodies")
-    )
+    refuse_both(path, shared, "section")
+    bodies = tuple(_body(path, given, label) for label, given in _each(path, content, "bodies"))
     strips = tuple(_strip(path, given, label, shared) for label, given in _each(path, content, "strips"))
     names = [body.name for body in bodies]
     _refuse_twice(path, [*names, *(strip.name for strip in strips)])
@@ -161,7 +133,7 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
     """Return what the models take of a part; the sides of a section only where they are given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
-    return _without(given, ["yield_strength", "section_depth", *unsaid])
+    return without(given, ["yield_strength", "section_depth", *unsaid])
 
 
 def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
@@ -180,14 +152,25 @@ def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
     own = document.values(path, [*keys.STRIP, *keys.OWN], given, label)
-    _refuse_both(path, own, label)
-    found = completed(path, _inherited(shared, own), label, label, shared=True)
+    refuse_both(path, own, label)
+    found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]
     if found["start"] == found["end"]:
         raise CaseError(
             f"{path}: {label}.end_m: got {list(found['end'])}, where it begins, expected a length"
         )
-    return Strip(**found)
+    strip = Strip(**found)
+    if said := out_of_scale(strip):
+        raise CaseError(f"{path}: {label}: {said}")
+    return strip
+
+
+def _body(path: str, given: Mapping[str, Any], label: str) -> Body:
+    """Return one body."""
+    body = Body(**document.values(path, keys.BODY, given, label))
+    if said := too_heavy(body.mass, body.moment_of_inertia):
+        raise CaseError(f"{path}: {label}: {said}")
+    return body
 
 
 def _refuse_twice(path: str, names: list[str]) -> None:
@@ -207,78 +190,3 @@ def _driven(path: str, body: str | None, names: list[str]) -> str | None:
         expected = document.nearest(body or "", names) if names else "none, as there are no bodies"
         raise CaseError(f"{path}: drive.body: got {got}, expected {expected}")
     return body
-
-
-def completed(
-    where: str, found: Values, section: str, material: str, *, shared: bool = False
-) -> dict[str, Any]:
-    """Return the values of a strip, by attribute in SI, with area, second moment and material complete.
-
-    Args:
-        where: file that errors name. found: what the case gives.
-        section, material: how errors name the tables that these keys stand in.
-        shared: whether they may also stand in [section] and [material].
-
-    Raises:
-        CaseError: both pairs of a section, half a pair, or a key of the material missing; one line.
-    """
-    _refuse_both(where, found, section)
-    values = dict(found)
-    named = values.pop(NAMED.attribute, None)
-    if named is not None:
-        own = MATERIALS[named]
-        values = {key.attribute: own[key.attribute] for key in MATERIAL if key.attribute in own} | values
-    pair = SIDES if any(key.attribute in values for key in SIDES) else MOMENTS
-    if not any(key.attribute in values for key in SECTION):
-        expected = "width_m and thickness_m, or area_m2 and second_moment_m4"
-        missing = " there nor in [section]" if shared else ""
-        raise CaseError(f"{where}: {section}.width_m: got no such key{missing}, expected {expected}")
-    for key, label in (*((key, section) for key in pair), *((key, material) for key in keys.ELASTIC)):
-        if key.attribute not in values:
-            named_one = " or the name of a material" if key in keys.ELASTIC and named is None else ""
-            missing = f" there nor in [{key.section}]" if shared else ""
-            expected = f"{key.rule.expected}{named_one}"
-            raise CaseError(f"{where}: {label}.{key.name}: got no such key{missing}, expected {expected}")
-    if pair is SIDES:
-        values |= of_sides(values["width"], values["thickness"])
-    return values
-
-
-def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
-    """Return area b h [m^2] and second moment b h^3 / 12 [m^4] of a rectangle; sides may be arrays."""
-    return {"area": width * thickness, "second_moment_of_area": width * thickness**3 / 12.0}
-
-
-def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
-    """Return width and thickness [m] of the rectangle with that A and I: sqrt(12 I / A) thick."""
-    thickness = math.sqrt(12.0 * second_moment_of_area / area)
-    return {"width": area / thickness, "thickness": thickness}
-
-
-def _refuse_both(where: str, found: Values, label: str) -> None:
-    """Raise CaseError if both pairs, or parts of them, are given for one section."""
-    one = [key.name for key in SIDES if key.attribute in found]
-    other = [key.name for key in MOMENTS if key.attribute in found]
-    if one and other:
-        expected = "width_m and thickness_m, or area_m2 and second_moment_m4, not both"
-        raise CaseError(f"{where}: {label}.{one[0]}: got it beside {other[0]}, expected {expected}")
-
-
-def _inherited(shared: Values, own: Values) -> dict[str, Any]:
-    """Return what a strip has of its own and of what all have.
-
-    A strip's own pair of a section takes the place of the other pair that all have, and its own named
-    material that of all values of theirs.
-    """
-    left = dict(shared)
-    for pair, other in ((SIDES, MOMENTS), (MOMENTS, SIDES)):
-        if any(key.attribute in own for key in pair):
-            left = _without(left, [key.attribute for key in other])
-    if NAMED.attribute in own:
-        left = _without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
-    return left | dict(own)
-
-
-def _without(values: Values, names: list[str]) -> dict[str, Any]:
-    """Return the values but for those of these names."""
-    return {name: value for name, value in values.items() if name not in names}

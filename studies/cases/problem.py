@@ -10,7 +10,8 @@ from typing import Any
 from studies.cases.document import CaseError, is_mechanism, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LOADS_FIRST
-from studies.cases.mechanism import Body, Sectioned, Strip, completed, of_sides
+from studies.cases.mechanism import Body, Strip
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -97,6 +98,12 @@ class Problem(Sectioned):
             except ValueError as error:
                 raise CaseError(f"{key.section}.{key.name}: {error}") from None
         self._check_section()
+        for part, said in (
+            ("strip", out_of_scale(self)),
+            ("body", too_heavy(self.body_mass, self.body_moment_of_inertia)),
+        ):
+            if said:
+                raise CaseError(f"{part}: {said}")
 
     def _check_section(self) -> None:
         """Raise CaseError if the sides of the section are not those of its area and second moment."""

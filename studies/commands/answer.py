@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.motion import Spectrum
-from studies.answers.response import Answered, Solved
+from studies.answers.response import PLACES, Answered, Response, Solved
 from studies.answers.strength import Strength
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
@@ -26,8 +26,16 @@ if TYPE_CHECKING:
 
 NOT_CONVERGED = 3
 
-#: Parts of an estimate that are no error.
-CHOSEN = ("control_points", "trials", "meshes")
+#: What a static answer prints, and the names by which models estimate its error.
+PRINTED = {
+    "places": PLACES,
+    "centre shift": ("centre_shift",),
+    "torque": ("torque",),
+    "stiffness": ("stiffness",),
+    "stiffness of the body": ("body_stiffness",),
+    "energy": ("energy", "strain_energy"),
+    "stress": ("stress", "largest_stress"),
+}
 
 
 def deliver(
@@ -87,13 +95,33 @@ def described(answer: Answered) -> str:
 
 
 def estimated(answer: Answered) -> Iterator[str]:
-    """Yield what an answer that was solved to an accuracy says of its error, in a line; nothing of others."""
-    if (estimate := answer.estimate) is not None:
-        errors = {name: value for name, value in estimate.items() if name not in ("accuracy", *CHOSEN)}
+    """Yield what an answer says of its errors, and of which of what it prints they are not estimated."""
+    errors = {name: error for name, error in answer.errors.items() if math.isfinite(error)}
+    if errors:
+        estimate = answer.estimate or {}
         listed = ", ".join(f"{name.replace('_', ' ')} {value:.1e}" for name, value in errors.items())
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
+    unknown = list(_not_estimated(answer, set(errors))) if isinstance(answer, Response) else []
+    if not errors:
+        yield "errors not estimated: --accuracy estimates them"
+    elif unknown:
+        yield f"error not estimated: {', '.join(unknown)}"
+
+
+def _not_estimated(answer: Response, errors: set[str]) -> Iterator[str]:
+    """Yield what a static answer prints whose error is not among those that are estimated."""
+    there = {
+        "places": bool(answer.bodies),
+        "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
+        "torque": bool(np.isfinite(answer.torque).any()),
+        "stiffness": bool(np.isfinite(answer.stiffness).any()),
+        "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
+        "energy": True,
+        "stress": True,
+    }
+    yield from (name for name, names in PRINTED.items() if there[name] and not errors & set(names))
 
 
 def ending(answer: Solved | Spectrum) -> str:
@@ -117,22 +145,29 @@ def strength_told(found: Strength, *, floor: float) -> Iterator[str]:
     if found.yields is None:
         yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
     else:
-        where = _state(*found.yields).removeprefix("at ")
-        yield f"safety {one(found.safety, 4)} against the yield strength{limit}: it yields from {where} on"
+        where = _state(found.yields.load_factor, found.yields.rotation, 6).removeprefix("at ")
+        error = found.yields.error
+        known = f"estimated error {error:.1e}" if math.isfinite(error) else "error not estimated"
+        safety = f"safety {one(found.safety, 4)} against the yield strength{limit}"
+        yield f"{safety}: it yields from {where} on ({known})"
 
 
-def _state(load_factor: float, rotation: float) -> str:
+def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
     """Return which state it is, in degrees, or by its load."""
     if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
-        return f"at {math.degrees(rotation):.4g} deg"
-    return f"at load factor {load_factor:.4g}"
+        return f"at {math.degrees(rotation):.{digits}g} deg"
+    return f"at load factor {load_factor:.{digits}g}"
 
 
 def strength_document(found: Strength) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
     yields = None
     if found.yields is not None:
-        yields = {"load_factor": found.yields[0], "rotation_rad": found.yields[1]}
+        yields = {
+            "load_factor": found.yields.load_factor,
+            "rotation_rad": found.yields.rotation,
+            "relative_error": found.yields.error,
+        }
     return {
         "max_stress_Pa": found.stress,
         "strip": found.strip,

@@ -27,7 +27,7 @@ from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.commands import arguments as take
-from studies.commands.answer import called, deliver, draw, shown_of
+from studies.commands.answer import called, deliver, draw, headed, shown_of
 from studies.commands.columns import NOTHING, plain, prefixed, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -83,7 +83,7 @@ def _values(answer: Response, shown: Shown) -> dict[str, float]:
         "max_stress_Pa": fields.max_stress.max(),
         "strain_energy_J": fields.strain_energy[-1],
         "safety": limits.safety,
-        "yield_rotation_rad": limits.yields and limits.yields[1],
+        "yield_rotation_rad": limits.yields and limits.yields.rotation,
     }
     if shown.rotation is not None:
         found["rotation_rad"] = shown.rotation[-1]
@@ -139,7 +139,8 @@ def _document(found: Sequence[_Compared]) -> dict[str, Any]:
             {
                 "name": called(each.case, each.answer),
                 "case": Path(each.case).name,
-                **{name: getattr(each.answer, name) for name in ("model", "settings", "status", "message")},
+                **headed(each.answer),
+                "estimate": each.answer.estimate,
                 **{key: each.value(key) for _, key, _, _ in ROWS},
             }
             for each in found
@@ -165,7 +166,8 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     """Yield the lines of the table: the key, then a row a quantity, and what the others are over A."""
     letters = LETTERS[: len(found)]
     for letter, each in zip(letters, found, strict=True):
-        yield f"{letter}: {called(each.case, each.answer)}, {each.answer.status.replace('_', ' ')}"
+        told = (each.answer.status.replace("_", " "), *_remarks(each.answer))
+        yield f"{letter}: {called(each.case, each.answer)}, {'; '.join(told)}"
     rows = []
     for name, key, unit, highest in ROWS:
         values = [each.value(key) for each in found]
@@ -175,6 +177,13 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     heads = ["", "unit", *letters, *(f"{letter}/A" for letter in letters[1:])]
     columns = [plain(head, cells) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]
     yield from (line for line in table(columns) if line.strip())
+
+
+def _remarks(answer: Response) -> Iterator[str]:
+    """Yield the largest estimated error of a path, or that there is none, and what is unresolved."""
+    error = answer.largest_error
+    yield f"estimated error {error:.1e}" if math.isfinite(error) else "errors not estimated"
+    yield from filter(None, [answer.resolution])
 
 
 def _cells(unit: str, highest: int, values: list[float]) -> tuple[str, list[str]]:

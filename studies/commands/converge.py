@@ -43,6 +43,8 @@ from studies.record.store import as_csv
 
 #: Accuracies whose count is reported.
 ACCURACIES = (1e-3, 1e-4, 1e-6)
+#: Stands for a count where the reference cannot tell.
+UNSURE = "unsure"
 
 
 def _counts(low: int) -> Callable[[str], tuple[int, int]]:
@@ -126,9 +128,11 @@ def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> 
         yield from _rows(table, count)
     yield ""
     yield "count that reaches, in trajectory and torque" + "".join(f"{a:>10.0e}" for a in ACCURACIES)
-    yield from _reached(splines, elements, QUANTITIES[:2])
+    yield from _reached(splines, elements, limit, QUANTITIES[:2])
     yield "in stiffness and largest stress too"
-    yield from _reached(splines, elements, QUANTITIES)
+    yield from _reached(splines, elements, limit, QUANTITIES)
+    if max(limit.uncertainty[name] for name in QUANTITIES) > min(ACCURACIES):
+        yield f"{UNSURE}: the reference is uncertain by more than that; finer meshes help (--elements 20:640)"
 
 
 def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
@@ -143,12 +147,21 @@ def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
         yield f"{title:<9}" + ", ".join(f"{name} {values[name]:.1e}" for name in QUANTITIES)
 
 
-def _reached(splines: pd.DataFrame, elements: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[str]:
-    """Yield for each model the counts that reach the accuracies in these quantities."""
+def _reached(
+    splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference, quantities: tuple[str, ...]
+) -> Iterator[str]:
+    """Yield for each model the counts that reach the accuracies in these quantities.
+
+    An accuracy that the reference is not sure of itself is reached by no count.
+    """
+    sure = max(limit.uncertainty[name] for name in quantities)
     for table, count in ((splines, "control_points"), (elements, "elements")):
         beyond = f"> {table[count].max()}"
-        found = (reaching(table, count, accuracy, quantities) for accuracy in ACCURACIES)
-        yield f"{count.replace('_', ' '):<44}" + "".join(f"{number or beyond:>10}" for number in found)
+        found = (
+            UNSURE if sure > accuracy else reaching(table, count, accuracy, quantities) or beyond
+            for accuracy in ACCURACIES
+        )
+        yield f"{count.replace('_', ' '):<44}" + "".join(f"{number:>10}" for number in found)
 
 
 def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:

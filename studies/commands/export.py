@@ -25,7 +25,7 @@ from studies.answers.response import Answered
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.commands import arguments as take
-from studies.commands.answer import described, not_converged
+from studies.commands.answer import described, estimated, not_converged
 from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
 from studies.errors import BadInput
 from studies.exchange.formats import FORMATS, contents, require_own, write
@@ -88,7 +88,9 @@ def main(arguments: argparse.Namespace) -> int:
     fields = fields_of(answer)
     files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
     write(arguments.out, files, fields, Path(arguments.case).name)
-    print(described(answer))
+    print("\n".join((described(answer), *estimated(answer))))
+    if resolution := getattr(answer, "resolution", ""):
+        print(resolution)
     print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
     return 0 if answer.converged else not_converged(answer.message)
 

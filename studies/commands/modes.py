@@ -8,9 +8,9 @@ Modes are free vibrations about a static state: of a pivot with the body turned 
 said otherwise; of a mechanism with none turned unless --rotation-deg is given. In that state loads, weight,
 pre-strain and driven displacements act in full. Free is what a release from it lets go of: the rotation,
 unless it is --held, and driven displacements without a history; the torque and forces that drove them act on
-as they are. A negative frequency is an unstable mode (growth rate over 2 pi). slide_frequency_Hz holds those
-frequencies that are of the spline's parametrisation alone. Exit code 0: done; 2: bad input; 3: statics does
-not reach the rotation.
+as they are. A negative frequency is an unstable mode (growth rate over 2 pi), zero is a rigid motion.
+slide_frequency_Hz holds those frequencies that are of the spline's parametrisation alone. Exit code 0: done;
+2: bad input; 3: statics does not reach the rotation.
 """
 
 import argparse
@@ -78,7 +78,7 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     yield from table(
         [
             plain("mode", (str(mode) for mode in range(1, len(answer.frequency) + 1))),
-            plain("frequency", map(significant, answer.frequency), "Hz"),
+            plain("frequency", (significant(f) if f else "rigid" for f in answer.frequency), "Hz"),
             *(
                 plain(name, map(significant, _above_noise(shape)), unit)
                 for name, unit, shape in zip(
@@ -87,12 +87,13 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
             ),
         ]
     )
+    if rigid := int((answer.frequency == 0.0).sum()):
+        yield f"{rigid} of frequency 0: rigid motions that nothing holds"
     if (fall := answer.falls_in) is not None:
         yield f"a negative frequency is an unstable mode: a disturbance grows e-fold in {fall:.3g} s"
     yield from tell.estimated(answer)
-    least = answer.estimate or {}
-    if least.get("frequency", 0.0) > least.get("accuracy", math.inf):
-        yield f"the accuracy of {least['accuracy']:g} is not reached by all frequencies"
+    if answer.resolution:
+        yield answer.resolution
     if answer.converged and len(answer.frequency) < count:
         yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
     yield tell.ending(answer)

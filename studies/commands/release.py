@@ -17,11 +17,15 @@ without --step the implicit splines take 256 steps to a swing, or more where ano
 for it; a design without such a mode has 0.05 s.
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
-frequency_Hz is of the swing about its rest, ripples not counted; null without a whole swing, and
-frequency_reason says why. rotation_error_rad estimates the error of the rotation by a companion motion, of
-two control points more or of half the elements (--no-check leaves it out). wall_s leaves out that, and the
-static path to the start. Exit code 0: done, though `resolution` may say that the step or the discretisation
-does not resolve the motion; 2: bad input; 3: statics does not reach the start, or the motion stopped early.
+frequency_Hz is of the swing about its rest where one mode carries the rotation: no other has a fifth of its
+amplitude. Else, and without a whole swing, it is null, and frequency_reason says why. modes are the
+frequencies that the rotation contains, with amplitudes, the largest first, down to a tenth of the largest.
+Multiples of a larger one are its harmonics and not listed.
+rotation_error_rad and displacement_error_m estimate the largest errors of the rotations of all bodies and of
+the places of all bodies and free ends. They come from companion motions with other steps and control points
+or elements (--no-check leaves them out). wall_s leaves out these motions, and the static path to the start.
+Exit code 0: done, though `resolution` may say that step or discretisation do not resolve the motion; 2: bad
+input; 3: statics does not reach the start, or the motion stopped early.
 """
 
 import argparse
@@ -41,6 +45,7 @@ from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
+from studies.errors import BadInput
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -55,7 +60,9 @@ STILL = 1e-15
 #: Swings that are followed beyond what the design is led through, and steps in each.
 SWINGS, STEPS = 4, 256
 #: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
-MODES, FASTEST, LEAST_STEPS = 3, 40.0, 20
+MODES, FASTEST, LEAST_STEPS = 3, 40.0, 40
+#: Rigid motions that may come before them.
+RIGID = 3
 #: Duration of what has no first frequency [s].
 USUAL = 0.05
 
@@ -74,7 +81,7 @@ LINES = 20
         "the elements (default: none is asked for)"
     ),
     take.REPEAT.but("wall_s is the median of R releases, default 1"),
-    Argument("--no-check", "leave out the companion motion that says how far the rotation is resolved"),
+    Argument("--no-check", "leave out the companion motions that say how far the motion is resolved"),
     Argument(
         "--most-steps N",
         "explicit steps that are not too many to begin with (finite elements; default 20000000)",
@@ -125,8 +132,11 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
     """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives;
     of what has no stable mode the usual duration, in the model's own steps."""
-    found = answer_modes(design, settings, count=MODES)
-    frequency = found.frequency[found.frequency > 0.0]
+    try:
+        found = answer_modes(design, settings, count=MODES + RIGID)
+    except BadInput:  # of a mesh that has no more than the modes of its body
+        found = answer_modes(design, settings, count=MODES)
+    frequency = found.frequency[found.frequency > 0.0][:MODES]
     led = _last_time(design)
     if not found.converged or not frequency.size:
         return led + USUAL, None
@@ -164,8 +174,10 @@ def _document(answer: Motion) -> dict[str, Any]:
     return {
         **tell.headed(answer),
         "rotation_error_rad": answer.rotation_error,
+        "displacement_error_m": answer.displacement_error,
         "frequency_Hz": answer.swing.value,
         "frequency_reason": answer.swing.reason,
+        "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
         **(place if pivot else {"bodies": tell.places(answer.bodies)}),
         "kinetic_J": answer.kinetic_energy,
@@ -199,7 +211,10 @@ def _readable(answer: Motion) -> Iterator[str]:
         moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * scale
         yield f"frequency {rate}" + (f"; energy balanced to {answer.energy_error:.1e}" if moved else "")
     if math.isfinite(answer.rotation_error):
-        yield f"rotation uncertain by {answer.rotation_error:.1e} rad, by the discretisation"
+        apart = f"{answer.rotation_error:.1e} rad, displacements by {answer.displacement_error:.1e} m"
+        yield f"rotations uncertain by {apart}, by steps and discretisation"
+    elif len(answer.time) and answer.estimate is None:
+        yield "errors of rotations and displacements: not estimated"
     if answer.estimate is not None:
         told = {name: f"{value:.1e} rad" for name, value in answer.estimate.items() if name in ANGLES}
         parts = f"{told['time']} by steps, {told['space']} by control points" if "time" in told else ""

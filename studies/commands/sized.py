@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from spline_model.accuracy import DEFAULT
 from studies.cases.problem import Problem
 from studies.design.evaluate import PLAIN
 from studies.design.numbers import NumbersTask
@@ -35,6 +36,7 @@ def as_document(
             **_dimensions(task, found),
             **_section(found.problem),
             "spline": _named(task.quantities(found.answers)),
+            "estimated_error": _named(task.errors(task.values(found.at), found.answers)),
             "finite_elements": _named(checked),
             "active": [{"constraint": each.name, "price": each.price} for each in found.active],
         }
@@ -124,6 +126,15 @@ def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) 
         if key in case:
             yield f"{label:<28}{factor * case[key]:12.5g}{factor * spline[key]:12.5g}{factor * fe[key]:12.5g}"
     yield f"{case[task.objective] / spline[task.objective]:.4g} times less than the case's"
+    errors = task.errors(task.values(found.at), found.answers)
+    told = (
+        f"{name} {error:.1e}" if math.isfinite(error) else f"{name} not estimated"
+        for name, error in errors.items()
+    )
+    yield f"estimated error of the splines, sized: {', '.join(told)}"
+    missed = [name for name, error in errors.items() if error > DEFAULT]
+    if missed:
+        yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
     yield ""
     if isinstance(task, NumbersTask):
         yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))

@@ -102,12 +102,13 @@ def main(arguments: argparse.Namespace) -> int:
 
 def _stopped(answer: Response) -> str:
     """Return how far a path came, why it stopped, and what mends a discretisation that is too coarse."""
+    buckles = "buckle" in answer.message
     given = answer.resolution and not answer.estimate
     mend = "; without --control-points their number is chosen" if given else ""
     points, asked = _critical(answer), answer.design.rotation
-    if points and "buckle" not in answer.message:
+    if points and not buckles:
         mend += f"; it lost its stability before, first at {_passed(points[0])}"
-    if answer.model == "spline" and not given:
+    if answer.model == "spline" and not given and not buckles:
         mend += "; --model fe may go further"
     reached = ""
     if answer.crossing is not None and asked:

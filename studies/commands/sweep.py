@@ -69,14 +69,18 @@ def main(arguments: argparse.Namespace) -> int:
     """Run the sweep, or what is missing of it; return the exit code."""
     from studies.errors import BadInput
 
-    if arguments.scheduler and arguments.workers:
+    if arguments.scheduler is not None and arguments.workers:
         raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
     from studies.record.progress import Bar
     from studies.sweep.read import read_plan
     from studies.sweep.run import cluster, local_pool, sweep
 
     plan = read_plan(arguments.designs)
-    pool = cluster(arguments.scheduler) if arguments.scheduler else local_pool(plan, arguments.workers)
+    pool = (
+        cluster(arguments.scheduler)
+        if arguments.scheduler is not None
+        else local_pool(plan, arguments.workers)
+    )
     try:
         with Bar("sweep") as bar:
             solved = sweep(plan, arguments.out, pool=pool, csv=arguments.csv, progress=bar)

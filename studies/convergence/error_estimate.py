@@ -90,11 +90,6 @@ def _drawn(
         )
 
 
-def _period(problem: Problem) -> float:
-    """Return the period of the slowest small swing at rest [s]."""
-    return 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
-
-
 def _described(number: int, problem: Problem) -> dict[str, float]:
     """Return the columns that say which design a row is of."""
     return {
@@ -122,7 +117,8 @@ def _static(number: int, problem: Problem) -> Answer:
 
 def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
     """Yield the rows of one design's swings."""
-    period = _period(problem)
+    # of the slowest small swing at rest
+    period = 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     let_go = partial(answer_release, problem, duration=PERIODS * period)
     exact, check = (
         let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)

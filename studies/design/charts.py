@@ -19,15 +19,15 @@ import pandas as pd
 from scipy.optimize import brentq
 
 from spline_model import solve_many
-from spline_model.batch import Batch
+from spline_model.batch_paths import Batch
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
+from studies.answers.critical import FORCE, critical_load
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import FORCE, capacity
 from studies.answers.validity import Strip, anticlastic_factor, strips_of
 from studies.cases.effects import Effects
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_sides
 from studies.design.figures import CHARTS
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
@@ -197,7 +197,7 @@ def loaded(ratio: float, inclination: float, direction: str) -> Answer:
     ]
     answer: dict[str, Any] = {"loads": rows}
     if direction == "towards the ground":
-        found = capacity(problem, SplineSettings(control_points=POINTS), direction=angle)
+        found = critical_load(problem, SplineSettings(control_points=POINTS), direction=angle)
         answer["buckling"] = design | {"load": (found.force or np.nan) / unit, "kind": found.kind}
     return answer
 

@@ -13,7 +13,7 @@ from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
 from studies.answers.reference import reference
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
-from studies.design.evaluate import STRESS, VARIATION, Answers, answers
+from studies.design.evaluate import CONTROL_POINTS, STRESS, VARIATION, Answers, answers
 from studies.design.task import Sizing
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -134,11 +134,11 @@ class NumbersTask(Sizing):
         """Return the mechanism with these values (N,)."""
         return read_mechanism(self.where, self.content(values))
 
-    def answers(self, values: Array) -> Answers:
+    def answers(self, values: Array, control_points: int = CONTROL_POINTS) -> Answers:
         """Solve the mechanism with these values, with exact gradients by its numbers; errors as of
         `evaluate.answers`."""
         names, chain = self._chain(values)
-        return answers(self.problem(values), parameters=names, chain=chain)
+        return answers(self.problem(values), control_points, parameters=names, chain=chain)
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name: what is held, and the objectives."""

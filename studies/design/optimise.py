@@ -213,18 +213,13 @@ def _t(programme: Programme, found: Answers) -> float:
     return float(ratio**2 if name == CENTRE_SHIFT else ratio)
 
 
-def _violation(programme: Programme, y: Array) -> float:
-    """Return the worst violation of what does not depend on t."""
-    return float(np.abs(_violated(programme.excesses(y)[0])).max())
-
-
 def _outcome(programme: Programme, at: Array, message: str) -> Outcome | None:
     task = programme.task
     found = programme.answers(at)
     if found is None:
         return None
     at = np.append(at[: len(task.span)], _t(programme, found))
-    violation = _violation(programme, at)
+    violation = float(np.abs(_violated(programme.excesses(at)[0])).max())
     active, residual = programme.conditions(at)
     converged = violation <= FEASIBLE and residual <= STATIONARY
     return Outcome(

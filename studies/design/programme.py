@@ -32,12 +32,10 @@ class Active:
 
     Args:
         name: of the quantity, or of the variable at its bound.
-        multiplier: of its row in the programme [1].
         price: relative change of the objective over a relative change of the limit, to first order [1].
     """
 
     name: str
-    multiplier: float
     price: float
 
 
@@ -152,7 +150,7 @@ class Programme:
             summed[name] = summed.get(name, 0.0) + float(multiplier)
         squared = 2.0 if self.task.objective == CENTRE_SHIFT else 1.0
         active = tuple(
-            Active(name=name, multiplier=m, price=m * self._per_limit(y, name) / (squared * y[-1]))
+            Active(name=name, price=m * self._per_limit(y, name) / (squared * y[-1]))
             for name, m in summed.items()
             if name != self.task.objective and m != 0.0
         )

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from studies.cases.mechanism import of_sides
+from spline_model.confirmed import MORE
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_sides
 from studies.design import evaluate
 from studies.design.evaluate import (
     CENTRE_SHIFT,
@@ -105,9 +106,18 @@ class Sizing:
         relative ones of their limits by name: none unless a kind of design has some."""
         return np.zeros(0), np.zeros((0, len(values))), {}
 
-    def answers(self, values: Array) -> Answers:
+    def answers(self, values: Array, control_points: int = evaluate.CONTROL_POINTS) -> Answers:
         """Return what the design with these variables (N,) answers; errors as of `evaluate.answers`."""
-        return evaluate.answers(self.problem(values))
+        return evaluate.answers(self.problem(values), control_points)
+
+    def errors(self, values: Array, found: Answers) -> dict[str, float]:
+        """Return relative errors of what is found, by what more control points change; NaN: not estimated."""
+        mine = self.quantities(found)
+        try:
+            finer = self.quantities(self.answers(values, evaluate.CONTROL_POINTS + MORE))
+        except evaluate.PathEnds:
+            return dict.fromkeys(mine, math.nan)
+        return {name: abs(mine[name] - value) / abs(value) for name, value in finer.items() if value}
 
     def case(self) -> Answers:
         """Return what the start answers."""

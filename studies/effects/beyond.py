@@ -1,7 +1,7 @@
 """What planar beams leave out, priced: how the answers of a design change with each such effect."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,7 +13,6 @@ from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.effects.scenes import Unanswered, reached, strayed
 from studies.errors import BadInput
-from studies.kinds import Array
 
 Either = TypeVar("Either", bound=Problem | Mechanism)
 
@@ -58,52 +57,45 @@ def prices(design: Design) -> list[dict[str, Any]]:
     """
     spline = SplineSettings(control_points=CONTROL_POINTS)
     design = _sided(design)
-    own = _Answers.of(design, spline)
+    own = _answers(design, spline)
     missing = tuple(name for name in SECTIONS if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
     stiff = FeSettings(elements=ELEMENTS)
     sheared = replace(stiff, element="reissner")
-    return [*found, _price(SHEAR, design, sheared, lambda: _Answers.of(design, stiff))]
+    return [*found, _price(SHEAR, design, sheared, lambda: _answers(design, stiff))]
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Answers:
-    """What a price is of: centres of bodies as the body turns, stiffness at the begin of that, torque and
-    stress at its end, and first mode at rest [Hz]."""
-
-    centres: dict[str, Array]
-    stiffness: float
-    torque: float
-    stress: float
-    first_mode: float
-
-    @classmethod
-    def of(cls, design: Design, settings: Settings) -> "_Answers":
-        path, begin = reached(answer_static(design, settings)), -design.increments - 1
-        modes = reached(answer_modes(design, settings, count=1)).frequency
-        return cls(
-            centres={name: each[begin:] for name, each in path.centres.items()},
-            stiffness=path.stiffness[begin],
-            torque=path.torque[-1],
-            stress=path.max_stress[-1],
-            first_mode=float(modes[0]) if len(modes) else np.nan,
-        )
-
-    def changes(self, own: "_Answers") -> dict[str, float]:
-        """Return how far these are from the own ones."""
-        begins = {name: path[:1] for name, path in own.centres.items()}
-        trajectory = _rounded(strayed(self.centres, own.centres, begins))
-        others = {name: relative_change(getattr(self, name), getattr(own, name)) for name in CHANGED[1:]}
-        return {CHANGED[0]: trajectory, **others}
+def _answers(design: Design, settings: Settings) -> dict[str, Any]:
+    """Return what a price is of: centres of bodies as the body turns, stiffness at the begin of that, torque
+    and stress at its end, and first mode at rest [Hz]."""
+    path, begin = reached(answer_static(design, settings)), -design.increments - 1
+    modes = reached(answer_modes(design, settings, count=1)).frequency
+    return {
+        "centres": {name: each[begin:] for name, each in path.centres.items()},
+        "stiffness": path.stiffness[begin],
+        "torque": path.torque[-1],
+        "stress": path.max_stress[-1],
+        "first_mode": float(modes[0]) if len(modes) else np.nan,
+    }
 
 
-def _price(effect: str, design: Design, settings: Settings, own: Callable[[], _Answers]) -> dict[str, Any]:
+def _changes(found: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, float]:
+    """Return how far answers are from the own ones."""
+    begins = {name: path[:1] for name, path in own["centres"].items()}
+    trajectory = _rounded(strayed(found["centres"], own["centres"], begins))
+    others = {name: relative_change(found[name], own[name]) for name in CHANGED[1:]}
+    return {CHANGED[0]: trajectory, **others}
+
+
+def _price(
+    effect: str, design: Design, settings: Settings, own: Callable[[], dict[str, Any]]
+) -> dict[str, Any]:
     """Return a row of `prices`; without changes where there was no answer."""
     changes, status, reason = dict.fromkeys(CHANGED, np.nan), "converged", ""
     try:
         without = own()
-        changes = _Answers.of(design, settings).changes(without)
+        changes = _changes(_answers(design, settings), without)
     except BadInput as error:
         status, reason = "refused", str(error)
     except Unanswered as error:

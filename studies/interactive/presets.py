@@ -11,8 +11,8 @@ from spline_model.modes import natural_frequencies
 from studies.cases.design import as_toml, document_of
 from studies.cases.effects import Effects
 from studies.cases.keys import MATERIALS
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_sides
 from studies.errors import BadInput
 from studies.interactive.design import GIVEN, POISSON_RATIO, build, scene
 

@@ -6,7 +6,7 @@ a strip lies between those of the two, EI and EI / (1 - nu^2).
 
 import math
 
-from fe_reference import PlateFactors, plate_factors
+from fe_reference import plate_factors
 from studies.cases.problem import TABLE_1, named_case
 from studies.engine import Answer, Claim, Part, Study
 from studies.published.case import printed
@@ -16,15 +16,12 @@ RITZ = printed("plate")
 AGREES, LACKING = 2e-4, 0.01
 
 
-def _row(width: float, nu: float, found: PlateFactors) -> dict[str, float]:
-    shape = {"width_ratio": width, "poisson_ratio": nu}
-    return shape | {"factor_constant": found.constant, "factor_linear": found.linear}
-
-
 def _known(width: float, nu: float, constant: float, linear: float) -> Answer:
     """Return both factors of a strip beside those of the Ritz solution."""
     found = plate_factors(width, nu)
-    row, difference = _row(width, nu, found), max(abs(found.constant - constant), abs(found.linear - linear))
+    difference = max(abs(found.constant - constant), abs(found.linear - linear))
+    row = {"width_ratio": width, "poisson_ratio": nu}
+    row |= {"factor_constant": found.constant, "factor_linear": found.linear}
     return {"ritz": row | {"ritz_constant": constant, "ritz_linear": linear, "difference": difference}}
 
 

@@ -4,22 +4,21 @@ Beside the outcomes: load against deflection, critical points, and the branches 
 """
 
 import math
-from collections.abc import Mapping
 from itertools import product
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from studies.engine import Answer, Part
+from studies.engine import Answer, Part, Tables
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.record.digits import Digits
-from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, page
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, Look
 from studies.stability import family, questions
 from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
 
@@ -104,84 +103,72 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
     return {"branches": found}
 
 
-LOOKS: dict[str, dict[str, Any]] = {
-    ELASTICA: {"color": BLACK, "linewidth": 0.9},
-    PRINT: {"color": BLACK, "linestyle": "", "marker": "+", "markersize": 8.0},
-    family.PAPER: {"color": RED},
-    family.DEFAULT: {"color": BLUE},
-    family.EIGHT: {"color": PURPLE, "linestyle": "", "marker": "v", "markersize": 8.0, "fillstyle": "none"},
-    family.TWELVE: {"color": GREEN, "linestyle": "--"},
-    family.FE: {"color": GREY, "linestyle": "", "marker": "s", "markersize": 3.0, "markevery": 0.03},
+LOOKS = {
+    ELASTICA: Look(label=ELASTICA, colour=BLACK),
+    PRINT: Look(label=PRINT, colour=BLACK, line="", marker="P", hollow=True),
+    family.PAPER: Look(label=family.PAPER, colour=RED),
+    family.DEFAULT: Look(label=family.DEFAULT, colour=BLUE),
+    family.EIGHT: Look(label=family.EIGHT, colour=PURPLE, line="", marker="v", hollow=True),
+    family.TWELVE: Look(label=family.TWELVE, colour=GREEN, line="--"),
+    family.FE: Look(label=family.FE, colour=GREY, line=":"),
 }
+#: Looks of critical points, and of where a path stopped, by model.
+CRITICAL, STOPPED = (
+    {
+        name: Look(label=label, colour=look.colour, line="", marker=marker, hollow=True)
+        for name, look in LOOKS.items()
+    }
+    for label, marker in (("critical point", "o"), ("stopped, and says so", "x"))
+)
 AXES = {
-    questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]"),
-    questions.TOGGLE: ("deflection of the apex [in]", "load [lb]"),
-    questions.LEE: ("deflection below the load [cm]", "load [t]"),
-    questions.PIVOT: ("way down [mm]", "turn of the body [deg]"),
+    questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]", (0.0, 10.0)),
+    questions.TOGGLE: ("deflection of the apex [in]", "load [lb]", (None, None)),
+    questions.LEE: ("deflection below the load [cm]", "load [t]", (None, None)),
 }
+DOWN, TURN = Axis("reached_mm", "way down [mm]"), Axis("turn_deg", "turn of the body [deg]")
+LARGE = {"markersize": 7.0}
 
 
-def _figure(tables: Mapping[str, pd.DataFrame]) -> Figure:
+def _figure(tables: Tables) -> Figure:
     """Draw the four panels of the tables outcomes, curves, critical and branches."""
-    drawn = page(8.6, 6.6)
-    panels = dict(zip(AXES, drawn.subplots(2, 2).flat, strict=True))
-    for part, panel in panels.items():
-        panel.set(title=part, xlabel=AXES[part][0], ylabel=AXES[part][1])
-    for part in (questions.COLUMN, questions.TOGGLE, questions.LEE):
-        _loads(panels[part], tables, part)
-        for limit in _limits(tables["outcomes"], part):
-            panels[part].axhline(limit, color=BLACK, linewidth=0.6, linestyle=":")
-    panels[questions.COLUMN].set(ylim=(0.0, 10.0))
-    _pivot(panels[questions.PIVOT], tables["branches"])
-    handles = [Line2D([], [], label=model, **look) for model, look in LOOKS.items()]
-    handles += [
-        Line2D([], [], linestyle="", marker="o", color=BLACK, markerfacecolor="none", label="critical point"),
-        Line2D([], [], color=BLACK, linewidth=0.6, linestyle=":", label="published limit load"),
-        Line2D([], [], linestyle="", marker="x", color=BLACK, markersize=7.0, label="stopped, and says so"),
-    ]
-    drawn.legend(handles=handles, loc="outside lower center", ncols=5)
-    return drawn
+    column, toggle, lee = (_loads(tables, part) for part in AXES)
+    return sheet(8.6, 6.6, [[column, toggle], [lee, _pivot(tables["branches"])]], legend=4)
 
 
-def _loads(panel: Axes, tables: Mapping[str, pd.DataFrame], part: str) -> None:
-    """Draw the curves of a part and mark their critical points."""
+def _loads(tables: Tables, part: str) -> Panel:
+    """Return the curves of a part with their critical points and the published limit loads."""
     curves, critical = (tables[name][tables[name]["part"] == part] for name in ("curves", "critical"))
-    for model, look in LOOKS.items():
-        mine = curves[curves["model"] == model].sort_values("state")
-        if len(mine):
-            panel.plot(mine["deflection"], mine["load"], **look)
-        points = critical[critical["model"] == model]
-        if len(points):
-            panel.plot(
-                points["deflection"], points["load"], "o", color=look["color"], markerfacecolor="none",
-                markersize=7.0,
-            )  # fmt: skip
-
-
-def _limits(outcomes: pd.DataFrame, part: str) -> list[float]:
-    """Return the published limit loads of a part."""
+    outcomes = tables["outcomes"]
     asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
-    return sorted(set(outcomes[asked]["published"]))
+    levels = sorted(set(outcomes[asked]["published"]), reverse=True)
+    along, up, limits = AXES[part]
+    marks: tuple[Mark, ...] = (
+        Curves(curves, LOOKS, by="model", along="state"),
+        Curves(critical, CRITICAL, by="model", more=LARGE),
+        *(Level(level, "" if k else "published", line=":") for k, level in enumerate(levels)),
+    )
+    return Panel(Axis("deflection", along), Axis("load", up, limits=limits), marks, title=part)
 
 
-def _pivot(panel: Axes, branches: pd.DataFrame) -> None:
-    """Draw the branch on which the body turns, and the one on which it does not: dotted where unstable."""
+def _pivot(branches: pd.DataFrame) -> Panel:
+    """Return the branch on which the body turns, and the one on which it does not: dotted where unstable."""
     refined = branches[(branches["model"] == family.TWELVE) & (branches["branch"] == PRIMARY)]
     crossing, deepest = refined["first_bifurcation_mm"].min(), refined["reached_mm"].max()
-    panel.plot([0.0, crossing], [0.0, 0.0], color=BLACK, label="stable")
-    panel.plot([crossing, deepest], [0.0, 0.0], color=BLACK, linestyle=":", label="unstable")
-    for model, look in LOOKS.items():
-        mine = branches[(branches["model"] == model) & (branches["branch"] == OTHER)].sort_values("asked_mm")
-        if mine.empty:
-            continue
-        reached = mine[mine["says"].str.startswith("stopped") != True]  # noqa: E712 - nan: nothing is said
-        panel.plot(reached["reached_mm"], reached["turn_deg"], **look)
-        stopped = mine.drop(reached.index)
-        if len(stopped):
-            ends = {"marker": "x", "linestyle": "", "color": look["color"], "markersize": 7.0}
-            panel.plot(stopped["reached_mm"], stopped["turn_deg"], **ends)
-    panel.plot(crossing, 0.0, "o", color=GREEN, markerfacecolor="none", markersize=7.0)
-    panel.legend(loc="upper left")
+    other = branches[branches["branch"] == OTHER]
+    stopped = other["says"].fillna("").str.startswith("stopped")
+    ways = {"stable": ("-", 0.0, crossing), "unstable": (":", crossing, deepest)}
+    marks = [
+        Curves(pd.DataFrame({"reached_mm": ends, "turn_deg": 0.0}), Look(label=name, colour=BLACK, line=line))
+        for name, (line, *ends) in ways.items()
+    ]
+    marks += [
+        Curves(other[~stopped], LOOKS, by="model", along="asked_mm"),
+        Curves(other[stopped], STOPPED, by="model", more=LARGE),
+        Curves(
+            pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0}), CRITICAL[family.TWELVE], more=LARGE
+        ),
+    ]
+    return Panel(DOWN, TURN, marks, title=questions.PIVOT)
 
 
 #: The branch beyond 10 mm amplifies round-off, and where on a curve a state lies is up to the arc length.

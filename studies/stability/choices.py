@@ -38,10 +38,14 @@ def _others() -> Iterator[family.StaticCase]:
     cross = family.as_mechanism(given, OTHER_ROTATION)
     first, second = cross.strips
     length = given.length
+    (x, y), (end_x, end_y) = second.start, second.end
     pairs = {
         "parallel strips, half a length apart": (first, _beside(first, length / 2.0)),
         "parallel strips, a tenth of a length apart": (first, _beside(first, length / 10.0)),
-        "second strip 0.7 as long": (first, replace(second, start=_between(second, 0.3))),
+        "second strip 0.7 as long": (
+            first,
+            replace(second, start=(x + 0.3 * (end_x - x), y + 0.3 * (end_y - y))),
+        ),
         "strips at 45 and 59 degrees": (first, replace(second, start=(0.6 * second.start[0], 0.0))),
         "second strip 10 times as stiff": (first, _thicker(second, 10.0)),
         "second strip 100 times as stiff": (first, _thicker(second, 100.0)),
@@ -61,14 +65,6 @@ def _beside(strip: Strip, by: float) -> Strip:
     """Return the second strip parallel to a first one."""
     (x, y), (end_x, end_y) = strip.start, strip.end
     return replace(strip, name=STRIPS[1], start=(x + by, y), end=(end_x + by, end_y))
-
-
-def _between(strip: Strip, share: float) -> tuple[float, float]:
-    """Return the point of a straight strip at a share of its length."""
-    return (
-        strip.start[0] + share * (strip.end[0] - strip.start[0]),
-        strip.start[1] + share * (strip.end[1] - strip.start[1]),
-    )
 
 
 def _thicker(strip: Strip, factor: float) -> Strip:

@@ -1,7 +1,7 @@
 """Static paths of Table 1 at the ends of its range: far rotations, and slender and inextensible strips."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from typing import Any
@@ -82,7 +82,7 @@ def _inextensible(settings: Any) -> SplineSettings:
     return chosen
 
 
-def _limit_table(settings: Any, chosen: Sequence[float] = SLENDER) -> pd.DataFrame:
+def _limit_table(settings: Any) -> pd.DataFrame:
     """Return, slenderness by slenderness, the distance to the inextensible strip, the iterations and digits.
 
     With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
@@ -90,7 +90,7 @@ def _limit_table(settings: Any, chosen: Sequence[float] = SLENDER) -> pd.DataFra
     """
     rigid = answer_static(_slender(SLENDER[-1]), _inextensible(settings))
     rows = []
-    for slenderness in chosen:
+    for slenderness in SLENDER:
         here = answer_static(_slender(slenderness), settings)
         beside = answer_static(_slender(slenderness * NEIGHBOUR), settings)
         gap = _gap(here, rigid)

@@ -90,7 +90,8 @@ def _cases() -> Iterator[_BucklingCase]:
         exact=_extensible_euler(SLENDERNESS),
     )
     for degrees in PUBLISHED:
-        yield _post_buckling(degrees)
+        name, angle = f"column: elastica at {degrees} deg", float(degrees)
+        yield _turned(name, bent_column(degrees), "tip angle [deg]", exact=angle, published=angle)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
             yield _BucklingCase(
@@ -119,30 +120,16 @@ def _cases() -> Iterator[_BucklingCase]:
         quantity="bifurcation [m]",
         value=lambda arc: arc.critical_load(BIFURCATION),
     )
-    yield from map(_pushed, DEPTHS)
+    for depth in DEPTHS:
+        name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
+        yield _turned(name, pushed_pivot(depth), "turn of the body [deg]")
 
 
-def _post_buckling(degrees: int) -> _BucklingCase:
-    """Return the column at the load at which the elastica's tip has turned by `degrees`."""
+def _turned(name: str, frame: Frame, quantity: str, **known: float) -> _BucklingCase:
+    """Return the question how far the other branch turns: of a column by the elastica, of the pivot beyond
+    the buckling of its strips."""
     return _BucklingCase(
-        name=f"column: elastica at {degrees} deg",
-        frame=bent_column(degrees),
-        quantity="tip angle [deg]",
-        value=lambda arc: arc.turned,
-        follow_branch=True,
-        exact=float(degrees),
-        published=float(degrees),
-    )
-
-
-def _pushed(depth: float) -> _BucklingCase:
-    """Return the pivot pushed down by `depth` [m], beyond the buckling of its strips, on the other branch."""
-    return _BucklingCase(
-        name=f"pivot pushed down {1e3 * depth:g} mm: other branch",
-        frame=pushed_pivot(depth),
-        quantity="turn of the body [deg]",
-        value=lambda arc: arc.turned,
-        follow_branch=True,
+        name=name, frame=frame, quantity=quantity, value=lambda arc: arc.turned, follow_branch=True, **known
     )
 
 

@@ -8,14 +8,14 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from studies.answers.models import model_of
-from studies.answers.response import centre_shift
+from studies.answers.response import centre_shift, shift_error
 from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
 from studies.cases.document import is_mechanism
 from studies.cases.effects import DEFAULT, MOTION_ONLY
-from studies.cases.mechanism import of_sides
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
+from studies.cases.section import of_sides
 from studies.kinds import Array
 from studies.sweep import plan, points
 from studies.sweep.plan import Task
@@ -127,7 +127,7 @@ def _paths(
 ) -> tuple[NDArray[np.bool_], Columns]:
     """Return which designs are sure, and the quantities of all; none where the kernel does not take them.
 
-    A path that stops, or passes a critical point, is not sure.
+    A path that stops, passes a critical point, or misses the accuracy is not sure.
     """
     from spline_model.batch import solve_many
 
@@ -148,19 +148,25 @@ def _paths(
     unstable = np.count_nonzero(batch.inertia, axis=1)
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
     own = {name: getattr(batch, name) for name in ("rotation", "torque", "stiffness", "energy")}
+    shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
+    by_name = (*batch.errors.values(), shift_error(batch.errors["trajectory"], batch.centre, shift))
+    error = np.fmax.reduce(by_name)
     paths = Paths(
         rest=0,
         stress=batch.strain * given["youngs_modulus"][:, None],
         defect=batch.moment_defect,
         unstable=unstable,
         iterations=(1 + task.options["both_sides"]) * batch.iterations,
-        shift=centre_shift(_crossing(given), batch.rotation, batch.centre),
+        shift=shift,
         places={},
         strips=(_strip(given).bent(batch.strain.max(axis=1)),),
         effects=tuple(PLAIN),
+        control_points=batch.control_points.astype(float),
+        error=error,
         **own,
     )
-    sure = batch.converged & (unstable == 0) & ~turning
+    resolved = batch.accuracy is None or error <= batch.accuracy
+    sure = batch.converged & (unstable == 0) & ~turning & resolved
     return sure, points.values(points.stored(task), paths)
 
 

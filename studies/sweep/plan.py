@@ -10,8 +10,8 @@ from studies.answers.settings import Settings, settings_of_model
 from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
-from studies.cases.mechanism import rectangle_of
 from studies.cases.rules import Rule, not_negative, number, positive, text, whole
+from studies.cases.section import rectangle_of
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")
@@ -83,8 +83,7 @@ class Task:
     def settings_of(self, values: Mapping[str, Any]) -> Settings:
         """Return the settings of one design: those of the sweep, and those that it varies."""
         own = {key.partition(".")[2]: value for key, value in values.items() if is_setting(key)}
-        usual = {"control_points": CONTROL_POINTS} if self.model == "spline" else {}
-        return settings_of_model(self.model, **(usual | self.settings | own))
+        return settings_of_model(self.model, **(self.settings | own))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,8 +105,6 @@ class Plan:
         return number * self.chunk, min((number + 1) * self.chunk, self.sample.points)
 
 
-#: Control points of a spline unless said otherwise.
-CONTROL_POINTS = 6
 SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"

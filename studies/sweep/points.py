@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.models import Asked, put
+from studies.answers.models import put
 from studies.answers.motion import Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import Settings
@@ -50,7 +50,8 @@ class Paths:
     torque [N m]; stiffness [N m/rad]; shift (D, S, 2) of the crossing point [m]; stress the largest of the
     strips [Pa]; energy of strain [J]; defect of the moments [1]; unstable (D,) states, -1 where the model
     cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad];
-    strips with the most that happens to them, arrays (D,); effects that were assembled.
+    strips with the most that happens to them, arrays (D,); effects that were assembled; control_points (D,),
+    nan of another model; error (D,) the largest estimated one [1], nan where it is not estimated.
     """
 
     rest: int
@@ -66,6 +67,8 @@ class Paths:
     places: Mapping[str, Array]
     strips: tuple[Strip, ...]
     effects: tuple[str, ...]
+    control_points: Array
+    error: Array
 
 
 def _shift(paths: Paths) -> Array:
@@ -94,6 +97,13 @@ PATH = {
         "largest relative imbalance of the strips' moments, of a spline", lambda p: p.defect.max(axis=1)
     ),
     "iterations": _Quantity("Newton iterations", lambda p: p.iterations, whole=True),
+    "control_points": _Quantity(
+        "control points of a strip, of a spline", lambda p: p.control_points, whole=True
+    ),
+    "estimated_error": _Quantity(
+        "largest estimated relative error of what `solve` answers; none where it is not estimated",
+        lambda p: p.error,
+    ),
     "unstable_states": _Quantity(
         "states of the path that are not stable, -1 where the model does not say",
         lambda p: p.unstable,
@@ -205,14 +215,15 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
             words = "" if not both_sides else "to the other side: " if found else "to the one side: "
             return NOT_CONVERGED, words + result.message, None
         found.append(result)
-    remark = "; ".join(dict.fromkeys(result.message for result in found if result.message))
-    paths = [_paths_of(side, result) for side, result in zip(asked, found, strict=True)]
-    return CONVERGED, remark, paths[0] if len(paths) == 1 else _joined(*paths)
+    answers = [Response.of(side, result) for side, result in zip(asked, found, strict=True)]
+    remarks = (each for answer in answers for each in (answer.message, answer.resolution) if each)
+    paths = list(map(_paths_of, answers))
+    return CONVERGED, "; ".join(dict.fromkeys(remarks)), paths[0] if len(paths) == 1 else _joined(*paths)
 
 
-def _paths_of(asked: Asked, result: Any) -> Paths:
-    """Return the path of one design from a model's solution."""
-    design, answer = asked.design, Response.of(asked, result, wall_s=np.nan, solve_s=np.nan)
+def _paths_of(answer: Response) -> Paths:
+    """Return the path of one design from its answer."""
+    design, result = answer.design, answer.solution
     inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
     places = {name: place[None] for name, place in answer.bodies.items()}
     moduli = np.array([strip.youngs_modulus for strip in design.strips])
@@ -233,6 +244,8 @@ def _paths_of(asked: Asked, result: Any) -> Paths:
         places=places,
         strips=tuple(strip.bent(strain) for strip, strain in strips),
         effects=tuple(design.effects.names),
+        control_points=np.array([answer.settings.get("control_points", np.nan)], dtype=float),
+        error=np.array([answer.largest_error]),
     )
 
 
@@ -249,6 +262,8 @@ def _joined(one: Paths, other: Paths) -> Paths:
         unstable=np.where(one.unstable < 0, -1, one.unstable + other.unstable),
         iterations=one.iterations + other.iterations,
         strips=tuple(strip.bent(np.maximum(strip.strain, twin.strain)) for strip, twin in strips),
+        control_points=np.fmax(one.control_points, other.control_points),
+        error=np.fmax(one.error, other.error),
         **both,
     )
 
@@ -274,4 +289,6 @@ def _answered(task: Task, design: Design, settings: Settings) -> tuple[str, str,
         return static_answer(design, settings, **task.options)
     ask = answer_modes if task.kind == "modes" else answer_release
     answer: Spectrum | Motion = ask(design, settings, **task.options)
-    return (CONVERGED if answer.converged else NOT_CONVERGED), answer.message, answer
+    status = CONVERGED if answer.converged else NOT_CONVERGED
+    remarks = (answer.message, getattr(answer, "resolution", ""))
+    return status, "; ".join(filter(None, remarks)), answer

@@ -11,18 +11,17 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_release, answer_static
+from studies.answers.adapters import answer_static
 from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.reference import (
     MESHES,
     QUANTITIES,
-    RECORDS,
     Reference,
     errors,
     limit_of,
-    limit_of_swings,
     sampled,
+    swing_reference,
 )
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.baselines.answer import Followed, SolvedMotion, SolvedPath
@@ -182,17 +181,12 @@ def swing_limits(problem: Problem) -> tuple[dict[str, Array], list[dict[str, Any
         for n in (SWING_REFINED, SWING_CHECK)
     )
     with_rotary = replace(problem, effects=problem.effects.renamed([*problem.effects.names, ROTARY]))
-    reissner = limit_of_swings(
-        [
-            answer_release(
-                with_rotary,
-                FeSettings(elements=n, element="reissner"),
-                duration=formulations.DURATION,
-                records=RECORDS,
-            )
-            for n in SHEAR_MESHES
-        ],
-        formulations.INSTANTS,
+    reissner = swing_reference(
+        with_rotary,
+        duration=formulations.DURATION,
+        instants=formulations.INSTANTS,
+        meshes=SHEAR_MESHES,
+        element="reissner",
     )
     told = (
         ("uncertainty", WITHOUT_SHEAR, np.abs(check - refined)),

@@ -71,5 +71,4 @@ def _call(settings: Settings) -> tuple[float, float]:
 
 STUDY = Study(
     parts=(Part(at=lambda: tuple(MODELS), ask=_waited, alone=True),),
-    figures={},
 )

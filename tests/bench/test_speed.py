@@ -54,7 +54,14 @@ def test_release(benchmark):
 @pytest.mark.parametrize("threads", [1, 2])
 def test_batch(benchmark, threads):
     """Requirement: a batch of designs reaches every end, each with 45 iterations or fewer."""
-    batch = benchmark(solve_many, designs(), rotation=QUARTER_TURN, increments=INCREMENTS, threads=threads)
+    batch = benchmark(
+        solve_many,
+        designs(),
+        rotation=QUARTER_TURN,
+        increments=INCREMENTS,
+        threads=threads,
+        control_points=6,
+    )
     benchmark.extra_info.update(designs=DESIGNS, newton_iterations=int(batch.iterations.sum()))
     assert batch.converged.all()
     assert batch.iterations.max() <= MOST_ITERATIONS

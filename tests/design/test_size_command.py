@@ -60,7 +60,6 @@ GUIDE, LINKAGE = "parallel_strip_guide", ("four_bar_of_flexures", "--objective",
     ("arguments", "message"),
     [
         ([CASE], "size: the following arguments are required: --objective"),
-        ([CASE, "--objective", "shift"], "argument --objective: got shift, expected"),
         (
             [CASE, *QUICK, "--width-mm", "20:5"],
             "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",

@@ -14,10 +14,11 @@ def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
         cantilever(elements=2, element=element),
         moment=2.4 * np.pi * MOMENT,
         increments=12,
+        check=False,
         raise_on_failure=False,
     )
     assert answer.status is Status.NOT_CONVERGED
-    assert answer.message.startswith("an element is folded")
+    assert "an element is folded" in answer.message
     assert 0.9 < answer.rotation[-1] / (2.0 * np.pi) <= 1.0
 
 

@@ -95,7 +95,7 @@ def test_model_without_clamps_is_refused() -> None:
     """A model that nothing holds has no static solution."""
     free = cantilever(elements=2)
     strip = replace(free.strips[0], root=FREE)
-    with pytest.raises(InvalidParameter, match="strips: got 'a model that can move freely', expected clamps"):
+    with pytest.raises(InvalidParameter, match="nothing holds body body against turning"):
         solve_loads(replace(free, strips=(strip,)), moment=1.0)
 
 
@@ -112,7 +112,11 @@ def test_failed_path_keeps_what_converged() -> None:
     calls: list[tuple[int, int]] = []
     with pytest.raises(ConvergenceError, match=r"between rotation .* halvings of the increment") as failure:
         solve_statics(
-            pivot(elements=8), rotation=40.0, increments=4, progress=lambda *call: calls.append(call)
+            pivot(elements=8),
+            rotation=40.0,
+            increments=4,
+            check=False,
+            progress=lambda *call: calls.append(call),
         )
     solution = failure.value.solution
     reached = len(solution.torque) - 1

@@ -245,10 +245,6 @@ def test_frequencies_are_those_of_the_flexibility(element: str) -> None:
             "root: got -1.0, expected a number not below 0 [thicknesses]",
         ),
         (
-            lambda: guide({"root_compliance": {}}, section=WIDE),
-            "root_compliance: got {}, expected a value of root [name]",
-        ),
-        (
             lambda: solve_loads(guide({"clamped_width": {}}, section=WIDE | {"width": 10.0})),
             "clamped_width: got 100.0, expected a width over length up to 30 [1]",
         ),

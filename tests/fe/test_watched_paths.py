@@ -183,8 +183,8 @@ def test_a_stretched_strip_tells_that_it_is_unstable(element: str) -> None:
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         found = []
         for count in elements:
-            answer = solve_mechanism(stretched(80.0, count, element), increments=1)
-            assert answer.message.endswith("load factor 0; the last state is unstable")
+            answer = solve_mechanism(stretched(80.0, count, element), increments=1, check=False)
+            assert "load factor 0; the last state is unstable" in answer.message
             (point,) = answer.critical_points
             assert (point.kind, point.load_factor, point.inertia) == ("bifurcation", 0.0, 1)
             told = re.search(r"the strips buckle at ([\d.]+) % of the natural strains", answer.message)
@@ -204,7 +204,8 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     def error(elements: tuple[int, ...] = (10, 20, 40)) -> float:
         found = []
         for count in elements:
-            _, strips = solve_statics(pressed(elements=count), rotation=0.0, increments=4).critical_points
+            path = solve_statics(pressed(elements=count), rotation=0.0, increments=4, check=False)
+            _, strips = path.critical_points
             found.append(20e3 * strips.load_factor)
         return float(abs(extrapolated(found) / STRIPS_BUCKLE - 1.0))
 
@@ -213,13 +214,13 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
 
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
-    answer = solve_mechanism(pressed(elements=8), increments=4)
+    answer = solve_mechanism(pressed(elements=8), increments=4, check=False)
     tips, strips = answer.critical_points
     assert tips.inertia == 1
     assert strips.inertia == answer.inertia[-1] > 1
     assert re.search(r"give way with the body at 2\.\d+ kN, load factor 0\.1", answer.message)
     assert re.search(r"the strips buckle at 1[78]\.\d+ kN, load factor 0\.9", answer.message)
-    assert answer.message.endswith("the last state is unstable")
+    assert "the last state is unstable" in answer.message
 
 
 def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:

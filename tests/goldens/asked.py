@@ -31,8 +31,8 @@ SLOW = (
     "solve {case} --model fe --elements 5 --increments 4 --accuracy 1e-2",
     "modes {case}{mass} --count 4",
     "modes {case}{mass} --control-points 6 --rotation-deg 5 --held --count 4",
-    "capacity {case} --control-points 8",
-    "capacity {case} --model fe --elements 4 --held --force-direction-deg 180",
+    "critical-load {case} --control-points 8",
+    "critical-load {case} --model fe --elements 4 --held --force-direction-deg 180",
 )
 #: Asked of the shipped cases alone.
 QUICK_SHIPPED = ("release {case} --control-points 5 --duration 0.005 --step 1e-4 --no-check",)

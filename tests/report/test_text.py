@@ -9,9 +9,6 @@ from studies.record.store import Store
 from studies.registry import STUDIES
 from tests.report.sources import FOLDER, SECTIONS, prose, quoted, text
 
-#: Years, pages and volumes stand there.
-REFERENCES = "references.typ"
-
 
 @pytest.mark.parametrize("path", SECTIONS, ids=lambda path: path.name)
 def test_no_number_is_typed(path):
@@ -34,16 +31,6 @@ def test_no_number_is_typed(path):
 def test_typed_number_is_seen(typed):
     """The scan has teeth: a number in any form is found."""
     assert re.search(r"\d", prose(typed))
-
-
-@pytest.mark.parametrize(
-    "named", ["Eqs 10 and 13", "Fig 4", "Eqs 21 to 30", "$n = 4$", '#fact("fig04.a")', "// 5"]
-)
-def test_name_with_a_digit_is_no_number(named, tmp_path):
-    """The paper's equations and figures, mathematics, names of facts and comments may hold digits."""
-    path = tmp_path / "a.typ"
-    path.write_text(named, encoding="utf-8")
-    assert not re.search(r"\d", prose(text(path)))
 
 
 @pytest.mark.parametrize(
@@ -75,11 +62,6 @@ def test_every_study_appears(content):
         assert not names or names & quoted("plot"), study
     lines = [row[0].replace("\u200b", "") for row in content["listings"]["provenance"]["rows"]]
     assert lines == list(STUDIES)
-
-
-def test_every_result_is_fresh(content):
-    """No number and no figure of the report comes from a stale result."""
-    assert content["stale"] == []
 
 
 def test_every_figure_has_words():

@@ -78,7 +78,7 @@ def many(count=40):
 def test_a_batch_equals_single_solves():
     """Requirement: many designs at once give the answers of single solves, whatever the threads."""
     designs = many()
-    one, two = (solve_many(designs, rotation=1.2, increments=20, threads=t) for t in (1, 2))
+    one, two = (solve_many(designs, rotation=1.2, increments=20, threads=t, control_points=6) for t in (1, 2))
     for name in ("torque", "stiffness", "centre", "energy"):
         assert np.array_equal(getattr(one, name), getattr(two, name))
     assert one.converged.all()
@@ -127,7 +127,8 @@ def test_columns_are_the_same_as_rows():
 def strain_error(depth=4e-3):
     """Largest strain of three designs in a batch, by a depth, against the section forces of single solves."""
     designs = many(3)
-    batch = solve_many(designs, rotation=[0.9, -0.6, 1.2], increments=10, section_depth=depth)
+    turns = [0.9, -0.6, 1.2]
+    batch = solve_many(designs, rotation=turns, increments=10, section_depth=depth, control_points=6)
     errors = [np.finfo(float).eps]
     for design, rotation, found in zip(designs, batch.rotation, batch.strain, strict=True):
         path = solve_statics(

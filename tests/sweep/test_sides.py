@@ -23,6 +23,7 @@ from studies.sweep.read import plan_of
 def test_sides_names_and_orientations_can_be_varied(vary, together):
     """Designs of varied sides, materials and orientations answer all at once as they do one by one."""
     content = {"case": "titanium_pivot", "vary": vary, "sample": {"method": "list"}}
+    content["settings"] = {"control_points": 8}
     task = plan_of("sweep", content, Path()).task
     assert task.batch == together
     columns = {f"{section}.{key}": each for section, keys in vary.items() for key, each in keys.items()}

@@ -1,0 +1,213 @@
+"""The paths of many designs of a mechanism with one number of control points, and their answers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import compile_scene
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import Mechanism
+from spline_model.newton import TOLERANCE
+from spline_model.proportional import has_loads, steady
+from spline_model.reduced.arrays import Answer, Route
+from spline_model.reduced.designs import Given, designs_of
+from spline_model.reduced.many import Designs, Share, Stations, follow_all
+from spline_model.reduced.model import Reduced, reduced
+from spline_model.reduced.numbers import LEAST_COMPLIANCE
+from spline_model.reduced.preload import Preload
+from spline_model.sections import STATIONS
+from spline_model.solution import remark
+
+Array = NDArray[np.float64]
+
+ESTIMATED = ("trajectory", "torque", "stiffness", "energy", "strain")
+"""What the accuracy of a batch is about."""
+SOLVED = (
+    "states",
+    "centre",
+    "torque",
+    "stiffness",
+    "energy",
+    "strain",
+    "inertia",
+    "moment_defect",
+    "iterations",
+)
+"""What the kernel fills, in its order."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Batch:
+    """Answers of D designs at S states each, the unturned one first; nan behind a path that stopped.
+
+    states (D,) converged states; rotation (S,), or (D, S) where designs have their own [rad];
+    centre (D, S, 2) of the body [m]; torque (D, S) [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J];
+    strain (D, S) the largest of the extreme fibres, |N / (EA)| + |M| d / (2 EI) over the
+    stations of both strips [1], nan without a section depth d; inertia (D, S) negative
+    eigenvalues of the reduced tangent, 0 for a stable state, -1 behind a path that stopped;
+    moment_defect (D, S) as in ``Path``; iterations (D,) of Newton.
+    control_points (D,); accuracy: that they were chosen for, None for a given number; errors: the estimated
+    ones (D,) by the names of ``ErrorEstimate`` and "strain", nan where nothing estimates them.
+    """
+
+    states: NDArray[np.int64]
+    rotation: Array
+    centre: Array
+    torque: Array
+    stiffness: Array
+    energy: Array
+    strain: Array
+    inertia: NDArray[np.int64]
+    moment_defect: Array
+    iterations: NDArray[np.int64]
+    control_points: NDArray[np.int64]
+    accuracy: float | None
+    errors: dict[str, Array]
+
+    @property
+    def converged(self) -> NDArray[np.bool_]:
+        """Designs whose path reached its end, (D,)."""
+        return np.asarray(self.states == self.rotation.shape[-1])
+
+    @property
+    def resolved(self) -> NDArray[np.bool_]:
+        """Designs whose estimated errors are below the accuracy, (D,); all of them for a given number."""
+        if self.accuracy is None:
+            return np.ones(len(self.states), dtype=bool)
+        return np.asarray(np.fmax.reduce(list(self.errors.values())) <= self.accuracy)
+
+    def take(self, other: Batch, rows: NDArray[np.int64], errors: Mapping[str, Array]) -> None:
+        """Take over the answers of some designs from another batch, with their errors (R,)."""
+        for name in (*SOLVED, "control_points"):
+            getattr(self, name)[rows] = getattr(other, name)[rows]
+        for name, each in errors.items():
+            self.errors[name][rows] = each
+
+    def resolution(self, row: int) -> str:
+        """Empty, or which errors of a design are above the accuracy, or that nothing estimates them."""
+        if self.resolved[row]:
+            return ""
+        errors = {name: float(each[row]) for name, each in self.errors.items()}
+        points = int(self.control_points[row])
+        return remark(errors, float(self.accuracy or 0.0), points) or (
+            f"accuracy not estimated: {points} control points and more have no common path"
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Many:
+    """What is asked of D designs of a mechanism: rotations (D,) [rad] of a body, the same for all where it is
+    ``shared``, depths (D,) of the sections over L or (0,), and whether loads come on ``first``."""
+
+    base: Mechanism
+    given: Given
+    turned: Array
+    shared: bool
+    depth: Array
+    body: str
+    increments: int
+    first: bool
+    workers: int
+
+    def solve(self, batch: Batch, rows: NDArray[np.int64]) -> None:
+        """Solve some of the designs with the control points of a batch, and write them into it."""
+        base = self.base.with_control_points(int(batch.control_points[0]))
+        model, place = _model(base, self.body, self.first), self._place
+        split, small = model.strips.split, (self.given.compliance[rows] < LEAST_COMPLIANCE).any(axis=1)
+        slender_ones = (small | ~model.strips.compliance[:, :split].all()) & (split > 0)
+        with ThreadPoolExecutor(self.workers) as pool:
+            for slender in (False, True):  # their elements differ: see ``LEAST_COMPLIANCE``
+                alike = rows[slender_ones == slender]
+                if alike.size:
+                    kind = model.as_slender(slender=slender)
+                    given, turned = self.given.rows(alike), self.turned[alike]
+                    numbers = designs_of(kind, Given.of(base.design), given, turned)
+                    deep = self.depth[alike] if self.depth.size else self.depth
+                    share = (self.workers, kind, place, alike, numbers, deep, self.increments, batch)
+                    together = map if self.workers == 1 else pool.map
+                    list(together(partial(_solve_share, *share), range(self.workers)))
+
+    def empty(self, control_points: int, accuracy: float | None) -> Batch:
+        """A batch of which nothing is solved yet."""
+        designs, increments = len(self.turned), self.increments
+        shape = (designs, increments + 1)
+        paths = np.linspace(0.0, self.turned, increments + 1, axis=1)
+        return Batch(
+            states=np.zeros(designs, dtype=np.int64),
+            rotation=paths[0] if self.shared else paths,
+            centre=np.full((*shape, 2), np.nan),
+            torque=np.full(shape, np.nan),
+            stiffness=np.full(shape, np.nan),
+            energy=np.full(shape, np.nan),
+            strain=np.full(shape, np.nan),
+            inertia=np.full(shape, -1, dtype=np.int64),
+            moment_defect=np.full(shape, np.nan),
+            iterations=np.zeros(designs, dtype=np.int64),
+            control_points=np.full(designs, control_points),
+            accuracy=accuracy,
+            errors={name: np.full(designs, np.nan) for name in ESTIMATED},
+        )
+
+    @property
+    def _place(self) -> int:
+        """Where the body's pose begins."""
+        return 3 * [body.name for body in self.base.design.bodies].index(self.body)
+
+
+def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
+    """The element's scene of a mechanism, one body turned; refused where a batch does not know it.
+
+    first: whether loads come on as weight does.
+    """
+    scene = mechanism.driven(1.0, body)
+    model = reduced(compile_scene(steady(scene) if first and has_loads(scene) else scene))
+    if model is None:
+        raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
+    return model
+
+
+def _solve_share(
+    workers: int,
+    model: Reduced,
+    place: int,
+    rows: NDArray[np.int64],
+    designs: Designs,
+    depth: Array,
+    increments: int,
+    batch: Batch,
+    worker: int,
+) -> None:
+    """Solve what one thread does of the designs of one kind of element, with working arrays of its own.
+
+    rows: theirs in the batch.
+    """
+    strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
+    own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
+    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
+    copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
+    factors, held = np.linspace(0.0, 1.0, increments + 1), len(bodies.held)
+    route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
+    grows = factors[[0, -1]] if model.system.is_preloaded else factors[:0]
+    share = Share(
+        rows=rows,
+        begin=worker,
+        stride=workers,
+        designs=designs,
+        depth=depth,
+        stations=Stations.of(model, STATIONS),
+        growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
+        place=place,
+        along=strips.along,
+        curved=preload.curvature,
+        results=tuple(getattr(batch, name) for name in SOLVED),
+    )
+    arrays = model.arrays()._replace(bodies=bodies, strips=strips._replace(**own))
+    answer = Answer.empty(len(factors), model.size, held)
+    # the moment defect refuses
+    follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

@@ -1,0 +1,123 @@
+"""Rigid motions that nothing holds: of parts of a scene that no strip ties to the ground.
+
+Such a motion has no stiffness, so that a path is followed with just as many coordinates held, its props. In
+equilibrium they bear nothing; where they bear something, there is no equilibrium.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System
+from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
+from spline_model.effects.base import Constraint
+from spline_model.effects.boundary import GROUND
+from spline_model.errors import InvalidParameter
+from spline_model.scene import Body, Scene
+
+Array = NDArray[np.float64]
+
+RANK = 1e-9
+"""Singular value, relative, below which drives do not hold a motion."""
+BORNE = 1e-8
+"""Largest reaction of a prop in equilibrium, in EI/L^2 and EI/L, beside that part of the largest load."""
+WAYS = ("along x", "along y", "against turning")
+UNITS = ("N", "N", "N m")
+
+
+class Unheld(InvalidParameter):
+    """A rigid motion that nothing holds, and a load along it: there is no equilibrium."""
+
+
+def propped(scene: Scene) -> Scene:
+    """The scene with props where rigid motions are free, behind all other constraints."""
+    props: list[Constraint] = []
+    for part in _loose(scene):
+        rows = [row for drive in scene.of(Constraint) for row in _rows(drive, part)]
+        for body in part:
+            for axis in range(3):
+                row = _row(body, axis, part)
+                if _rank([*rows, row]) > _rank(rows):
+                    rows.append(row)
+                    props.append(_prop(body.name, axis))
+    return scene.with_effects(*props) if props else scene
+
+
+def without_props(scene: Scene) -> Scene:
+    """The scene with nothing that only props it."""
+    return replace(scene, effects=tuple(e for e in scene.effects if not getattr(e, "prop", False)))
+
+
+def require_unborne(system: System, reactions: Array) -> None:
+    """Refuse states whose props bear something: reactions (S, D) of the drives [N, N m]."""
+    scene, drives = system.scene, system.drives
+    props = {scene.layout.multipliers[i][0] for i, e in enumerate(scene.of(Constraint)) if _is_prop(e)}
+    largest = float(np.abs(system.loads.value).max(initial=0.0))
+    for d, row in enumerate(drives.row.tolist()):
+        most = float(np.abs(reactions[:, d]).max(initial=0.0))
+        if row in props and most > BORNE * (system.scales.unit[row] + largest):
+            at = int(drives.coordinate[d])
+            name, axis = next(
+                (name, at - start) for name, start in system.layout.bodies.items() if 0 <= at - start < 3
+            )
+            load, way = f"{most:.4g} {UNITS[axis]}", WAYS[axis]
+            expected = f"none, or a clamp, a pin or a drive: nothing holds body {name} {way}"
+            raise Unheld(f"load on body {name} {way}", load, expected)
+
+
+def _is_prop(effect: Constraint) -> bool:
+    return bool(getattr(effect, "prop", False))
+
+
+def _loose(scene: Scene) -> list[list[Body]]:
+    """The bodies that strips connect with each other but not with the ground, part by part."""
+    at = {name: name for name in (GROUND, *(body.name for body in scene.bodies))}
+
+    def root(name: str) -> str:
+        while at[name] != name:
+            name = at[name]
+        return name
+
+    ends: dict[str, list[str]] = {}
+    for clamp in scene.of(Constraint):
+        if isinstance(clamp, Clamp):
+            ends.setdefault(clamp.strip, []).append(clamp.to)
+    for first, *others in ends.values():
+        for other in others:
+            at[root(other)] = root(first)
+    parts: dict[str, list[Body]] = {}
+    for body in scene.bodies:
+        parts.setdefault(root(body.name), []).append(body)
+    return [part for name, part in parts.items() if name != root(GROUND)]
+
+
+def _row(body: Body, axis: int, part: list[Body]) -> Array:
+    """Rate of a body's coordinate as its part moves along x, along y and turns about its first body (3,)."""
+    x, y = (body.centre - part[0].centre).tolist()
+    size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
+    rows = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))
+    return np.array(rows[axis])
+
+
+def _rows(drive: Constraint, part: list[Body]) -> list[Array]:
+    """What a drive holds of a part."""
+    body = next((each for each in part if each.name == getattr(drive, "body", None)), None)
+    if body is None:
+        return []
+    if isinstance(drive, DrivenDisplacement):
+        return [_row(body, axis, part) for axis in drive.parts]
+    return [_row(body, 2, part)] if isinstance(drive, DrivenRotation) else []
+
+
+def _rank(rows: list[Array]) -> int:
+    return int(np.linalg.matrix_rank(np.array(rows), RANK)) if rows else 0
+
+
+def _prop(body: str, axis: int) -> Constraint:
+    if axis == 2:
+        return DrivenRotation(body=body, angle=0.0, prop=True)
+    return DrivenDisplacement(body=body, displacement=(0.0, None) if axis == 0 else (None, 0.0), prop=True)

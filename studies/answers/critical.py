@@ -1,0 +1,300 @@
+"""The critical load of a design: the dead force at the centre of a body at which stability is first lost.
+
+It counts only if two discretisations have it at the same force; their difference is its uncertainty.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from studies.answers.metrics import extrapolate
+from studies.answers.models import Asked, put
+from studies.answers.response import Answered, Response, assembled
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from studies.cases.effects import Effects
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.kinds import Array
+
+#: The effect that is raised, and those that load or lead bodies, which are left out.
+FORCE = "applied_force"
+LOADS = (FORCE, "applied_moment", "tip_force", "driven_displacement")
+#: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
+PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
+#: Discretisations that are tried one after another: Bezier strips, cubic B-splines; in the given elements.
+POINTS, SPANS, MESHES = tuple(range(8, 21, 2)), (19, 35, 67), (1, 2, 4)
+#: Relative difference of two discretisations at which no finer one is tried, and up to which they agree.
+SETTLED, AGREED = 1e-5, 1e-2
+#: Rotation that counts as soft [rad], and relative width to which its force is found.
+SOFT, FOUND = math.radians(5.0), 1e-9
+UNSTABLE, NONE = "unstable at zero force", ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalLoad(Answered):
+    """The first force that a design does not bear, in one direction.
+
+    Its status is "converged" where two discretisations agree, on a force or on none; else its message says
+    what each of them has.
+
+    Attributes:
+        direction: of the force [rad], from x to y; held: whether the body is kept from turning.
+        force: at which stability is lost [N], 0 where weight and pre-strain alone lose it; None where none is
+            found up to `reached`, the largest force that was borne [N]; turned: rotation of the body there
+            [rad], NaN where weight alone is too much.
+        kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
+        uncertainty: of force or share, relative [1]; NaN where there is none.
+        soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
+            critical load is found; None where they do not. softer: relative uncertainty of both [1].
+    """
+
+    direction: float
+    held: bool
+    force: float | None
+    reached: float
+    turned: float
+    kind: str
+    preload: float
+    uncertainty: float
+    soft: float | None = None
+    yields: float | None = None
+    softer: float = math.nan
+
+    @property
+    def value(self) -> float:
+        """What discretisations are compared by: the share of the weight, the force, or the rotation."""
+        if self.kind == UNSTABLE:
+            return self.preload
+        return self.turned if self.force is None else self.force
+
+    def apart(self, other: "CriticalLoad") -> float:
+        """Return the relative difference to another discretisation; inf where the verdicts differ."""
+        if not (self.converged and other.converged) or self.kind != other.kind:
+            return math.inf
+        if self.kind == NONE:
+            return 0.0 if math.isclose(self.value, other.value, rel_tol=AGREED, abs_tol=AGREED) else math.inf
+        return abs(self.value / other.value - 1.0)
+
+    @property
+    def verdict(self) -> str:
+        """What was found, in words."""
+        if not self.converged:
+            return f"stops at {self.reached:.6g} N"
+        if self.kind == UNSTABLE:
+            return f"{UNSTABLE}, at {100.0 * self.preload:.4g} % of weight and pre-strain"
+        return (
+            f"none up to {self.reached:.6g} N" if self.force is None else f"{self.kind} at {self.force:.6g} N"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Question:
+    """A design, the body and direction of the force, and whether its rotation is held."""
+
+    design: Design
+    direction: float
+    held: bool
+    body: str
+
+    @property
+    def unit(self) -> float:
+        """Return the Euler loads of all strips, clamped at both ends, together: 4 pi^2 EI / L^2 [N]."""
+        strips = self.design.strips
+        loads = (part.youngs_modulus * part.second_moment_of_area / part.length**2 for part in strips)
+        return 4.0 * math.pi**2 * float(sum(loads))
+
+    def asked(self, settings: Settings, force: float) -> Asked:
+        """Return the design under that force [N] alone, beside weight and pre-strain, as a model has it."""
+        design = self.design
+        names = (*(name for name in design.effects.names if name not in LOADS), FORCE)
+        way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
+        load: dict[str, Any] = {"force": way}
+        if not isinstance(design, Problem):
+            load["body"] = self.body
+        return put(
+            replace(design, effects=Effects(names=names, tables={**design.effects.tables, FORCE: load})),
+            settings,
+        )
+
+    def path(self, asked: Asked) -> Any:
+        """Return the path of a model, or its refusal where weight and pre-strain find no equilibrium."""
+        how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "raise_on_failure": False}
+        try:
+            return asked.model.statics.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
+        except asked.model.errors.InvalidParameter as error:
+            if hasattr(error, "critical_points"):
+                return error
+            raise BadInput(f"{asked.settings.model}: {error}") from None
+
+
+def critical_load(
+    design: Design, settings: Settings, *, direction: float, held: bool = False, body: str | None = None
+) -> CriticalLoad:
+    """Return the force at a body's centre, in one direction, at which the design first loses stability.
+
+    Weight and pre-strain act in full; other loads and drives of the case are left out. The spline takes more
+    control points until the force settles, or those of its settings and a few more; the elements are doubled
+    twice and their limit is taken.
+
+    Args:
+        design: the pivot or mechanism. settings: of the model.
+        direction: of the force in the axes of the ground [rad].
+        held: whether the rotation of the body is held.
+        body: its name; None for that of the case.
+
+    Raises BadInput for what the model refuses, and for a design without bodies.
+    """
+    known, name = [each.name for each in design.bodies], body or design.body
+    if name not in known:
+        expected = f"one of {', '.join(known)}" if known else "a design with a body that the force acts on"
+        raise BadInput(f"body: got {name or 'none'}, expected {expected}")
+    question = _Question(design=design, direction=direction, held=held, body=name)
+    tried = tuple(_refined(settings))
+    found: list[CriticalLoad] = []
+    for each in tried:
+        found.append(_of(question, each))
+        if len(found) > 1 and _settled(settings, found):
+            break
+    return _agreed(question, tried[: len(found)], found)
+
+
+def _refined(settings: Settings) -> Iterator[Settings]:
+    """Yield the discretisations to answer with."""
+    if isinstance(settings, FeSettings):
+        yield from (replace(settings, elements=settings.elements * times) for times in MESHES)
+    elif settings.control_points is not None:
+        from spline_model.confirmed import finer
+
+        yield settings
+        points = finer(settings.basis, settings.control_points)[1]
+        yield replace(settings, control_points=points, axial_modes=None, gauss_points=None)
+    else:
+        if settings.basis == "bezier":
+            yield from (replace(settings, control_points=points) for points in POINTS)
+        if settings.stretch != "consistent":
+            yield from (replace(settings, control_points=points, basis="bspline") for points in SPANS)
+
+
+def _settled(settings: Settings, found: Sequence[CriticalLoad]) -> bool:
+    """Return whether no finer discretisation is needed: none of a verdict without a force."""
+    apart = found[-1].apart(found[-2])
+    return apart <= SETTLED and (found[-1].kind == NONE or isinstance(settings, SplineSettings))
+
+
+def _agreed(question: _Question, tried: Sequence[Settings], found: Sequence[CriticalLoad]) -> CriticalLoad:
+    """Return what the last two discretisations agree on, with their difference; or that they do not."""
+    last, apart = found[-1], found[-1].apart(found[-2])
+    if apart > AGREED:
+        said = "; ".join(f"{_name(s)}: {each.verdict}" for s, each in zip(tried, found, strict=True))
+        message = f"not resolved: {said}; {_remedy(tried[-1])}"
+        return replace(last, status="not_converged", message=message, force=None, kind=NONE)
+    if last.kind == NONE:
+        return _softened(question, tried, last)
+    value, error = last.value, apart * last.value
+    elements = isinstance(tried[-1], FeSettings) and len(found) == len(MESHES)
+    if elements and found[0].apart(found[1]) <= AGREED:
+        limit = extrapolate([np.array([each.value]) for each in found])
+        value, error = float(limit.value[0]), float(limit.uncertainty[0])
+    if last.kind == UNSTABLE:
+        return replace(last, preload=value, uncertainty=error / value)
+    return replace(last, force=value, uncertainty=error / value)
+
+
+def _name(settings: Settings) -> str:
+    """Return how fine settings are, in words."""
+    if isinstance(settings, FeSettings):
+        return f"{settings.elements} elements"
+    return f"{settings.control_points} control points" + (" (bspline)" if settings.basis == "bspline" else "")
+
+
+def _remedy(settings: Settings) -> str:
+    """Return what is finer than the finest that was tried."""
+    if isinstance(settings, FeSettings):
+        return f"take {2 * settings.elements} elements"
+    more = f"leave the number open, or take basis = bspline with {SPANS[1]} control points"
+    return more if settings.basis == "bezier" else f"take {2 * settings.points - 3} control points"
+
+
+def _of(question: _Question, settings: Settings) -> CriticalLoad:
+    """Return the critical load with one discretisation."""
+    for part in PARTS:
+        size = part * question.unit
+        asked = question.asked(settings, size)
+        path = question.path(asked)
+        lost = [each for each in path.critical_points if each.inertia > 0]
+        if lost or not hasattr(path, "status") or path.status.value != "converged":
+            break
+    return _told(question, asked, path, size, lost[0] if lost else None)
+
+
+def _told(question: _Question, asked: Asked, path: Any, size: float, lost: Any) -> CriticalLoad:
+    """Return the critical load of a path to a force, or of a refusal that takes its place."""
+    settled = hasattr(path, "status")
+    unstable = lost is not None and lost.preload < 1.0
+    last = float(path.load_factor[-1]) if settled else 0.0
+    reached = size * float(lost.load_factor if lost is not None else last)
+    there = float(path.bodies[question.body][-1, 2]) if settled else math.nan
+    if lost is not None and math.isfinite(lost.rotation):
+        there = float(lost.rotation)
+    return CriticalLoad(
+        **CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)},
+        status="converged" if lost is not None else str(path.status.value) if settled else "not_converged",
+        message="" if lost is not None or (settled and last == 1.0) else str(getattr(path, "message", path)),
+        direction=question.direction,
+        held=question.held,
+        force=None if lost is None else reached,
+        reached=reached,
+        turned=math.nan if unstable else there,
+        kind=NONE if lost is None else UNSTABLE if unstable else str(lost.kind),
+        preload=float(lost.preload) if lost is not None else 1.0,
+        uncertainty=math.nan,
+    )
+
+
+def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoad) -> CriticalLoad:
+    """Return the answer of a design without a critical load with the forces at which it turns and yields."""
+    limits = [strip.yield_strength for strip in question.design.strips]
+
+    def turn(answer: Response) -> Array:
+        return np.abs(answer.bodies[question.body][:, 2]) / SOFT
+
+    def stress(answer: Response) -> Array:
+        worst = answer.extreme_fibre_stress.max(axis=2) / np.array(limits, dtype=float)
+        return np.asarray(worst.max(axis=1))
+
+    shares = {"soft": turn} | ({"yields": stress} if None not in limits else {})
+    forces: dict[str, float | None] = {}
+    apart = [FOUND]
+    for name, share in shares.items():
+        coarse, fine = (_passing(question, each, share) for each in tried[-2:])
+        forces[name] = fine
+        if fine is not None:
+            same = coarse == fine  # such as both passed without any force
+            apart.append(0.0 if same else abs(coarse / fine - 1.0) if coarse and fine else math.nan)
+    softer = max(apart) if any(forces.values()) else math.nan
+    return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
+
+
+def _passing(question: _Question, settings: Settings, share: Callable[[Response], Array]) -> float | None:
+    """Return the force [N] at which a share of a limit first is 1, by solutions that end there; or None."""
+
+    def path(force: float) -> Array:
+        asked = question.asked(settings, force)
+        return share(Response.of(asked, question.path(asked), wall_s=0.0, solve_s=0.0)) - 1.0
+
+    for part in PARTS:
+        size = part * question.unit
+        known = path(size)
+        beyond = np.flatnonzero(known >= 0.0)
+        if beyond.size and beyond[0] > 0:
+            from scipy.optimize import brentq
+
+            first, last = ((beyond[0] - back) / INCREMENTS * size for back in (1, 0))
+            return float(brentq(lambda force: path(force)[-1], first, last, rtol=FOUND))
+        if beyond.size:
+            return 0.0
+    return None

@@ -1,0 +1,132 @@
+"""Find the critical load of a pivot or mechanism: the force in one direction at which it loses stability.
+
+    python -m studies critical-load cross_axis_pivot --force-direction-deg -90
+    python -m studies critical-load parallel_strip_guide --force-direction-deg -90 --held --model spline,fe
+
+A dead force acts at the centre of the body of the case or of --body. Its direction is an angle from x to y in
+the axes of the ground. The force is raised from zero until stability is lost at a bifurcation or a limit
+point, up to twice the Euler loads of all strips. The rotation of the body is free, so that it may tip over,
+or --held. Weight and pre-strain of the case act in full. Its other loads and drives are left out. Stability
+under weight and pre-strain alone is checked first.
+
+A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
+error. Without --control-points the spline takes more control points until the force settles; elements are
+doubled twice and their limit is taken. If no critical load is found, the force at which the rotation passes
+5 degrees and the force at first yield are printed. Exit code 0: a critical load, or none up to the largest
+force; 2: bad input; 3: not resolved, the discretisations disagree.
+"""
+
+import argparse
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from studies.answers.critical import AGREED, UNSTABLE, CriticalLoad, critical_load
+from studies.commands import arguments as take
+from studies.commands.answer import deliver, described, headed
+from studies.commands.columns import one
+from studies.commands.parser import Argument, command, degrees
+from studies.record.progress import Bar
+
+#: Digits of a force; rotation that is none [deg].
+DIGITS, NO_TURN = 6, 1e-6
+
+
+@command(
+    *take.SEVERAL_MODELS,
+    Argument(
+        "--force-direction-deg X",
+        "of the force, in deg from x to y, default -90: down",
+        degrees,
+        dest="direction",
+        default=-90.0,
+    ),
+    take.HELD.but("hold the rotation of the body (default: it is free)"),
+    Argument("--body NAME", "that the force acts on (default: the case's)"),
+    take.JSON,
+)
+def main(arguments: argparse.Namespace) -> int:
+    """Raise the force and report; return the exit code."""
+    design, every = take.chosen_design(arguments), take.chosen_settings(arguments)
+    how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
+    found = []
+    for settings in every:
+        with Bar(f"critical-load {settings.model}"):
+            found.append(critical_load(design, settings, **how))
+    stopped = [f"{each.model}: {each.message}" for each in found if not each.converged]
+    every_one = [_document(each) for each in found]
+    document = every_one[0] if len(found) == 1 else {"answers": every_one}
+    return deliver(arguments, document, _readable(found), failure="; ".join(stopped) or None)
+
+
+def _document(found: CriticalLoad) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command."""
+    return {
+        **headed(found),
+        "force_direction_rad": found.direction,
+        "held": found.held,
+        "verdict": found.verdict,
+        "critical_load_N": found.force,
+        "kind": found.kind,
+        "relative_error": found.uncertainty,
+        "weight_share": found.preload,
+        "borne_N": found.reached,
+        "rotation_rad": found.turned,
+        "rotation_5_deg_N": found.soft,
+        "yield_N": found.yields,
+        "soft_relative_error": found.softer,
+    }
+
+
+def _readable(found: list[CriticalLoad]) -> Iterator[str]:
+    """Yield the verdict of every model, and how far they are apart."""
+    for each in found:
+        yield described(each)
+        way = f"force at {math.degrees(each.direction):g} deg, rotation {'held' if each.held else 'free'}"
+        yield f"{way}: {_verdict(each)}"
+        if each.converged and each.force is None:
+            yield _softening(each)
+    for each in found[1:]:
+        if (apart := _apart(found[0], each)) is not None:
+            yield f"{each.model} differs from {found[0].model} by {apart}"
+
+
+def _verdict(found: CriticalLoad) -> str:
+    """Return what was found, with the rotation there and the estimated error."""
+    angle = math.degrees(found.turned) if math.isfinite(found.turned) else 0.0
+    turned = f", turned {angle:.4g} deg" if abs(angle) > NO_TURN else ""
+    if not found.converged:
+        return "not resolved"
+    if found.kind == UNSTABLE:
+        said = f"{UNSTABLE}: stability is lost at {100.0 * found.preload:.4g} % of weight and pre-strain"
+    elif found.force is None:
+        return f"no critical load up to {one(found.reached, DIGITS)} N{turned}"
+    else:
+        said = f"buckles at {one(found.force, DIGITS)} N{turned} ({found.kind})"
+    return f"{said}, estimated error {found.uncertainty:.1e}"
+
+
+def _softening(found: CriticalLoad) -> str:
+    """Return where a design without a critical load turns too far and yields."""
+    soft = "the rotation stays below 5 deg"
+    if found.held:
+        soft = "the rotation is held"
+    elif found.soft is not None:
+        soft = f"the rotation passes 5 deg at {one(found.soft, DIGITS)} N"
+    yields = "no strip yields, or the yield strength is not given"
+    if found.yields is not None:
+        yields = f"first yield at {one(found.yields, DIGITS)} N"
+    error = f", estimated error {found.softer:.1e}" if math.isfinite(found.softer) else ""
+    return f"{soft}; {yields}{error}"
+
+
+def _apart(one_model: CriticalLoad, other: CriticalLoad) -> str | None:
+    """Return how far two models are apart; None where one of them is not resolved."""
+    if not (one_model.converged and other.converged):
+        return None
+    if one_model.kind == other.kind == "":
+        return None
+    apart = abs(other.value / one_model.value - 1.0) if one_model.value else math.inf
+    if (one_model.kind == UNSTABLE) != (other.kind == UNSTABLE) or not apart <= AGREED:
+        return f"its verdict: {other.verdict} against {one_model.verdict}"
+    return f"{apart:.1e}"

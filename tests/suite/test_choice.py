@@ -1,0 +1,156 @@
+"""Whatever command answers, it takes the control points that the accuracy needs, and says what it knows."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.strength import strength
+from studies.cases.design import read_design
+from studies.cases.problem import named_case
+from studies.sweep import batch
+from studies.sweep.read import plan_of
+from studies.sweep.sample import Drawer
+
+FINDS = Path(__file__).parent / "finds"
+CLAMPED = FINDS / "clamped_mechanism.toml"
+#: A pivot on which six control points are 1 % off, and its rotation.
+STEEP = {"crossing_ratio": 0.9, "inclination": math.radians(70.0)}
+ACCURACY = 1e-4
+
+
+def steep(**changes):
+    """The steep pivot, to 60 degrees in six increments."""
+    return replace(
+        named_case("spring_steel_pivot"),
+        **STEEP,
+        rotation=math.radians(60.0),
+        increments=6,
+        **changes,
+    )
+
+
+def test_stiffness_of_a_body_meets_the_accuracy(command):
+    """Requirement: the printed stiffness of a body is what more control points give (42.20 N/m, 30.59 kN/m,
+    0.2319 kN m/rad at the full load), with an estimate; what nothing drives has no error, not one of 0."""
+    answer = json.loads(command("solve", CLAMPED, "--json", "-").out)
+    last = [answer[f"body_stiffness_{name}"][-1] for name in ("xx_N_per_m", "yy_N_per_m", "tt_Nm_per_rad")]
+    assert last == pytest.approx([42.2023, 30587.6, 231.886], rel=1e-4)
+    assert 0.0 < answer["estimate"]["body_stiffness"] <= ACCURACY
+    assert (answer["estimate"]["torque"], answer["estimate"]["stiffness"]) == (None, None)
+    lines = command("solve", CLAMPED).out
+    assert "body stiffness " in lines and "0.0e+00" not in lines and "torque" not in lines
+
+
+def test_what_is_not_estimated_is_named(command):
+    """Requirement: with given control points or elements the errors are called not estimated, and with an
+    accuracy of the elements that of the stiffness of the body alone."""
+    short = ("--rotation-deg", 10, "--increments", 2)
+    for more in (("--control-points", 6), ("--model", "fe")):
+        lines = command("solve", "cross_axis_pivot", *short, *more).out.splitlines()
+        assert "errors not estimated: --accuracy estimates them" in lines
+    accurate = ("--model", "fe", "--elements", 5, "--accuracy", 1e-3)
+    lines = command("solve", "cross_axis_pivot", *short, *accurate).out.splitlines()
+    assert "error not estimated: stiffness of the body" in lines
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(), FeSettings(elements=10)], ids=lambda s: s.model)
+@pytest.mark.parametrize("increments", [1, 2, 4])
+def test_yield_is_where_the_stress_is_that_of_yield(settings, increments):
+    """Requirement: a path that ends at the angle of yield has the yield strength as its largest stress,
+    however few increments the angle was found with."""
+    design = steep(yield_strength=8e8)
+    found = strength(answer_static(replace(design, increments=increments), settings)).yields
+    there = answer_static(replace(design, rotation=found.rotation), settings)
+    assert there.max_stress[-1] == pytest.approx(8e8, rel=1e-5)
+    assert found.load_factor == pytest.approx(found.rotation / design.rotation, rel=1e-9)
+
+
+def test_yield_under_loads_alone_is_solved_for():
+    """Requirement: the load factor at which a mechanism without a drive yields is that of any increments."""
+    design = read_design(CLAMPED)
+    strips = tuple(replace(strip, yield_strength=3e6) for strip in design.strips)
+    found = [
+        strength(answer_static(replace(design, strips=strips, increments=count), SplineSettings())).yields
+        for count in (2, 5)
+    ]
+    assert found[0].load_factor == pytest.approx(found[1].load_factor, rel=1e-5)
+    assert found[0].error < ACCURACY
+
+
+def right():
+    """The steep pivot with many more control points."""
+    return answer_static(steep(), SplineSettings(control_points=18))
+
+
+def apart(found, good):
+    """Largest relative difference of numbers by name."""
+    return max(abs(found[name] / value - 1.0) for name, value in good.items())
+
+
+def numbers(answer):
+    """What every command prints of a path."""
+    shift = np.hypot(*answer.centre_shift.T)
+    return {
+        "torque_Nm": answer.torque[-1],
+        "stiffness_end_Nm_per_rad": answer.stiffness[-1],
+        "stress_max_Pa": answer.max_stress.max(),
+        "centre_shift_max_m": shift.max(),
+    }
+
+
+@pytest.fixture(name="pivot")
+def written(tmp_path):
+    """The steep pivot as a case file."""
+    from studies.cases.design import as_toml, document_of
+
+    path = tmp_path / "steep.toml"
+    path.write_text(as_toml(document_of(steep()), ["A steep pivot."]))
+    return path
+
+
+def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_path):
+    """Requirement: solve, compare, a sweep by batch and one by one, and export have the same design within
+    1e-4 of the answer with many more control points; modes as well."""
+    good = numbers(right())
+    solved = json.loads(command("solve", pivot, "--json", "-").out)
+    shift = np.hypot(solved["centre_shift_x_m"], solved["centre_shift_y_m"]).max()
+    ends = (solved["torque_Nm"][-1], solved["stiffness_Nm_per_rad"][-1], max(solved["max_stress_Pa"]), shift)
+    assert apart(dict(zip(good, ends, strict=True)), good) < ACCURACY
+    compared = json.loads(command("compare", pivot, "titanium_pivot", "--json", "-").out)["designs"][0]
+    keys = ("torque_Nm", "stiffness_end_Nm_per_rad", "max_stress_Pa", "largest_centre_shift_m")
+    assert apart(dict(zip(good, (compared[key] for key in keys), strict=True)), good) < ACCURACY
+    assert compared["estimate"]["torque"] <= ACCURACY
+    task = plan_of("steep.toml", {"case": str(pivot), "vary": {"strip": {"crossing_ratio": [0.9]}}}, Path())
+    for together in (True, False):
+        table = batch.solve_chunk(replace(task.task, batch=together), 0, Drawer(task.sample).rows(0, 1))
+        row = table.to_pylist()[0]
+        assert apart(row, good) < ACCURACY
+        assert row["estimated_error"] <= ACCURACY and row["reason"] == ""
+    outcome = command("export", pivot, "--out", tmp_path / "out", "--formats", "json")
+    assert "estimated error: trajectory" in outcome.out
+    (exported,) = (tmp_path / "out").glob("static.json")
+    assert f"{good['torque_Nm']:.4g}"[:4] in exported.read_text()
+    first, fine = (
+        answer_modes(steep(), s, count=2) for s in (SplineSettings(), SplineSettings(control_points=16))
+    )
+    assert first.frequency == pytest.approx(fine.frequency, rel=ACCURACY)
+
+
+def test_a_row_that_misses_the_accuracy_says_so(monkeypatch):
+    """Requirement: where no number of control points reaches the accuracy, the row's reason has it."""
+    import spline_model.accuracy as chosen
+
+    monkeypatch.setitem(chosen.MOST, "bezier", 8)
+    monkeypatch.setattr(chosen, "DEFAULT", 1e-7)
+    task = plan_of(
+        "s.toml", {"case": "cross_axis_pivot", "vary": {"strip": {"crossing_ratio": [0.9]}}}, Path()
+    )
+    row = batch.solve_chunk(task.task, 0, Drawer(task.sample).rows(0, 1)).to_pylist()[0]
+    assert row["status"] == "converged"
+    assert row["reason"].startswith("estimated error above 1e-07 with 8 control points: ")
