@@ -15,7 +15,7 @@ import numpy as np
 
 from .arrays import Array, Flags, Indices
 from .freedom import loose_coordinates
-from .matrix import Factors, Singular
+from .matrix import GRAIN, Factors, Singular
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -129,9 +129,9 @@ class Control:
             return None, 0.0, 0.0
         return -self.growth * self.load, -self.growth * load_work, 0.0
 
-    def factors(self, balance: Balance) -> Factors:
+    def factors(self, balance: Balance, grain: float = 0.0) -> Factors:
         """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
-        return balance.at.tangent.factors(self.is_held)
+        return balance.at.tangent.factors(self.is_held, grain)
 
     def describe(self, parameter: float) -> str:
         """Return what the parameter stands for, with its value."""
@@ -248,5 +248,5 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
 def taken(control: Control, y: Array, parameter: float) -> Outcome:
     """Return coordinates that are in equilibrium as such; raises Singular."""
     balance = control.balance(y, parameter)
-    factors = control.factors(balance)
+    factors = control.factors(balance, GRAIN)
     return Outcome(y=y, parameter=parameter, norms=(0.0,), failure="", balance=balance, factors=factors)

@@ -68,10 +68,10 @@ def _times(starts: Indices, rows: Indices, data: Array, x: Array, out: Array) ->
 
 
 @kernel()
-def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> int:
+def _factorise(lines: Lines, data: Array, held: Flags, grain: float, low: Array, d: Array) -> int:
     """Write L within the envelope and D; return the number of negative entries of D, -1 if one is round-off.
 
-    Row i of L begins in column first[i], at low[begin[i]].
+    Row i of L begins in column first[i], at low[begin[i]]. Round-off is up to `grain` of a diagonal entry.
     """
     starts, rows, begin, first = lines
     negative = 0
@@ -98,7 +98,7 @@ def _factorise(lines: Lines, data: Array, held: Flags, low: Array, d: Array) -> 
             entry = low[at + j] / d[j]
             pivot -= entry * low[at + j]
             low[at + j] = entry
-        if abs(pivot) <= GRAIN * size or not np.isfinite(pivot):
+        if abs(pivot) <= grain * size or not np.isfinite(pivot):
             return -1
         d[i] = pivot
         negative += pivot < 0.0
@@ -180,11 +180,15 @@ class Symmetric:
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
         return out
 
-    def factors(self, held: Flags) -> "Factors":
-        """Return the factors of its rows and columns that are not held (size,); raises Singular."""
+    def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
+        """Return the factors of its rows and columns that are not held (size,); raises Singular.
+
+        Grain: part of its diagonal entry up to which a pivot is taken for zero; 0 on a path, where a stiffness
+        that vanishes at a critical point passes through round-off.
+        """
         p = self.pattern
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
-        negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, low, d)
+        negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, grain, low, d)
         if negative < 0:
             raise Singular("the tangent is singular to round-off")
         return Factors(p, held, low, d, negative)

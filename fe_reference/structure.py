@@ -152,9 +152,19 @@ class Structure:
 
         Displacements of order L and turns of order 1 carry an error of one unit in the last place, and a
         residual what this is worth by the entries of its row of the tangent. The factor 4 covers the few
-        operations between them. Short elements have large entries, their neighbours have not.
+        operations between them. Short elements have large entries, their neighbours have not. An element
+        with roots has small entries too, but the error of the stiff section that is inside.
         """
         terms = Symmetric(tangent.pattern, np.abs(tangent.data)).times(1.0 / self.measure)
+        e = self.elements
+        rooted = e.roots.any(axis=1)
+        if rooted.any():
+            rigidity = np.maximum(e.axial_rigidity, e.shear_rigidity) if self.shear else e.axial_rigidity
+            inside = (rigidity * self.length / e.length)[rooted]
+            places = self.numbers[rooted]
+            known = places >= 0
+            forces = np.broadcast_to(inside[:, None], places.shape)[known]
+            np.add.at(terms, places[known], forces * self.scale[places[known]] / self.force_unit)
         return np.asarray(4.0 * np.finfo(float).eps * terms)
 
     def body_slice(self, body: int) -> slice:

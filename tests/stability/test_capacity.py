@@ -80,8 +80,8 @@ def test_held_strips_bear_eulers_load(settings, inclination):
     expected = 2.0 * math.sin(math.radians(inclination)) * EULER
 
     def coarse(control_points):
-        settings = SplineSettings(control_points=control_points)
-        return abs(capacity(pivot, settings, direction=DOWN, held=True).force / expected - 1.0)
+        told = capacity(pivot, SplineSettings(control_points=control_points), direction=DOWN, held=True)
+        return math.inf if told.force is None else abs(told.force / expected - 1.0)  # None: not resolved
 
     gates.check("capacity", abs(found.force / expected - 1.0))
     for gate in ("capacity", "capacity_models"):

@@ -29,5 +29,6 @@ def test_sides_names_and_orientations_can_be_varied(vary, together):
     columns = {f"{section}.{key}": each for section, keys in vary.items() for key, each in keys.items()}
     found = [batch.solve_chunk(replace(task, batch=way), 0, columns).to_pandas() for way in {together, False}]
     assert all((each["status"] == "converged").all() for each in found)
-    numbers = found[0].select_dtypes("number")
+    # kernels and single paths begin from other guesses: how often they iterate is no answer
+    numbers = found[0].drop(columns="iterations").select_dtypes("number")
     assert np.allclose(found[-1][numbers.columns], numbers, rtol=1e-9, equal_nan=True)
