@@ -183,8 +183,8 @@ class Symmetric:
     def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
         """Return the factors of its rows and columns that are not held (size,); raises Singular.
 
-        Grain: part of its diagonal entry up to which a pivot is taken for zero; 0 on a path, where a stiffness
-        that vanishes at a critical point passes through round-off.
+        Grain: part of its diagonal entry up to which a pivot is taken for zero; 0 on a path, where a
+        stiffness that vanishes at a critical point passes through round-off.
         """
         p = self.pattern
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)

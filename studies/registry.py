@@ -83,10 +83,8 @@ STUDIES: dict[str, str] = {
     "design/sizing": "studies.design.sizing",
     "charts/pivot": "studies.design.charts",
     "impulses/step_size": "studies.convergence.impulse_steps",
-    "baselines/surrogates": "studies.baselines.surrogates",
-    "baselines/peers": "studies.baselines.peers",
-    "work_precision/references": "studies.work_precision.references",
-    "work_precision/waits": "studies.work_precision.waits",
+    "cost/surrogates": "studies.cost.surrogates",
+    "cost/codes": "studies.cost.codes",
 }
 
 

@@ -17,11 +17,10 @@ from studies.registry import STUDIES
 
 STATICS = Stored("convergence/control_points", "reference")
 RELEASE = Stored("paper/fig06_release", "reference")
-FINE = Stored("work_precision/references", "swings")
-SHEAR = {"what": "difference of the theories"}
-TORQUE = Stored("baselines/peers", "theories", **SHEAR)
-SWING = Stored("baselines/peers", "swing_theories", **SHEAR)
-SPATIAL = Stored("work_precision/references", "paths", theory="spatial")
+FINE = Stored("cost/codes", "swing_limits", theory="material")
+TORQUE = Stored("cost/codes", "path_limits", theory="shear", quantity="torque")
+SWING = Stored("cost/codes", "swing_limits", theory="shear")
+SPATIAL = Stored("cost/codes", "path_limits", theory="spatial")
 AT_REST = Stored("paper/fig05_stiffness", "curves", formulation="FE refined", rotation_rad=0.0)
 
 
@@ -87,9 +86,9 @@ FACTS |= {
     "pivot.quarter-turn": Fact(made=lambda _: _pivot().rotation, form=degrees),
     "reference.frequency": RELEASE.at("uncertainty", power, quantity="frequency"),
     "reference.rotation": RELEASE.at("uncertainty", unit("rad"), quantity="rotation_rad"),
-    "reference.fine.rotation": FINE.at("uncertainty", unit("rad"), quantity="rotation_rad"),
-    "theory.shear.torque": TORQUE.at("torque", power),
-    "theory.shear.swing": SWING.at("rotation_rad", unit("rad")),
+    "reference.fine.rotation": FINE.at("rotation_rad", unit("rad")),
+    "theory.shear.torque": TORQUE.at("distance_to_material", power),
+    "theory.shear.swing": SWING.at("distance_to_material_rad", unit("rad")),
     "theory.spatial.torque": SPATIAL.at("distance_to_material", power, quantity="torque"),
     "theory.spatial.trajectory": SPATIAL.at("distance_to_material", power, quantity="trajectory"),
     "small-angle.error": Fact(made=_closed_form, form=power),
@@ -100,8 +99,16 @@ FACTS |= {
 def _(r: Results) -> Any:
     """shear changes torque and swing by more than six control points or twenty elements are off"""
     compared = (
-        (Stored("paper/fig05_stiffness", "summary"), "error_torque_largest", TORQUE.value(r, "torque")),
-        (Stored("paper/fig06_release", "summary"), "error_rotation_rad", SWING.value(r, "rotation_rad")),
+        (
+            Stored("paper/fig05_stiffness", "summary"),
+            "error_torque_largest",
+            TORQUE.value(r, "distance_to_material"),
+        ),
+        (
+            Stored("paper/fig06_release", "summary"),
+            "error_rotation_rad",
+            SWING.value(r, "distance_to_material_rad"),
+        ),
     )
     return all(
         abs(summary.value(r, name, formulation=each)) < shear
@@ -165,7 +172,7 @@ def _machine(results: Results) -> Table:
 def _versions(results: Results) -> Table:
     found = [results.record(study)["versions"] for study in STUDIES]
     names = sorted({name for versions in found for name in versions})
-    codes = Stored("baselines/peers", "codes", status="installed").rows(results)
+    codes = Stored("cost/codes", "codes", status="installed").rows(results)
     yield ["package", "version"]
     yield from ([name, _values(versions[name] for versions in found if name in versions)] for name in names)
     yield from codes[["code", "version"]].to_numpy().tolist()

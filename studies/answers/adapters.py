@@ -1,12 +1,10 @@
 """Put a design to either model, and get a neutral answer: its static path, its release, its natural modes."""
 
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from studies.answers.models import Asked, put
+from studies.answers.models import Asked, model_of, put
 from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import Settings
@@ -15,11 +13,6 @@ from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.progress import measure
-
-#: Rotation of the first solve, which only compiles [rad]: small enough for any design and discretisation.
-WARM_UP_ROTATION = 1e-3
-#: Duration of the first release, which only compiles [s], unless its step is longer.
-WARM_UP_DURATION = 1e-3
 
 
 def answer_static(
@@ -34,9 +27,9 @@ def answer_static(
     """Solve the static path of a design from load factor 0 to 1 with the model that `settings` belongs to.
 
     The path is that of the driven rotation and of the loads in the design's order, or of the loads alone.
-    `wall_s` of the response is the median time of `repeat` solves of the whole path, without import,
-    compilation and set-up: a short solve comes before, and when `repeat` is above 1 a whole one. `solve_s` is
-    the median of what the model says its increments alone took.
+    `wall_s` of the response is the median time of `repeat` whole calls: from the design to the answer, set-up
+    included, and when `repeat` is above 1 without a first one. `solve_s` is the median of what the model says
+    its increments alone took.
 
     Args:
         design: the pivot or mechanism, and its path.
@@ -51,17 +44,15 @@ def answer_static(
     Raises:
         BadInput: a setting that the model refuses; one line.
     """
-    asked = put(design, settings)
     wanted = {} if accuracy is None else {"accuracy": accuracy}
-    short = {} if design.rotation is None else {"rotation": WARM_UP_ROTATION}
-    asked.static_path(**short, increments=1, raise_on_failure=False)
-    timing = measure(
-        lambda: asked.static_path(raise_on_failure=raise_on_failure, progress=progress, **wanted),
-        repeat=repeat,
-        warm_up=1 if repeat > 1 else 0,
-        part=_solve_s,
-    )
-    return Response.of(asked, timing.result, wall_s=timing.median, solve_s=timing.median_part)
+
+    def answer() -> Response:
+        asked = put(design, settings)
+        path = asked.static_path(raise_on_failure=raise_on_failure, progress=progress, **wanted)
+        return Response.of(asked, path, solve_s=float(path.seconds["solve"]))
+
+    timing = measure(answer, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=lambda each: each.solve_s)
+    return replace(timing.result, wall_s=timing.median, solve_s=timing.median_part)
 
 
 def answer_release(
@@ -82,9 +73,8 @@ def answer_release(
     load and driven displacement at its value times its history at t = 0. Then the rotation is let go, unless
     the design leads it on, and driven displacements without a history; loads follow their histories.
 
-    `wall_s` of the motion is the median time of `repeat` releases, less that of releases that are over after
-    their first record: so the static path to the start, and what is set up, are left out. A short release
-    comes before, and when `repeat` is above 1 a whole one.
+    `wall_s` of the motion is the median time of `repeat` whole calls, as of `answer_static`: the static path
+    to the start is part of them, a companion motion is not. `solve_s` is of the steps alone.
 
     Args:
         design: the pivot or mechanism; of one without a rotation none is driven: it begins where all that
@@ -105,30 +95,30 @@ def answer_release(
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
-    asked = put(design, settings, moving=True)
-    start = design.rotation if start is None else start
-    model, at = asked.model, {"start": start, "body": design.body}
-    with asked.refusals():
-        at |= _drive_of(asked)
+    start, model = design.rotation if start is None else start, model_of(settings)
     given = {name: value for name, value in options.items() if value is not None} | model.release_options
     if records is not None:
         given[model.records] = records
-    release = partial(
-        model.dynamics.solve_motion, asked.modelled, duration=duration, check=False, **at, **given
-    )
-    with suppress(model.errors.InvalidParameter, model.errors.ConvergenceError):
-        short = min(duration, max(WARM_UP_DURATION, given.get("step", 0.0)))
-        release(start=WARM_UP_ROTATION, duration=short)
-    try:
+
+    def solve() -> tuple[Asked, dict[str, Any], Any]:
+        asked = put(design, settings, moving=True)
         with asked.refusals():
-            timing = measure(release, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
+            at = {"start": start, "body": design.body} | _drive_of(asked)
+            return (
+                asked,
+                at,
+                model.dynamics.solve_motion(asked.modelled, duration=duration, check=False, **at, **given),
+            )
+
+    try:
+        timing = measure(solve, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
     except model.errors.ConvergenceError as error:
+        asked = put(design, settings, moving=True)
         return Motion.without_start(asked, f"statics does not reach the start: {error}")
-    result = timing.result
-    wall_s = max(timing.median - _wall_of_start(release, result, repeat), 0.0)
+    asked, at, result = timing.result
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
-    answer = Motion.of(asked, result, wall_s=wall_s, solve_s=timing.median_part)
+    answer = Motion.of(asked, result, wall_s=timing.median, solve_s=timing.median_part)
     return _weighed(answer, settings, start) if answer.starts_still and answer.converged else answer
 
 
@@ -188,21 +178,9 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     return replace(answer, message=message, resolution="")
 
 
-def _solve_s(result: Any) -> float:
-    """Return what the increments or steps of a solution took, without what is made before and after [s]."""
-    return float(result.seconds["solve"])
-
-
-def _wall_of_start(release: Callable[..., Any], result: Any, repeat: int) -> float:
-    """Return the median time of releases that are over after the first record of `result` [s]."""
-    if len(result.time) <= 2:
-        return 0.0
-    # a little longer than the first record, lest round-off make the step longer than the duration
-    brief: dict[str, float | None] = {"duration": float(result.time[1]) * (1.0 + 1e-9)}
-    if getattr(result, "estimate", None) is not None:  # the step that was chosen, without the search for it
-        brief["accuracy"] = None
-    brief |= {name: value for name, value in (("step", result.settings.get("step_s")),) if value}
-    return measure(lambda: release(**brief), repeat=repeat, warm_up=0).median
+def _solve_s(solved: tuple[Asked, dict[str, Any], Any]) -> float:
+    """Return what the steps of a motion took, without what is made before and after [s]."""
+    return float(solved[-1].seconds["solve"])
 
 
 def _drive_of(asked: Asked) -> dict[str, Any]:

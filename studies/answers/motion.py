@@ -46,7 +46,7 @@ class Motion(Solved):
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
         constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
         starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
-        wall_s: time of the motion alone, without the static path to its start [s].
+        wall_s: time of the whole call, the static path to its start included [s].
     """
 
     time: Array

@@ -59,13 +59,13 @@ class Reference:
     uncertainty: Mapping[str, float]
 
 
-def reference(design: Design) -> Reference:
-    """Solve `design` on the meshes and return their limit.
+def reference(design: Design, element: str = "corotational") -> Reference:
+    """Solve `design` on the meshes of an element and return their limit.
 
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    return limit_of([answer_static(design, FeSettings(elements=count)) for count in MESHES])
+    return limit_of([answer_static(design, FeSettings(elements=n, element=element)) for n in MESHES])
 
 
 def limit_of(answers: Sequence[Response]) -> Reference:

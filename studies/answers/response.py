@@ -93,7 +93,7 @@ class Solved(Answered):
         resolution: what too coarse a discretisation or step leaves uncertain; empty where it is resolved, and
             of a model that cannot tell.
         counters: work done, by kind.
-        wall_s: time of the answer, without import, compilation and set-up of the model [s].
+        wall_s: time of the whole call, from the design to the answer [s].
         solve_s: of it, the increments or steps alone [s].
         bodies: (S, 3) by name, over states or instants: centre of mass x, y [m], rotation, counter-clockwise
             [rad]; a pivot's origin is A1.

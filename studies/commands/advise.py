@@ -9,14 +9,15 @@ and with shear, and of a pivot the surrogate models in closed form and the other
 Without --dynamic the error is that of path and torque over the static path, and those of stiffness and
 largest stress are told beside it; with it, that of the rotation (over the rotation at the start) and of the
 frequency in the first four swings after the release. Each model is held against the limit of its own theory,
-whose own error is printed. A setting counts when finer ones keep the error. Times are of the increments or
-steps alone, measured here, on one thread. Exit code 0: done; 2: bad input; 3: there is no reference, or no
+whose own error is printed. A setting counts when finer ones keep the error. Times are measured here, on one
+thread, once all is compiled and loaded: of whole calls, from the design to the answer, set-up included, and
+of the increments or steps alone. Exit code 0: done; 2: bad input; 3: there is no reference, or no
 model meets the error.
 """
 
 import argparse
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -27,8 +28,13 @@ from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command
+from studies.cost.advice import advise_path, advise_swing
+from studies.cost.tried import PATH_ERRORS, PATH_JUDGED
 from studies.record.progress import Bar
-from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_motion, advise_path
+
+#: What is tried, the errors that it is judged by, and those that are told.
+STATIC = (advise_path, PATH_JUDGED, PATH_ERRORS)
+DYNAMIC = (advise_swing, ("rotation", "frequency"), ("rotation", "frequency"))
 
 
 @command(
@@ -40,33 +46,30 @@ from studies.work_precision.advice import MOTION_ERRORS, PATH_ERRORS, advise_mot
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
     problem = take.turned_design(arguments, "rotation to relate errors to")
-    advise, judged = (advise_motion, MOTION_ERRORS) if arguments.dynamic else (advise_path, PATH_ERRORS)
+    advise, judged, told = STATIC if not arguments.dynamic else DYNAMIC
     try:
         with Bar("advise") as bar:
             found = advise(problem, arguments.accuracy, bar)
     except NoReference as error:
         return not_converged(error)
     failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
-    table = _readable(problem, found, judged, arguments.accuracy)
-    return deliver(arguments, _document(found, arguments.accuracy), table, failure=failure)
+    table = _readable(problem, found, told, judged, arguments.accuracy)
+    return deliver(arguments, _document(found, told, judged, arguments.accuracy), table, failure=failure)
 
 
-def _errors_of(found: pd.DataFrame) -> list[str]:
-    """Return the columns of errors, judged or told beside."""
-    return [name for name in map(str, found) if name.startswith("error_")]
-
-
-def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
+def _document(
+    found: pd.DataFrame, told: Sequence[str], judged: Sequence[str], error: float
+) -> dict[str, Any]:
     """Return the advice as the JSON object of the command."""
-    uncertain = ("uncertainty", "uncertainty_stress")
     rows = [
         {
-            "model": row["series"],
+            "model": row["group"],
             "setting": row["setting"],
             "meets": row["meets"],
-            **{name: row[name] for name in _errors_of(found)},
-            **{f"reference_{name}": row[name] for name in uncertain if name in row},
-            "solve_s": row["solve_s"],
+            **{f"error_{name}": row.get(name, math.nan) for name in told},
+            "reference_uncertainty": _uncertainty(row, judged),
+            **{f"reference_uncertainty_{name}": row[f"uncertainty_{name}"] for name in told[2:]},
+            **{name: row[name] for name in ("whole_s", "solve_s")},
             "message": row["message"],
         }
         for row in found.to_dict("records")
@@ -74,26 +77,32 @@ def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
     return {"accuracy": error, "models": rows}
 
 
-def _readable(problem: Design, found: pd.DataFrame, judged: Sequence[str], error: float) -> Iterator[str]:
+def _uncertainty(row: Mapping[Any, Any], judged: Sequence[str]) -> float:
+    """Return the largest uncertainty of the limits that a model is judged by [1]."""
+    return max(float(row[f"uncertainty_{name}"]) for name in judged)
+
+
+def _readable(
+    problem: Design, found: pd.DataFrame, told: Sequence[str], judged: Sequence[str], error: float
+) -> Iterator[str]:
     """Yield the lines of a table, the cheapest model that meets the error first."""
     turned = math.degrees(problem.rotation or 0.0)
-    names = " and ".join(name.removeprefix("error_") for name in judged)
-    yield f"error {error:g} in {names}, from 0 to {turned:.4g} deg"
-    told = {"uncertainty": "at most", "uncertainty_stress": "of the stress"}
-    most = ", ".join(f"{word} {found[name].max():.1e}" for name, word in told.items() if name in found)
-    yield f"error of the references: {most}"
-    columns = _errors_of(found)
-    head = "".join(f"{name.removeprefix('error_'):>12}" for name in columns)
-    yield f"{'model':<27}{'setting':<20}{head}{'time':>12}{'x fastest':>11}"
-    ordered = found.sort_values(["meets", "solve_s"], ascending=[False, True])
-    fastest = ordered["solve_s"].iloc[0]
-    for row in ordered.to_dict("records"):
-        errors = "".join(cell(row[name], 12) for name in columns)
-        line = f"{row['series']:<27}{row['setting']:<20}{errors}"
+    yield f"error {error:g} in {' and '.join(judged)}, from 0 to {turned:.4g} deg"
+    rows = found.sort_values(["meets", "whole_s"], ascending=[False, True]).to_dict("records")
+    unsure = max(_uncertainty(row, judged) for row in rows)
+    beside = (f"of the {name} {found[f'uncertainty_{name}'].max():.1e}" for name in told[2:])
+    yield ", ".join((f"error of the references: at most {unsure:.1e}", *beside))
+    head = "".join(f"{name:>12}" for name in told)
+    width = max(len(row["setting"]) for row in rows) + 2
+    yield f"{'model':<22}{'setting':<{width}}{head}{'whole call':>13}{'x fastest':>11}{'alone':>13}"
+    for row in rows:
+        errors = "".join(cell(row.get(name, math.nan), 12) for name in told)
+        line = f"{row['group']:<22}{row['setting']:<{width}}{errors}"
         if row["message"]:
             yield f"{line}  {row['message']}"
             continue
-        time = f"{1e3 * row['solve_s']:9.3g} ms{row['solve_s'] / fastest:11.3g}"
-        yield f"{line}{time}" if row["meets"] else f"{line}{time}  does not meet it: its best"
-    if not (found["uncertainty"] <= 0.1 * error).all():
+        times = f"{1e3 * row['whole_s']:10.3g} ms{row['whole_s'] / rows[0]['whole_s']:11.3g}"
+        line += f"{times}{1e3 * row['solve_s']:10.3g} ms"
+        yield line if row["meets"] else f"{line}  does not meet it: its best"
+    if unsure > 0.1 * error:
         yield "a reference's own error is more than a tenth of the wanted one: the verdicts are not certain"

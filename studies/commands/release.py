@@ -23,7 +23,7 @@ frequencies that the rotation contains, with amplitudes, the largest first, down
 Multiples of a larger one are its harmonics and not listed.
 rotation_error_rad and displacement_error_m estimate the largest errors of the rotations of all bodies and of
 the places of all bodies and free ends. They come from companion motions with other steps and control points
-or elements (--no-check leaves them out). wall_s leaves out these motions, and the static path to the start.
+or elements (--no-check leaves them out). wall_s is of the whole call, without these motions.
 Exit code 0: done, though `resolution` may say that step or discretisation do not resolve the motion; 2: bad
 input; 3: statics does not reach the start, or the motion stopped early.
 """

@@ -51,8 +51,8 @@ SLOW_SHIPPED = (
     "sweep {case} static",
 )
 #: Not asked, as the answer hangs on round-off: massless strips that snap through or have no tangent, a search
-#: along a flat objective that reaches no optimum, a difference over a travel of nothing, and a pose far beyond
-#: what six control points resolve.
+#: along a flat objective that reaches no optimum, a difference over a travel of nothing, and a pose far
+#: beyond what six control points resolve.
 UNREPEATABLE = (
     "audit cantilever_with_body",
     "audit parallel_strip_guide",

@@ -44,7 +44,7 @@ def test_time_of_a_picture_holds_the_search_for_the_markers(content):
 )
 def test_rotations_where_a_surrogate_is_nearer_are_counted(content, name, model):
     """Requirement: how often and between which rotations the four-bar is nearer than four points is said."""
-    rows = _stored("baselines/surrogates", "errors").set_index(["model", "rotation_rad"])["trajectory"].abs()
+    rows = _stored("cost/surrogates", "errors").set_index(["model", "rotation_rad"])["trajectory"].abs()
     nearer = [degrees(a) for a in rows[model].index if a > 0.0 and rows["four-bar", a] < rows[model, a]]
     facts = content["facts"]
     assert _number(facts[f"surrogates.path.{name}.nearer"]) == len(nearer)

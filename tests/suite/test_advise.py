@@ -6,91 +6,94 @@ import math
 import pandas as pd
 import pytest
 
-from studies.baselines.answer import BaselineFailed
-from studies.baselines.variant import Baseline, grid
 from studies.cases.problem import FOLDER
-from studies.work_precision import advice, series
-from studies.work_precision.equal_error import coarsest, kept
+from studies.cost import advice, settings
+from studies.cost.model import Failed, Model
+from studies.cost.tried import cheapest, kept
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
 
-def rows(errors, *, names="abc", slow=1.0):
-    """A table of one series a name, each with its errors from coarse to fine; all but the first are slow."""
+def rows(errors):
+    """A table of one group a list, each with its errors from coarse to fine, the finer ones slower."""
     table = [
-        {"series": name, "family": "all", "setting": f"{name}{rank}", "rank": rank, "error_x": error}
-        | {"solve_s": (1.0 if name == names[0] else slow) * 2.0**rank, "message": ""}
-        for name, values in zip(names, errors, strict=False)
-        for rank, error in enumerate(values)
+        {"group": name, "family": "", "fineness": float(k), "setting": f"{name}{k}", "status": "converged"}
+        | {"torque": error, "whole_s": 2.0**k}
+        for name, values in zip("ab", errors, strict=True)
+        for k, error in enumerate(values)
     ]
     return pd.DataFrame(table)
 
 
 def test_an_error_by_luck_does_not_count():
-    """A coarse setting that is better than the finer ones has the error that these keep."""
+    """A coarse setting that is better than the finer ones has the error that these keep; one that is coarser
+    than a failure has none."""
     table = rows([[1e-5, 1e-2, 1e-3], [1e-2, math.nan, 1e-4]])
-    assert kept(table, ["error_x"], "rank").tolist() == [1e-2, 1e-2, 1e-3, math.inf, math.inf, 1e-4]
-    assert coarsest(table, ["error_x"], "rank", 2e-3)["setting"].tolist() == ["a2", "b2"]
+    assert kept(table, ["torque"]).tolist() == [1e-2, 1e-2, 1e-3, math.inf, math.inf, 1e-4]
+    assert cheapest(table, ["torque"], 2e-3)["setting"].tolist() == ["a2", "b2"]
+    assert cheapest(table, ["torque"], 1e-6)["meets"].tolist() == [False, False]
 
 
 @pytest.fixture
 def few(monkeypatch):
     """Models that are quick to try: few settings of spline and elements, and closed forms."""
-    wanted = ("linear pivot", "pin joint", "four-bar")
-    own = [each for each in series.own_paths(range(4, 7)) if each.series in (series.SPLINE, series.ELEMENTS)]
-    others = [each for each in series.other_paths() if each.series in wanted]
-    monkeypatch.setattr(series, "own_paths", lambda counts: own)
-    monkeypatch.setattr(series, "other_paths", lambda: others)
-    return {"spline", series.ITSELF, "finite elements", *wanted}
+    models = ("spline", "finite elements", "linear pivot", "pin joint", "four-bar")
+    chosen = [
+        each
+        for each in settings.paths()
+        if each.model.name in models and each.theory == "material" and each.fineness <= 40.0
+    ]
+    monkeypatch.setattr(settings, "paths", lambda: chosen)
 
 
-def test_static_advice_as_json(few, command):
-    """The command advises on Table 1: the spline and the elements meet 1e-2, the pin joint does not."""
+@pytest.mark.usefixtures("few")
+def test_static_advice_as_json(command):
+    """The command advises on Table 1: spline and elements meet 1e-2, by whole calls; no surrogate does."""
     document = json.loads(command("advise", CASE, "--accuracy", "1e-2", "--json", "-").out)
     found = {row["model"]: row for row in document["models"]}
-    assert set(found) == few
-    assert found[series.ITSELF]["error_stress"] < 0.1 * found["spline"]["error_stress"]
-    for name in ("spline", series.ITSELF, "finite elements"):
-        assert found[name]["meets"]
-        assert 0.0 < found[name]["error_torque"] <= 1e-2
-        assert found[name]["solve_s"] > 0.0
-        assert found[name]["reference_uncertainty"] < 1e-4
-        assert 0.0 < found[name]["error_stress"] < 0.03
-        assert found[name]["reference_uncertainty_stress"] < 1e-4
-    assert found["pin joint"]["error_stress"] is None
-    assert found["spline"]["setting"] == "n = 5"
-    assert not found["pin joint"]["meets"] and found["pin joint"]["error_trajectory"] > 0.1
+    assert set(found) == {settings.SPLINE, settings.ITSELF, settings.ELEMENTS, settings.SURROGATE}
+    for name in (settings.SPLINE, settings.ITSELF, settings.ELEMENTS):
+        row = found[name]
+        assert row["meets"]
+        assert 0.0 < row["error_torque"] <= 1e-2
+        assert 0.0 < row["solve_s"] < row["whole_s"]
+        assert row["reference_uncertainty"] < 1e-4
+        assert 0.0 < row["error_stress"] < 0.03
+        assert row["reference_uncertainty_stress"] < 1e-4
+    assert not found[settings.SURROGATE]["meets"]
+    assert found[settings.SURROGATE]["error_stress"] is None
 
 
-def test_no_model_meets_an_impossible_error(few, case, command):
-    """Where no model meets the error the exit code says so; the best of each is told, why one refuses the
-    pivot, and that verdicts are not certain where a reference is too coarse for them."""
-    path = case(("crossing_ratio = 0.5", "crossing_ratio = 0.3"), ("increments = 20", "increments = 4"))
-    outcome = command("advise", path, "--accuracy", "1e-12")
+@pytest.mark.usefixtures("few")
+def test_no_model_meets_an_impossible_error(case, command):
+    """Where no model meets the error the exit code says so, the best of each is told, and that verdicts are
+    not certain where a reference is too coarse for them."""
+    path = case(("increments = 20", "increments = 4"))
+    outcome = command("advise", path, "--accuracy", "1e-13")
     assert outcome.code == 3
-    assert "no model meets 1e-12 here" in outcome.err
+    assert "no model meets 1e-13 here" in outcome.err
     *lines, last = outcome.out.splitlines()
-    told = [line for line in lines if line.endswith("does not meet it: its best")]
-    (refused,) = [line for line in lines if line.startswith("pin joint")]
-    assert len(told) >= 4
-    assert "got" in refused and "expected" in refused
+    assert len([line for line in lines if line.endswith("does not meet it: its best")]) == 4
     assert last.endswith("not certain")
 
 
 @pytest.mark.slow
 def test_dynamic_advice_as_a_table(command, monkeypatch):
-    """The command with --dynamic prints each model's setting, errors of rotation and frequency, and time."""
+    """The command with --dynamic prints each model's setting, errors of rotation and frequency, and times."""
     monkeypatch.setattr(advice, "REFERENCE", (6, 5))
     monkeypatch.setattr(advice, "PERIODS", 1.0)
-    small = [each for each in series.own_swings() if each.series == series.IMPLICIT][8:11]
+    genuine = settings.swings
 
-    class Failing(Baseline):
-        def release(self, *_, **__):
-            raise BaselineFailed("it blew up")
+    class Failing(Model):
+        def swing(self, *_, **__):
+            raise Failed("it blew up")
 
-    monkeypatch.setattr(series, "own_swings", lambda *_: small)
-    monkeypatch.setattr(series, "other_swings", lambda *_: grid(Failing(model="failing"), "failing"))
+    def small(frequency):
+        own = [each for each in genuine(frequency) if each.settings.get("integrator") == "energy"]
+        return [*own[6:9], *settings.grid(Failing(name="failing"), "failing")]
+
+    monkeypatch.setattr(settings, "swings", small)
     lines = command("advise", CASE, "--accuracy", "0.1", "--dynamic").out.splitlines()
     assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
-    assert any(line.startswith("spline, energy-consistent") and " ms" in line for line in lines)
+    assert any(line.startswith("spline") and " ms" in line for line in lines)
     assert any(line.startswith("failing") and line.endswith("it blew up") for line in lines)

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from studies.__main__ import main
-from studies.baselines.openseespy import _loaded
+from studies.cost.openseespy import _loaded
 from studies.record.store import RESULTS
 from studies.registry import study_of
 
 #: Studies that hold the suite against the other codes.
-BESIDE_PEERS = ("baselines/peers",)
+BESIDE_PEERS = ("cost/codes",)
 
 
 def files_in(folder: Path) -> dict[str, bytes]:
@@ -42,8 +42,8 @@ def test_results_stay_without_the_other_codes(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize("study", BESIDE_PEERS)
 def test_one_code_is_not_enough(study, monkeypatch):
     """With one of the codes alone the tables would lose the other: it is named, and nothing is computed."""
-    from studies.baselines.exudyn_strips import exudyn_ancf, exudyn_exact
-    from studies.baselines.openseespy import openseespy_frame
+    from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
+    from studies.cost.openseespy import openseespy_frame
 
     for module in (exudyn_ancf, exudyn_exact):
         monkeypatch.setattr(module, "installed", lambda: True)

@@ -9,24 +9,16 @@ M and V' over the range of the swing, exact to round-off. Statics is V' and V'' 
 body's place.
 """
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.polynomial import chebyshev
 
-from studies.baselines.answer import (
-    SolvedMotion,
-    SolvedPath,
-    checked_release,
-    checked_rotations,
-    clocked,
-)
-from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
+from studies.cost.model import Model, SolvedMotion, SolvedPath, steps_of, turns_of
 from studies.kinds import Array
 
 #: Highest degree of the series, and the part of their largest coefficient below which they end.
@@ -58,47 +50,37 @@ Law = Callable[[Array], State]
 
 
 @dataclass(eq=False, kw_only=True)
-class Surrogate(Baseline):
+class Surrogate(Model):
     """A model whose only coordinate is the rotation, by the law of a pivot."""
 
     law_of: Callable[[Problem], Law]
 
-    def static_path(self, problem: Problem, rotations: Any) -> SolvedPath:
-        """Return the path through `rotations` (S,) [rad], the first of which is 0.
-
-        Timed is the evaluation of the states.
-
-        Raises:
-            BadInput: a pivot outside the model's range.
-        """
-        law, turns = self.law_of(problem), checked_rotations(rotations)
+    def path(self, problem: Problem) -> SolvedPath:
+        """Return the path by evaluating its states, which is what `solve_s` is of."""
+        law, turns = self.law_of(problem), turns_of(problem)
+        begin = time.perf_counter()
         found = law(turns)
         return SolvedPath(
             rotation=turns,
             centre=found.centre,
             torque=found.torque,
             stiffness=found.stiffness,
-            again=clocked(lambda: partial(law, turns)),
-            work={"unknowns": 1},
+            solve_s=time.perf_counter() - begin,
+            counters={"unknowns": 1},
         )
 
-    def release(self, problem: Problem, *, start: float, duration: float, step: float) -> SolvedMotion:
-        """Return the motion after a release at rest at `start` [rad] for `duration` in steps of `step` [s].
-
-        Timed is the compiled integration alone.
-
-        Raises:
-            BadInput: a pivot outside the model's range.
-        """
-        law, steps = self.law_of(problem), checked_release(start, duration, step)
+    def swing(self, problem: Problem, duration: float, *, step: float) -> SolvedMotion:
+        """Return the motion in steps of `step` [s]; `solve_s` is of the compiled integration."""
+        law, steps = self.law_of(problem), steps_of(duration, step)
         states = np.empty((steps + 1, 2))
-        run = partial(integrate, start, duration / steps, states, *_series_of(law, abs(start) or 1.0))
-        run()
+        series = _series_of(law, abs(problem.rotation) or 1.0)
+        begin = time.perf_counter()
+        integrate(problem.rotation, duration / steps, states, *series)
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
             rotation=states[:, 0].copy(),
-            again=clocked(lambda: run),
-            work={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
+            solve_s=time.perf_counter() - begin,
+            counters={"unknowns": 1, "steps": steps, "evaluations": 4 * steps},
         )
 
 

@@ -13,32 +13,32 @@ times; with the initial tangent it fails). Driven by `DisplacementControl` of th
 takes one iteration an increment fewer than by a prescribed rotation, with the same answers. The tolerance is
 on the energy of an iteration, over EI/L. In motion `HHT` with 0.9 is the most accurate and reliable
 (`Newmark` fails at 1e-5 s, `GeneralizedAlpha` at 2e-5 s, `TRBDF2` takes twice the solves); it needs the
-acceleration of the body at the release to be given. The timed call is `analyze` alone, without recorders.
+acceleration of the body at the release to be given. `solve_s` is of `analyze`, step by step, with
+the body's place read after each.
 """
 
 import ctypes
 import importlib.util
 import os
+import time
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import (
-    BaselineFailed,
+from studies.cases.problem import Problem
+from studies.cost.model import (
+    Failed,
+    Model,
     SolvedMotion,
     SolvedPath,
     checked_count,
-    checked_release,
-    checked_rotations,
-    clocked,
     geometry_of,
+    steps_of,
+    turns_of,
 )
-from studies.baselines.variant import Baseline
-from studies.cases.problem import Problem
-from studies.errors import BadInput
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -63,8 +63,8 @@ def _loaded() -> Any:
 
 
 @dataclass(eq=False, kw_only=True)
-class _OpenSees(Baseline):
-    """OpenSees as a baseline."""
+class _OpenSees(Model):
+    """OpenSees as a model."""
 
     def installed(self) -> bool:
         """Return whether OpenSees can be imported."""
@@ -74,81 +74,64 @@ class _OpenSees(Baseline):
             return False
         return True
 
-    def static_path(
-        self, problem: Problem, rotations: Any, *, elements: int = 20, tolerance: float = 1e-8
-    ) -> SolvedPath:
-        """Drive the body through `rotations` [rad], equal increments from 0.
+    def path(self, problem: Problem, *, elements: int = 20, tolerance: float = 1e-8) -> SolvedPath:
+        """Return the path.
 
         Args:
-            problem: the pivot.
-            rotations: (S,) [rad].
             elements: a strip [1].
             tolerance: of the energy of Newton's last iteration, in EI/L [1].
-
-        Raises:
-            BadInput: a setting out of range, or increments that differ. BaselineFailed: no convergence.
         """
-        turns = checked_rotations(rotations)
-        increments = np.diff(turns)
-        if np.abs(increments - increments[0]).max() > 1e-9 * abs(increments[0]):
-            raise BadInput("rotations: got unequal increments, expected equal ones for OpenSees")
-        asked = {"elements": elements, "tolerance": tolerance}
-        ready = partial(_driven, problem, asked, float(increments[0]), moving=False)
-        ops = ready()
-        states, iterations = [np.zeros(3)], 0
+        turns = turns_of(problem)
+        ops = _driven(problem, {"elements": elements, "tolerance": tolerance}, float(turns[1]), moving=False)
+        begin, states, iterations = time.perf_counter(), [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
-                raise BaselineFailed(f"OpenSees: no convergence at {turn:g} rad")
+                raise Failed(f"OpenSees: no convergence at {turn:g} rad")
             iterations += ops.testIter()
             states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
-        answer = np.array(states)
+        seconds, answer = time.perf_counter() - begin, np.array(states)
         return SolvedPath(
             rotation=turns,
             centre=geometry_of(problem).centre + answer[:, :2],
             torque=answer[:, 2],
-            stiffness=np.full(len(turns), np.nan),
-            again=clocked(lambda: partial(ready().analyze, len(increments))),
-            work=_work(ops, iterations),
+            solve_s=seconds,
+            counters=_counters(ops, iterations),
         )
 
-    def release(
+    def swing(
         self,
         problem: Problem,
-        *,
-        start: float,
         duration: float,
+        *,
         step: float,
         elements: int = 20,
         tolerance: float = 1e-8,
         alpha: float = 0.9,
     ) -> SolvedMotion:
-        """Let go of the body at rest at `start` [rad] and follow it by Hilber, Hughes and Taylor's method.
+        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s].
 
         Args:
-            step: [s]; alpha: of the method, 2/3 to 1 (1: none of its damping). Others as of `static_path`.
-
-        Raises:
-            BadInput: a setting out of range. BaselineFailed: no convergence.
+            alpha: of the method, 2/3 to 1 (1: none of its damping). Others as of `path`.
         """
-        steps = checked_release(start, duration, step)
-        asked = {"elements": elements, "tolerance": tolerance, "alpha": alpha}
-        ready = partial(_let_go, problem, asked, start)
-        ops = ready()
-        rotation, iterations = np.full(steps + 1, start), 0
+        steps = steps_of(duration, step)
+        ops = _let_go(
+            problem, {"elements": elements, "tolerance": tolerance, "alpha": alpha}, problem.rotation
+        )
+        begin, rotation, iterations = time.perf_counter(), np.full(steps + 1, problem.rotation), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
-                raise BaselineFailed(f"OpenSees: no convergence at {ops.getTime():g} s")
+                raise Failed(f"OpenSees: no convergence at {ops.getTime():g} s")
             iterations += ops.testIter()
             rotation[row] = ops.nodeDisp(BODY)[2]
         return SolvedMotion(
             time=np.linspace(0.0, duration, steps + 1),
             rotation=rotation,
-            again=clocked(lambda: partial(ready().analyze, steps, duration / steps)),
-            work=_work(ops, iterations) | {"steps": steps},
+            solve_s=time.perf_counter() - begin,
+            counters=_counters(ops, iterations) | {"steps": steps},
         )
 
 
-def _work(ops: Any, iterations: int) -> dict[str, int]:
+def _counters(ops: Any, iterations: int) -> dict[str, int]:
     return {
         "unknowns": ops.systemSize(),
         "newton_iterations": iterations,
@@ -203,7 +186,7 @@ def _let_go(problem: Problem, asked: dict[str, Any], start: float) -> Any:
     strict = asked | {"tolerance": START_TOLERANCE}
     ops = _driven(problem, strict, start / count, moving=True)
     if ops.analyze(count) != 0:
-        raise BaselineFailed(f"OpenSees: statics does not reach the start, {start:g} rad")
+        raise Failed(f"OpenSees: statics does not reach the start, {start:g} rad")
     moment = ops.getTime()
     ops.remove("loadPattern", 1)
     ops.wipeAnalysis()
@@ -224,4 +207,4 @@ def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
     ops.algorithm("Newton")
 
 
-openseespy_frame = _OpenSees(model="openseespy frame")
+openseespy_frame = _OpenSees(name="openseespy frame")

@@ -48,9 +48,9 @@ from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import Geometry, geometry_of
-from studies.baselines.one_coordinate import Law, State, Surrogate
 from studies.cases.problem import Problem
+from studies.cost.model import Geometry, geometry_of
+from studies.cost.one_coordinate import Law, State, Surrogate
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -226,6 +226,6 @@ def _linkage(problem: Problem) -> Law:
     return law
 
 
-linear_pivot = Surrogate(model="linear pivot", law_of=_linear_law)
-pin_joint = Surrogate(model=PIN_JOINT, law_of=_pinned_law)
-four_bar = Surrogate(model="four-bar", law_of=_linkage)
+linear_pivot = Surrogate(name="linear pivot", law_of=_linear_law)
+pin_joint = Surrogate(name=PIN_JOINT, law_of=_pinned_law)
+four_bar = Surrogate(name="four-bar", law_of=_linkage)

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.baselines import one_coordinate
-from studies.baselines.answer import SolvedMotion, SolvedPath, geometry_of
-from studies.baselines.compared import SURROGATES
-from studies.baselines.constraint_model import constraint_model
-from studies.baselines.own import spline
-from studies.baselines.pseudo_rigid import (
+from studies.cases.effects import Effects
+from studies.cases.problem import named_case
+from studies.cost import one_coordinate
+from studies.cost.constraint_model import constraint_model
+from studies.cost.model import SolvedMotion, SolvedPath, geometry_of
+from studies.cost.own import spline
+from studies.cost.pseudo_rigid import (
     four_bar,
     linear_pivot,
     link_length,
@@ -19,8 +20,7 @@ from studies.baselines.pseudo_rigid import (
     small_angle_stiffness,
     spring,
 )
-from studies.cases.effects import Effects
-from studies.cases.problem import named_case
+from studies.cost.settings import SURROGATES
 from studies.errors import BadInput
 from tests import gates
 
@@ -28,22 +28,25 @@ CASE = named_case("cross_axis_pivot")
 UNEVEN = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
 LAWS = (linear_pivot, pin_joint, four_bar)
 SMALL = 1e-3
-TURNS = np.linspace(0.0, math.pi / 2, 21)
+
+
+def turned(problem, angle):
+    """The pivot turned to an angle [rad] in one increment."""
+    return replace(problem, rotation=angle, increments=1)
 
 
 def small_angle_stiffness_error(**changes):
     """Largest relative difference of the linear closed form's K to the spline's at rest."""
     problem = replace(CASE, **changes)
-    path = spline.static_path(problem, [0.0, SMALL], control_points=8)
+    path = spline.path(turned(problem, SMALL), control_points=8)
     return abs(small_angle_stiffness(problem) / path.stiffness[0] - 1.0)
 
 
 def small_angle_place_error(problem, model, angle):
     """Difference of the body's place to that of the spline with strips that hardly stretch, in L p^2."""
     stiff = replace(problem, area=1e4 * problem.area)
-    turns = [0.0, angle]
-    limit = spline.static_path(stiff, turns, control_points=8)
-    path = model.static_path(problem, turns)
+    limit = spline.path(turned(stiff, angle), control_points=8)
+    path = model.path(turned(problem, angle))
     return np.linalg.norm(path.centre[-1] - limit.centre[-1]) / (problem.length * angle**2)
 
 
@@ -60,7 +63,7 @@ def test_linear_pivot_for_any_crossing(ratio):
 
 
 @pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
-@pytest.mark.parametrize("model", [linear_pivot, four_bar], ids=lambda model: model.model)
+@pytest.mark.parametrize("model", [linear_pivot, four_bar], ids=lambda model: model.name)
 def test_small_rotations_shift_the_centre_as_the_spline_does(problem, model):
     """Requirement: closed form and fitted linkage have the exact centre shift of small rotations."""
     if model is linear_pivot:  # at larger rotations the closed form is no longer exact
@@ -116,10 +119,10 @@ def test_constraint_model_has_the_exact_stiffness_at_rest():
     law = constraint_model.law_of(UNEVEN)
 
     def error(angle=0.0):
-        limit = spline.static_path(UNEVEN, [0.0, angle or SMALL], control_points=8)
+        limit = spline.path(turned(UNEVEN, angle or SMALL), control_points=8)
         return abs(law(np.array([angle])).stiffness[0] / limit.stiffness[-1 if angle else 0] - 1.0)
 
-    limit = spline.static_path(UNEVEN, [0.0, SMALL], control_points=8)
+    limit = spline.path(turned(UNEVEN, SMALL), control_points=8)
     assert law(np.zeros(1)).centre[0] == pytest.approx(limit.centre[0], abs=1e-15)
     gates.hold("constraint_model_stiffness", error)
 
@@ -143,14 +146,14 @@ def test_constraint_model_has_its_derivatives(problem):
 def test_pin_joint_polynomial():
     """Requirement: K_Theta is the published polynomial, at n = 1 the sum of its coefficients."""
     rigidity = CASE.youngs_modulus * CASE.second_moment_of_area / CASE.length
-    assert pin_joint.static_path(CASE, TURNS).stiffness / rigidity == pytest.approx(4.307926 / 2.0, rel=1e-12)
+    assert pin_joint.path(CASE).stiffness / rigidity == pytest.approx(4.307926 / 2.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("changes", [{"crossing_ratio": 0.4}, {"inclination": 0.3}, {"inclination": 1.4}])
 def test_pin_joint_refuses_what_it_was_not_published_for(changes):
     """Requirement: outside its range of validity the pin joint is refused in one line."""
     with pytest.raises(BadInput, match=r"^pin joint: got .* expected [^\n]*$"):
-        pin_joint.static_path(replace(CASE, **changes), TURNS)
+        pin_joint.path(replace(CASE, **changes))
 
 
 def energy_drift(model, step, duration=0.05):
@@ -163,7 +166,7 @@ def energy_drift(model, step, duration=0.05):
     return np.abs(energy / energy[0] - 1.0).max()
 
 
-@pytest.mark.parametrize("model", [*LAWS, constraint_model], ids=lambda model: model.model)
+@pytest.mark.parametrize("model", [*LAWS, constraint_model], ids=lambda model: model.name)
 def test_swings_keep_their_energy(model):
     """Requirement: the energy of a swing is constant up to the error of its integrator."""
     usual = 5e-6 if model is constraint_model else 1e-5
@@ -176,7 +179,7 @@ def test_swings_keep_their_energy(model):
 def test_pin_joint_swings_harmonically():
     """Requirement: with constant inertia and stiffness the release is a cosine."""
     law = pin_joint.law_of(CASE)
-    motion = pin_joint.release(CASE, start=1.0, duration=0.05, step=1e-5)
+    motion = pin_joint.swing(replace(CASE, rotation=1.0), 0.05, step=1e-5)
     rest = law(np.zeros(1))
     omega = math.sqrt(rest.stiffness[0] / rest.inertia[0])
     assert motion.rotation == pytest.approx(np.cos(omega * motion.time), abs=1e-9)
@@ -186,14 +189,14 @@ def test_pin_joint_swings_harmonically():
 def test_every_surrogate_answers_alike(name):
     """Requirement: path and motion come in the neutral arrays, with the time of the solver alone."""
     module = SURROGATES[name]
-    path = module.static_path(CASE, TURNS).timed(2)
-    motion = module.release(CASE, start=0.5, duration=0.01, step=1e-4).timed(1)
+    path = module.path(CASE)
+    motion = module.swing(replace(CASE, rotation=0.5), 0.01, step=1e-4)
     assert isinstance(path, SolvedPath)
     assert isinstance(motion, SolvedMotion)
     assert (path.rotation.shape, path.centre.shape) == ((21,), (21, 2))
     assert path.torque.shape == path.stiffness.shape == (21,)
     assert np.isfinite(path.stiffness).all()
-    assert path.centre[0] == pytest.approx(spline.static_path(CASE, TURNS).centre[0], abs=1e-15)
+    assert path.centre[0] == pytest.approx(spline.path(CASE).centre[0], abs=1e-15)
     assert motion.time[[0, -1]] == pytest.approx([0.0, 0.01])
     assert motion.rotation[0] == 0.5
     assert path.solve_s > 0.0
@@ -203,14 +206,10 @@ def test_every_surrogate_answers_alike(name):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda m: m.static_path(CASE, [0.1, 0.2]), "rotations: got"),
-        (lambda m: m.static_path(CASE, [0.0, math.nan]), "rotations: got"),
-        (lambda m: m.static_path(CASE, TURNS).timed(0), "repeat: got 0"),
-        (lambda m: m.release(CASE, start=1.0, duration=0.01, step=0.02), "step: got 0.02"),
-        (lambda m: m.release(CASE, start=math.inf, duration=0.01, step=1e-4), "start: got inf"),
+        (lambda m: m.swing(CASE, 0.01, step=0.02), "step: got 0.02"),
         (
-            lambda m: m.static_path(replace(CASE, effects=Effects(names=("bending", "gravity"))), TURNS),
-            "baseline: got the effects bending, gravity",
+            lambda m: m.path(replace(CASE, effects=Effects(names=("bending", "gravity")))),
+            "effects: got bending, gravity",
         ),
     ],
 )
@@ -218,10 +217,3 @@ def test_bad_input_is_refused_in_one_line(call, message):
     """Requirement: what cannot be asked is refused with what was got and expected."""
     with pytest.raises(BadInput, match=f"^{message}[^\n]*expected[^\n]*$"):
         call(four_bar)
-
-
-def test_spline_refuses_what_the_condensed_path_does_not_cover():
-    """Requirement: the spline's timed path is the condensed one, and another scene is refused."""
-    weighted = replace(CASE, effects=CASE.effects.renamed([*CASE.effects.names, "gravity"]))
-    with pytest.raises(BadInput, match=r"^spline: got the effects [^\n]*gravity, expected"):
-        spline.static_path(weighted, TURNS)

@@ -14,10 +14,10 @@ import pandas as pd
 from studies.answers.adapters import answer_static
 from studies.answers.reference import errors
 from studies.answers.response import Response
-from studies.baselines.answer import SolvedPath
-from studies.baselines.compared import PSEUDO_RIGID, SURROGATES
-from studies.baselines.own import spline
 from studies.cases.problem import named_case
+from studies.cost.model import SolvedPath
+from studies.cost.own import spline
+from studies.cost.settings import PSEUDO_RIGID, SURROGATES
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
@@ -35,12 +35,10 @@ LEVELS = (0.01, 0.05)
 
 def _paths() -> Answer:
     """Return errors over the path (a row a model and degree) and the reference's uncertainty."""
-    problem = named_case()
-    turns = np.linspace(0.0, problem.rotation, STATES)
-    limit, near = (spline.static_path(problem, turns, control_points=n) for n in (REFINED, CHECK))
-    paths = {name: each.static_path(problem, turns) for name, each in SURROGATES.items()}
-    fine = replace(problem, increments=STATES - 1)
-    beside = {name: answer_static(fine, formulations.SETTINGS[name]) for name in SPLINES}
+    problem = replace(named_case(), increments=STATES - 1)
+    limit, near = (spline.path(problem, control_points=n) for n in (REFINED, CHECK))
+    paths = {name: each.path(problem) for name, each in SURROGATES.items()}
+    beside = {name: answer_static(problem, formulations.SETTINGS[name]) for name in SPLINES}
     found = [_errors(name, path, limit) for name, path in (paths | beside).items()]
     uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
     return {
@@ -51,7 +49,7 @@ def _paths() -> Answer:
     }
 
 
-def _errors(name: str, path: SolvedPath | Response, limit: SolvedPath) -> pd.DataFrame:
+def _errors(name: str, path: SolvedPath | Response, limit: Response) -> pd.DataFrame:
     """Return the errors at each rotation: trajectory >= 0, the others signed [1]."""
     found = errors(path, limit)
     found["torque"][0] = 0.0  # at rest there is none, but for round-off

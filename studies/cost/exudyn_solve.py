@@ -1,9 +1,9 @@
-"""Static path and release in Exudyn, as fast as it was found to go, and timed around its solver alone.
+"""Static path and release in Exudyn, as fast as it was found to go.
 
-What the timing leaves out and what was tried on Table 1, for the whole path of 20 increments:
+What was tried on Table 1, for the whole path of 20 increments:
 
-- The timed call is `SolveSteps` of the solver's structure; `InitializeSolver`, which allocates, comes before.
-  A timed run writes no file, no sensor and no message; the answer is that of one more run with sensors.
+- `solve_s` is of `SolveSteps` of the solver's structure; `InitializeSolver`, which allocates, comes before.
+  A run writes no file and no message; sensors keep its states.
 - Steps are fixed. Modified Newton, with a new Jacobian at every load step, takes 45 to 66 % of the time of
   full Newton; that an iteration must reduce the residual to a tenth, lest a new Jacobian is made, saves
   another 15 to 20 % with the finest strips and changes nothing with others. In motion the default, a half, is
@@ -17,23 +17,15 @@ What the timing leaves out and what was tried on Table 1, for the whole path of 
 """
 
 import importlib.util
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import (
-    BaselineFailed,
-    SolvedMotion,
-    SolvedPath,
-    checked_choice,
-    checked_release,
-    checked_rotations,
-    clocked,
-)
-from studies.baselines.variant import Baseline
 from studies.cases.problem import Problem
+from studies.cost.model import Failed, Model, SolvedMotion, SolvedPath, checked_choice, steps_of, turns_of
 from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.
@@ -65,8 +57,8 @@ class System:
 
 
 @dataclass(eq=False, kw_only=True)
-class Exudyn(Baseline):
-    """A kind of strip as a baseline; keywords in `settings` are those of `system_of`, which makes it of a
+class Exudyn(Model):
+    """A kind of strip as a model; keywords in `settings` are those of `system_of`, which makes it of a
     pivot, and refuses what it cannot be."""
 
     system_of: Callable[..., System]
@@ -75,85 +67,57 @@ class Exudyn(Baseline):
         """Return whether Exudyn can be imported."""
         return importlib.util.find_spec("exudyn") is not None
 
-    def static_path(
+    def path(
         self,
         problem: Problem,
-        rotations: Any,
         *,
         relative_tolerance: float = 1e-8,
         solver: str = "tuned",
         **settings: Any,
     ) -> SolvedPath:
-        """Drive the body through `rotations` (S,) [rad], the first of which is 0, one load step each.
+        """Return the path, one load step an increment.
 
         Args:
             relative_tolerance: of Newton's residual against that at the step's start [1].
             solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
-
-        Raises:
-            BadInput: a setting out of range. BaselineFailed: no convergence.
         """
-        turns = checked_rotations(rotations)
         checked_choice("solver", solver, SOLVERS)
-        system = self.system_of(problem, **settings)
+        system, turns = self.system_of(problem, **settings), turns_of(problem)
         asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
-        solved = _driven(system, asked, turns)
+        solved, seconds = _driven(system, asked, turns)
         centre, torque = _path(system)
-        asked.solution.sensors.active = False
         return SolvedPath(
-            rotation=turns,
-            centre=centre,
-            torque=torque,
-            stiffness=np.full(len(turns), np.nan),
-            again=_again(system, system.exu.MainSolverStatic, asked),
-            work=_work(solved),
+            rotation=turns, centre=centre, torque=torque, solve_s=seconds, counters=_counters(solved)
         )
 
-    def release(
+    def swing(
         self,
         problem: Problem,
-        *,
-        start: float,
         duration: float,
+        *,
         step: float,
         relative_tolerance: float = 1e-4,
         spectral_radius: float = 0.9,
         **settings: Any,
     ) -> SolvedMotion:
-        """Let go of the body at rest at `start` [rad] and follow it by generalised-alpha for `duration` [s].
+        """Return the motion by generalised-alpha in steps of `step` [s].
 
         Args:
-            step: [s]; spectral_radius: of generalised-alpha at infinite frequency, 0 to 1. The others as of
-                `static_path`.
-
-        Raises:
-            BadInput: a setting out of range. BaselineFailed: no convergence.
+            spectral_radius: at infinite frequency, 0 to 1. The others as of `path`.
         """
-        steps = checked_release(start, duration, step)
+        steps = steps_of(duration, step)
         system = self.system_of(problem, **settings)
-        _hold_at(system, start)
+        _hold_at(system, problem.rotation)
         moving = _dynamic(system, duration, steps, relative_tolerance, spectral_radius)
         solver = system.exu.MainSolverImplicitSecondOrder()
-        _checked(system, solver, lambda: solver.SolveSystem(system.mbs, moving))
+        seconds = _run(system, solver, moving)
         record = np.array(system.mbs.GetSensorStoredData(system.place))
-        moving.solution.sensors.active = False
         return SolvedMotion(
             time=record[:, 0],
             rotation=record[:, 3],
-            again=_again(system, system.exu.MainSolverImplicitSecondOrder, moving),
-            work=_work(solver) | {"steps": steps},
+            solve_s=seconds,
+            counters=_counters(solver) | {"steps": steps},
         )
-
-
-def _again(system: System, make: Callable[[], Any], asked: Any) -> Callable[[], float]:
-    """Return what times the steps alone of one more run of a solver."""
-
-    def prepare() -> Callable[[], Any]:
-        fresh = make()
-        fresh.InitializeSolver(system.mbs, asked)
-        return lambda: fresh.SolveSteps(system.mbs, asked)
-
-    return clocked(prepare)
 
 
 def _hold_at(system: System, start: float) -> None:
@@ -169,8 +133,8 @@ def _hold_at(system: System, start: float) -> None:
     system.mbs.SetPreStepUserFunction(0)
 
 
-def _driven(system: System, asked: Any, turns: Array) -> Any:
-    """Solve the static path through `turns` with sensors on; returns the solver."""
+def _driven(system: System, asked: Any, turns: Array) -> tuple[Any, float]:
+    """Solve the static path through `turns`; return the solver and what its steps took [s]."""
 
     def before_step(mbs: Any, load_factor: float) -> bool:
         mbs.SetObjectParameter(system.drive, "offset", turns[round(load_factor * (len(turns) - 1))])
@@ -178,18 +142,22 @@ def _driven(system: System, asked: Any, turns: Array) -> Any:
 
     system.mbs.SetPreStepUserFunction(before_step)
     solver = system.exu.MainSolverStatic()
-    _checked(system, solver, lambda: solver.SolveSystem(system.mbs, asked))
-    return solver
+    return solver, _run(system, solver, asked)
 
 
-def _checked(system: System, solver: Any, solve: Callable[[], bool]) -> None:
-    """Raise BaselineFailed unless the solver reaches the end."""
+def _run(system: System, solver: Any, asked: Any) -> float:
+    """Run a solver and return what its steps took [s]; raises Failed unless it reaches the end."""
     try:
-        reached = solve()
+        solver.InitializeSolver(system.mbs, asked)
+        begin = time.perf_counter()
+        reached = solver.SolveSteps(system.mbs, asked)
+        seconds = time.perf_counter() - begin
+        solver.FinalizeSolver(system.mbs, asked)
     except (system.exu.SolverError, RuntimeError, ValueError) as error:
-        raise BaselineFailed(f"Exudyn: {str(error).splitlines()[0]}") from None
+        raise Failed(f"Exudyn: {str(error).splitlines()[0]}") from None
     if not reached:
-        raise BaselineFailed(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
+        raise Failed(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
+    return seconds
 
 
 def _path(system: System) -> tuple[Array, Array]:
@@ -245,7 +213,7 @@ def _tune(system: System, asked: Any, solver: Any, tolerance: float) -> None:
     asked.linearSolver.reuseAnalyzedPattern = size >= SPARSE_FROM
 
 
-def _work(solver: Any) -> dict[str, int]:
+def _counters(solver: Any) -> dict[str, int]:
     return {
         "unknowns": solver.GetODE2size() + solver.GetAEsize(),
         "newton_iterations": solver.it.newtonStepsCount,

@@ -37,9 +37,9 @@ from typing import Any
 
 import numpy as np
 
-from studies.baselines.answer import checked_choice, checked_count, geometry_of
-from studies.baselines.exudyn_solve import Exudyn, System
 from studies.cases.problem import Problem
+from studies.cost.exudyn_solve import Exudyn, System
+from studies.cost.model import checked_choice, checked_count, geometry_of
 from studies.kinds import Array
 
 #: Shear correction of a rectangular section, k.
@@ -189,5 +189,5 @@ def _beams(
     return _system_of(problem, strip)
 
 
-exudyn_ancf = Exudyn(model="exudyn ancf", system_of=_cables)
-exudyn_exact = Exudyn(model="exudyn exact", sheared=True, system_of=_beams)
+exudyn_ancf = Exudyn(name="exudyn ancf", system_of=_cables)
+exudyn_exact = Exudyn(name="exudyn exact", sheared=True, system_of=_beams)

@@ -1,1 +1,0 @@
-"""Other people's models of the same pivot: surrogates in closed form, and other codes where installed."""

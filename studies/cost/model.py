@@ -1,0 +1,162 @@
+"""The models that are compared: what each answers, what all check alike, the pivot as it is given."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from studies.cases.problem import Problem
+from studies.errors import BadInput
+from studies.kinds import Array
+
+
+class Failed(RuntimeError):
+    """A model did not reach the end of its path or motion; one line that says where it stopped."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedPath:
+    """A static path, S states, the unloaded one first; a `Response` of the suite's own models has the same.
+
+    Attributes:
+        rotation (S,): of the body, counter-clockwise [rad]. centre (S, 2): of its mass, origin at A1 [m].
+        torque (S,): that drives the body [N m]. stiffness (S,): its derivative by the rotation [N m / rad];
+            max_stress (S,): at the strips' outer fibres [Pa]; None where the model does not give them.
+        solve_s: time of the increments alone [s]. counters: of the solve, by kind; "unknowns" is the size of
+            its system.
+    """
+
+    rotation: Array
+    centre: Array
+    torque: Array
+    stiffness: Array | None = None
+    max_stress: Array | None = None
+    solve_s: float = math.nan
+    counters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedMotion:
+    """Motion after a release at rest, T records, the start first; a `Motion` has the same.
+
+    Attributes:
+        time (T,): [s]. rotation (T,): of the body [rad]. solve_s, counters: as of a path, of the steps.
+    """
+
+    time: Array
+    rotation: Array
+    solve_s: float = math.nan
+    counters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(eq=False, kw_only=True)
+class Model:
+    """A model that is compared; keywords in `settings` are its own.
+
+    Attributes:
+        name: of the model. sheared: whether its strips shear.
+    """
+
+    name: str
+    sheared: bool = False
+
+    def installed(self) -> bool:
+        """Return whether it can be asked, as all that need no other code."""
+        return True
+
+    def path(self, *args: Any, **settings: Any) -> Any:
+        """Drive the body of a design from rest to its rotation in its increments; return the path.
+
+        Args:
+            args: the design.
+
+        Raises:
+            BadInput: a design or setting out of range. Failed: the path is not reached.
+        """
+        raise NotImplementedError
+
+    def swing(self, *args: Any, **settings: Any) -> Any:
+        """Let go of the body of a design at rest at its rotation; return the motion.
+
+        Args:
+            args: the design, and the duration of the motion [s].
+
+        Raises:
+            BadInput: a design or setting out of range. Failed: the motion stopped early.
+        """
+        raise NotImplementedError
+
+
+def turns_of(problem: Problem) -> Array:
+    """Return the rotations (S,) of the path of a pivot [rad]."""
+    return np.linspace(0.0, problem.rotation, problem.increments + 1)
+
+
+def steps_of(duration: float, step: float) -> int:
+    """Return the number of steps of a motion.
+
+    Raises:
+        BadInput: a step [s] that is not positive, or longer than the duration.
+    """
+    if not 0.0 < step <= duration < math.inf:
+        raise BadInput(f"step: got {step} for {duration} s, expected a positive part of the duration [s]")
+    return max(1, round(duration / step))
+
+
+def checked_choice(name: str, value: Any, choices: tuple[Any, ...]) -> None:
+    """Raise BadInput unless `value` is one of `choices`."""
+    if value not in choices:
+        raise BadInput(f"{name}: got {value!r}, expected one of {', '.join(map(repr, choices))}")
+
+
+def checked_count(name: str, value: Any, least: int) -> None:
+    """Raise BadInput unless `value` is a whole number of at least `least`."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise BadInput(f"{name}: got {value!r}, expected a whole number of at least {least}")
+
+
+#: The effects of a scene that all models of the comparison have: what they leave out of these is their error.
+EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Geometry:
+    """The pivot at rest: origin at the ground end of strip 1, x along the ground plate.
+
+    Attributes:
+        root: (2, 2) ground ends of the strips [m].
+        direction: (2, 2) unit vectors from there to the body.
+        tip: (2, 2) body ends [m].
+        crossing: (2,) where the strips cross [m].
+        centre: (2,) centre of mass of the body [m].
+    """
+
+    root: Array
+    direction: Array
+    tip: Array
+    crossing: Array
+    centre: Array
+
+
+def geometry_of(problem: Problem) -> Geometry:
+    """Return the pivot at rest.
+
+    Raises:
+        BadInput: a scene of other effects.
+    """
+    if set(problem.effects.names) != set(EFFECTS):
+        raise BadInput(f"effects: got {', '.join(problem.effects.names)}, expected {', '.join(EFFECTS)}")
+    cosine, sine = math.cos(problem.inclination), math.sin(problem.inclination)
+    crossing = np.array(problem.crossing_point)
+    direction = np.array([[cosine, sine], [-cosine, sine]])
+    root = crossing - problem.crossing_ratio * problem.length * direction
+    tip = root + problem.length * direction
+    return Geometry(
+        root=root,
+        direction=direction,
+        tip=tip,
+        crossing=crossing,
+        centre=tip.mean(axis=0) + np.array(problem.centre_offset),
+    )

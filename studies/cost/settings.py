@@ -1,0 +1,153 @@
+"""The one list of settings that are compared: of every model, for the static path and for the swing.
+
+Implicit schemes of all models take the same steps; explicit ones take their own, near the largest stable one.
+In motion strips have no shear and no rotary inertia of their sections, but for Exudyn's exact beams, which
+have both: two theories are 3e-2 rad apart after 0.05 s, so that each is held against the limit of its own.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+from studies.cost.constraint_model import constraint_model
+from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.cost.model import Model
+from studies.cost.openseespy import openseespy_frame
+from studies.cost.own import elements, spline
+from studies.cost.pseudo_rigid import four_bar, linear_pivot, pin_joint
+from studies.engine import lacking
+
+#: Models of which the rotation is the only coordinate, the one whose beams have others that are eliminated,
+#: and other codes.
+PSEUDO_RIGID: dict[str, Model] = {each.name: each for each in (linear_pivot, pin_joint, four_bar)}
+SURROGATES: dict[str, Model] = PSEUDO_RIGID | {constraint_model.name: constraint_model}
+PEERS: dict[str, Model] = {each.name: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
+
+#: What models are compared under, the spline first.
+SPLINE, ITSELF, ELEMENTS, SHEAR = "spline", "spline, by itself", "finite elements", "elements with shear"
+EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE = "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates"
+GROUPS = (ITSELF, ELEMENTS, SHEAR, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
+
+#: What to do about a peer that is not there.
+HINT = "not installed: python -m pip install '.[peers]'"
+#: How settings are told; others by their name.
+WORDS = {
+    "control_points": "n = {}",
+    "elements": "{} elements",
+    "accuracy": "accuracy {:g}",
+    "integrator": "{}",
+    "element": "{}",
+    "solver": "{}",
+}
+COUNTS = ("control_points", "elements")
+
+
+def missing() -> str:
+    """Return what this machine lacks of a study that holds the suite against all other codes; or nothing."""
+    gone = [name.split()[0] for name, peer in PEERS.items() if not peer.installed()]
+    return lacking("peers", list(dict.fromkeys(gone)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Setting:
+    """One setting of one model.
+
+    Attributes:
+        model: that is asked. group: what it is compared under. settings: keywords of the model.
+    """
+
+    model: Model
+    group: str
+    settings: Mapping[str, Any]
+
+    @property
+    def theory(self) -> str:
+        """What the strips' energies are measured in, which decides on the limit: "material" or "shear"."""
+        return "shear" if self.model.sheared or self.settings.get("element") == "reissner" else "material"
+
+    @property
+    def text(self) -> str:
+        """What it is, in words."""
+        return ", ".join(self._told(self.settings)) or "closed form"
+
+    @property
+    def family(self) -> str:
+        """What settings have in common that differ from it in their fineness alone."""
+        finer = ("step",) if "step" in self.settings else ("accuracy", *COUNTS)
+        same = {name: value for name, value in self.settings.items() if name not in finer}
+        return ", ".join((self.model.name, *self._told(same)))
+
+    @property
+    def fineness(self) -> float:
+        """A number that grows with it within a family."""
+        if "step" in self.settings:
+            return -float(self.settings["step"])
+        if "accuracy" in self.settings:
+            return -float(self.settings["accuracy"])
+        return float(next((self.settings[name] for name in COUNTS if name in self.settings), 1.0))
+
+    @staticmethod
+    def _told(settings: Mapping[str, Any]) -> list[str]:
+        return [
+            f"{1e6 * value:.3g} µs"
+            if name == "step"
+            else WORDS.get(name, name.replace("_", " ") + " {:g}").format(value)
+            for name, value in settings.items()
+        ]
+
+
+def grid(model: Model, group: str, **axes: Sequence[Any]) -> list[Setting]:
+    """Return the settings of a model on a grid, the last axis changing fastest."""
+    return [
+        Setting(model=model, group=group, settings=dict(zip(axes, values, strict=True)))
+        for values in product(*axes.values())
+    ]
+
+
+#: Elements a strip of the suite's own elements on a path.
+MESHES = (4, 5, 10, 20, 40, 80, 160, 320)
+
+
+def paths() -> list[Setting]:
+    """Return the settings of the static path."""
+    tolerances = (1e-5, 1e-6, 1e-8)
+    exact = (1, 2, 3, 4, 6, 8, 12, 16, 20, 24)
+    return [
+        *grid(spline, SPLINE, control_points=range(4, 13)),
+        *grid(spline, ITSELF, accuracy=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
+        *grid(elements, ELEMENTS, elements=MESHES),
+        *grid(elements, SHEAR, elements=MESHES, element=("reissner",)),
+        *(each for model in SURROGATES.values() for each in grid(model, SURROGATE)),
+        *grid(exudyn_ancf, EXUDYN, elements=(2, 4, 6, 8, 12, 16, 24, 40), relative_tolerance=tolerances),
+        *grid(exudyn_exact, EXUDYN, elements=exact, relative_tolerance=tolerances),
+        *grid(exudyn_ancf, AS_DELIVERED, elements=(4, 8, 16, 40), solver=("as delivered",)),
+        *grid(exudyn_exact, AS_DELIVERED, elements=(2, 4, 8, 20), solver=("as delivered",)),
+        *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40, 80, 160), tolerance=(1e-8, 1e-10)),
+    ]
+
+
+#: Steps of all implicit schemes [s], for a pivot whose first mode has the paper's frequency [Hz].
+STEPS, FREQUENCY = (5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5), 76.0
+#: Exudyn's spectral radius, and the tolerance of its iterations.
+DAMPED = ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5))
+
+
+def swings(frequency: float = FREQUENCY) -> list[Setting]:
+    """Return the settings of the motion after a release of a design with that first frequency [Hz]."""
+    step = [FREQUENCY / frequency * each for each in STEPS]
+    damped = (
+        (model, meshes, {"spectral_radius": (radius,), "relative_tolerance": (tolerance,)})
+        for radius, tolerance in DAMPED
+        for model, meshes in ((exudyn_ancf, (3, 4, 6, 8, 12)), (exudyn_exact, (2, 3, 4, 6)))
+    )
+    explicit, implicit = ("central-difference",), ("generalised-alpha",)
+    return [
+        *grid(spline, SPLINE, control_points=range(4, 11), integrator=("leapfrog",)),
+        *grid(spline, SPLINE, control_points=(4, 5, 6, 7, 8), integrator=("energy",), step=step),
+        *grid(elements, ELEMENTS, elements=(5, 10, 16, 24, 36), integrator=explicit),
+        *grid(elements, ELEMENTS, elements=(5, 10, 16, 24), integrator=implicit, step=step),
+        *(each for model in SURROGATES.values() for each in grid(model, SURROGATE, step=step)),
+        *(s for model, meshes, how in damped for s in grid(model, EXUDYN, elements=meshes, step=step, **how)),
+        *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40), step=step),
+    ]

@@ -1,0 +1,168 @@
+"""Settings tried one after another: errors against the limit of each theory, times, and the cheapest of them.
+
+A time is that of a whole call, once all is compiled and loaded: from the design in memory to the answer in
+common terms, set-up included, and of a swing the static path to its start. What the model says of its
+increments or steps alone stands beside it.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from studies.cases.design import Design
+from studies.cost.limits import Limit, at, frequency_error, largest_errors
+from studies.cost.model import Failed
+from studies.cost.settings import HINT, Setting
+from studies.engine import Row
+from studies.errors import BadInput
+from studies.kinds import Array, Progress
+from studies.record.progress import measure, silent
+
+#: Passes through all settings, far apart in time: what else the machine does lasts longer than one setting.
+PASSES = 3
+#: Time that the runs of a setting may take in a pass [s], and their largest number; what takes longer than
+#: that time at once is timed in one pass alone.
+AFFORDED, RUNS = 0.2, 5
+#: Counters that stand beside the errors.
+WORK = ("unknowns", "steps", "newton_iterations", "factorisations")
+#: Columns that name a row.
+NAMED = ("model", "group", "setting")
+
+#: Errors of a path, those that it is judged by first, and of a swing.
+PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
+SWING_ERRORS = ("rotation_rad", "frequency")
+
+
+def tried_paths(
+    settings: Sequence[Setting],
+    design: Design,
+    limits: Mapping[str, Limit],
+    passes: int = PASSES,
+    progress: Progress = silent,
+) -> pd.DataFrame:
+    """Return errors, work and times of the path of a design, a row a setting."""
+
+    def errors(path: Any, theory: str) -> Row:
+        return largest_errors(path, limits[theory].found)
+
+    return _tried(settings, lambda each: each.model.path(design, **each.settings), errors, passes, progress)
+
+
+def tried_swings(
+    settings: Sequence[Setting],
+    design: Design,
+    instants: Array,
+    limits: Mapping[str, Limit],
+    passes: int = PASSES,
+    progress: Progress = silent,
+) -> pd.DataFrame:
+    """Return errors, work and times of the motion of a design to the last of the instants [s]."""
+
+    def solve(each: Setting) -> Any:
+        return each.model.swing(design, float(instants[-1]), **each.settings)
+
+    def errors(motion: Any, theory: str) -> Row:
+        rotation, limit = at(motion, instants), limits[theory].found
+        return {
+            "rotation_rad": float(np.abs(rotation - limit).max()),
+            "frequency": frequency_error(rotation, limit, instants),
+        }
+
+    return _tried(settings, solve, errors, passes, progress)
+
+
+def _tried(
+    settings: Sequence[Setting],
+    solve: Callable[[Setting], Any],
+    errors: Callable[[Any, str], Row],
+    passes: int,
+    progress: Progress,
+) -> pd.DataFrame:
+    """Return a row a setting; what is not installed has one a model. It and what fails have no errors."""
+    rows: list[Row] = []
+    for done, each in enumerate(settings):
+        progress(done, len(settings))
+        row: Row = {"model": each.model.name, "group": each.group, "setting": each.text}
+        row |= {"theory": each.theory, "family": each.family, "fineness": each.fineness}
+        if not each.model.installed():
+            row |= {"setting": "", "status": "not installed", "message": HINT}
+            if all(row["model"] != other["model"] for other in rows):
+                rows.append(row)
+            continue
+        try:
+            answer = solve(each)
+        except (Failed, BadInput) as stopped:
+            rows.append(row | {"status": "failed", "message": str(stopped)})
+            continue
+        work = {name: answer.counters.get(name, np.nan) for name in WORK}
+        found = errors(answer, each.theory)
+        rows.append(row | {"status": "converged", "message": "", "solver": each} | found | work)
+    seconds = _times([row["solver"] for row in rows if "solver" in row], solve, passes)
+    progress(len(settings), len(settings))
+    return pd.DataFrame([row | spread(*seconds.get(row.pop("solver", None), ((), ()))) for row in rows])
+
+
+def _times(
+    settings: Iterable[Setting], solve: Callable[[Setting], Any], passes: int
+) -> dict[Setting, tuple[list[float], list[float]]]:
+    """Return times of whole calls, and of their increments or steps alone [s]."""
+    found: dict[Setting, tuple[list[float], list[float]]] = {each: ([], []) for each in settings}
+    for _ in range(passes):
+        for each, (whole, part) in found.items():
+            longest = max(whole, default=0.0)
+            if longest > AFFORDED:
+                continue
+            runs = 1 if not whole else int(min(RUNS, max(1.0, AFFORDED / longest)))
+            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=_alone)
+            whole += timed.seconds
+            part += timed.parts
+    return found
+
+
+def _alone(answer: Any) -> float:
+    return float(answer.solve_s)
+
+
+def spread(whole: Sequence[float], alone: Sequence[float]) -> dict[str, float]:
+    """Return median and quartiles of whole calls, the median of what they are without set-up [s], and how
+    many they are."""
+    if not len(whole):
+        return {"whole_s": math.nan, "low_s": math.nan, "high_s": math.nan, "solve_s": math.nan, "runs": 0}
+    low, median, high = np.percentile(whole, (25, 50, 75))
+    return {
+        "whole_s": float(median),
+        "low_s": float(low),
+        "high_s": float(high),
+        "solve_s": float(np.median(alone)),
+        "runs": len(whole),
+    }
+
+
+def kept(rows: pd.DataFrame, judged: Sequence[str]) -> pd.Series:
+    """Return the largest of the judged errors of each row and of all finer ones of its family.
+
+    An error that a finer setting does not keep is luck: of a step and a mesh whose errors cancel, for one.
+    What has no error has an infinite one, so that what is coarser than a failure does not count either.
+    """
+    worst = rows.reindex(columns=list(judged)).max(axis=1, skipna=False).fillna(math.inf)
+    finest_first = rows.assign(error=worst).sort_values("fineness", ascending=False)
+    return finest_first.groupby(["group", "family"])["error"].cummax().reindex(rows.index)
+
+
+def cheapest(rows: pd.DataFrame, judged: Sequence[str], error: float) -> pd.DataFrame:
+    """Return the fastest row of each group whose errors are kept within `error`, or else its best one.
+
+    Adds the column meets; of a group without any answer the first row stands.
+    """
+    now, held = rows.reindex(columns=list(judged)).max(axis=1, skipna=False), kept(rows, judged)
+    found = []
+    for _, mine in rows.groupby("group", sort=False):
+        within = mine[(held[mine.index] <= error) & (mine["status"] == "converged")]
+        best = now[mine.index].idxmin() if now[mine.index].notna().any() else mine.index[0]
+        place: Any = within["whole_s"].idxmin() if len(within) else best
+        found.append(rows.loc[place].to_dict() | {"meets": bool(len(within))})
+    return pd.DataFrame(found)

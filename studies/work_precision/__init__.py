@@ -1,1 +1,0 @@
-"""What accuracy costs: error against time, and what a user waits for."""

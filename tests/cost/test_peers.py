@@ -1,0 +1,146 @@
+"""Other codes: not needed, refused in one line when absent, and when there in agreement with both models."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.reference import reference
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import named_case
+from studies.cost.exudyn_solve import SOLVERS
+from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.cost.limits import Limit, largest_errors
+from studies.cost.model import Failed, Model
+from studies.cost.openseespy import openseespy_frame
+from studies.cost.own import elements
+from studies.cost.settings import PEERS, grid
+from studies.cost.tried import tried_paths
+from studies.errors import BadInput
+from tests import gates
+
+CASE = named_case("cross_axis_pivot")
+
+exudyn = pytest.mark.skipif(not exudyn_ancf.installed(), reason="exudyn is not installed (.[peers])")
+opensees = pytest.mark.skipif(
+    not openseespy_frame.installed(), reason="openseespy is not installed (.[peers])"
+)
+
+
+def apart(path, limit):
+    """Larger error of trajectory and torque over the path."""
+    found = largest_errors(path, limit)
+    return max(found["trajectory"], found["torque"])
+
+
+def against_spline(model, problem=CASE, **settings):
+    """The same against the refined spline."""
+    limit = answer_static(problem, SplineSettings(control_points=14))
+    return apart(model.path(problem, **settings), limit)
+
+
+#: Gate of a code's path, the code, and the elements at which it is asked.
+PATHS = [
+    pytest.param("exudyn_ancf_path", exudyn_ancf, 40, marks=exudyn),
+    pytest.param("openseespy_path", openseespy_frame, 80, marks=opensees),
+]
+
+
+@pytest.mark.parametrize(("gate", "model", "count"), PATHS)
+def test_path_tends_to_the_spline(gate, model, count):
+    """Requirement: ANCF cables, of the same theory, and corotational frames with a body of stiff links come
+    to the spline's path; nothing else is shared."""
+    gates.hold(gate, lambda elements=count: against_spline(model, elements=elements))
+
+
+@exudyn
+def test_exact_beam_tends_to_the_reissner_elements():
+    """Requirement: Exudyn's rod with shear comes to the limit of this repository's elements with shear."""
+    limit = reference(CASE, "reissner")
+    gates.hold(
+        "exudyn_exact_path", lambda elements=20: apart(exudyn_exact.path(CASE, elements=elements), limit)
+    )
+
+
+@pytest.mark.parametrize(("gate", "model", "count"), PATHS)
+def test_other_designs_come_through_alike(gate, model, count):
+    """Requirement: strips of other inclination and crossing, with the body off the middle, agree as well."""
+    uneven = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
+    uneven = replace(uneven, rotation=1.2, increments=16)
+    gates.check(gate, against_spline(model, uneven, elements=count))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("gate", "model", "count"),
+    [
+        pytest.param("exudyn_ancf_swing", exudyn_ancf, 8, marks=exudyn),
+        pytest.param("openseespy_swing", openseespy_frame, 40, marks=opensees),
+    ],
+)
+def test_swings_as_the_spline(gate, model, count):
+    """Requirement: released, the other codes follow the spline."""
+    limit = answer_release(
+        CASE, SplineSettings(control_points=8), duration=5e-3, step=1e-6, integrator="leapfrog"
+    )
+
+    def error(elements=count):
+        """Largest difference of the rotation over 5 ms after the release [rad]."""
+        motion = model.swing(CASE, 5e-3, step=1e-5, elements=elements)
+        return np.abs(np.interp(limit.time, motion.time, motion.rotation) - limit.rotation).max()
+
+    gates.hold(gate, error)
+
+
+@exudyn
+def test_tuning_changes_the_time_and_not_the_answer():
+    """Requirement: the fast settings give what the code gives as it is delivered."""
+    tuned, delivered = (exudyn_ancf.path(CASE, elements=8, solver=solver) for solver in SOLVERS)
+    assert tuned.torque == pytest.approx(delivered.torque, rel=2e-6, abs=1e-6)
+    assert tuned.counters["factorisations"] < delivered.counters["factorisations"]
+
+
+@exudyn
+def test_exudyn_refuses_in_one_line():
+    """Requirement: settings out of range are refused before anything is built."""
+    for settings in ({"elements": 0}, {"integration": 3}, {"solver": "quick"}):
+        with pytest.raises(BadInput, match=r"^(elements|integration|solver): got [^\n]* expected [^\n]*$"):
+            exudyn_ancf.path(CASE, **settings)
+    with pytest.raises(BadInput, match=r"^nodes: got 4, expected"):
+        exudyn_exact.path(CASE, nodes=4)
+
+
+@exudyn
+def test_exudyn_says_where_it_stops():
+    """Requirement: a path that does not converge is an error with the place, never a wrong answer."""
+    with pytest.raises(Failed, match=r"Exudyn: .*no convergence at load factor"):
+        exudyn_ancf.path(CASE, elements=40, relative_tolerance=1e-14)
+
+
+@pytest.mark.parametrize("name", PEERS)
+def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
+    """Requirement: a code that is absent is a row of the study, with what to do and without times."""
+    model = PEERS[name]
+    monkeypatch.setattr(model, "installed", lambda: False)
+    (row,) = tried_paths(grid(model, "x", elements=(1, 2)), CASE, {}).to_dict("records")
+    assert (row["status"], row["model"], row["runs"]) == ("not installed", name, 0)
+    assert row["message"] == "not installed: python -m pip install '.[peers]'"
+
+
+def test_failed_setting_keeps_its_row():
+    """Requirement: a setting that fails is a row with the reason; one that does not has errors and times of
+    whole calls, of which the increments are a part."""
+
+    class Failing(Model):
+        def path(self, *_, **__):
+            raise Failed("stopped at 0.1 rad")
+
+    limits = {"material": Limit(found=reference(CASE), uncertainty={}, source="")}
+    asked = [*grid(Failing(name="failing"), "x"), *grid(elements, "y", elements=(5, 20))]
+    failed, coarse, fine = tried_paths(asked, CASE, limits, 1).to_dict("records")
+    assert (failed["status"], failed["message"], failed["runs"]) == ("failed", "stopped at 0.1 rad", 0)
+    assert math.isnan(failed["torque"])
+    assert fine["torque"] < 0.1 * coarse["torque"] < 0.01
+    assert 0.0 < fine["solve_s"] < fine["whole_s"]
