@@ -23,7 +23,7 @@ from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
 from studies.registry import STUDIES
-from studies.stability.family import DEFAULT, OUTCOMES
+from studies.stability.verdict import DEFAULT, OUTCOMES
 
 QUANTITIES = ("trajectory", "torque", "stiffness")
 PAPER = "spline, {} control points, as the paper integrates it"

@@ -118,8 +118,8 @@ def _ratios(name: str, judged: Sequence[str], levels: Sequence[float]) -> Callab
             if not best[SPLINE]["meets"]:
                 continue
             mine = best[SPLINE]["whole_s"]
-            for group in GROUPS:
-                row = best.get(group, {"meets": False})
+            for group in (each for each in GROUPS if each in best):
+                row = best[group]
                 told = {"setting": "", **dict.fromkeys(TIMES[:-1], np.nan)}
                 if row["meets"]:
                     told = {each: row[each] for each in told}

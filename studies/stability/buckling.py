@@ -19,12 +19,13 @@ from studies.record.digits import Digits
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, Look
-from studies.stability import family, questions
+from studies.stability import questions
 from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
+from studies.stability.verdict import ARCS, DEFAULT, EIGHT, FE, PAPER, TWELVE, study
 
 ELASTICA, PRINT = "elastica", "published"
-DRAWN = (family.PAPER, family.DEFAULT, family.TWELVE, family.FE)
-PUSHED = (family.DEFAULT, family.EIGHT, family.TWELVE, family.FE)
+DRAWN = (PAPER, DEFAULT, TWELVE, FE)
+PUSHED = (DEFAULT, EIGHT, TWELVE, FE)
 #: Turn of the tip of a column that is still straight [rad].
 STRAIGHT = 1e-6
 PRIMARY, OTHER = "primary", "other"
@@ -42,7 +43,7 @@ def _frame(part: str) -> Frame:
 def _curve(part: str, model: str) -> Answer:
     """Return a curve and its critical points, a row a state."""
     frame = _frame(part)
-    arc = arc_of(frame, family.ARCS[model], follow_branch=part == questions.COLUMN)
+    arc = arc_of(frame, ARCS[model], follow_branch=part == questions.COLUMN)
     critical = [
         {"part": part, "model": model, "kind": each.kind, **_at(part, frame, each.load, each.place)}
         for each in arc.critical
@@ -88,7 +89,7 @@ def _elastica() -> list[dict[str, Any]]:
 def _branch(depth: float, model: str, branch: str) -> Answer:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
     frame = pushed_pivot(depth)
-    arc = arc_of(frame, family.ARCS[model], follow_branch=branch == OTHER)
+    arc = arc_of(frame, ARCS[model], follow_branch=branch == OTHER)
     found = {
         "model": model,
         "branch": branch,
@@ -106,11 +107,11 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
 LOOKS = {
     ELASTICA: Look(label=ELASTICA, colour=BLACK),
     PRINT: Look(label=PRINT, colour=BLACK, line="", marker="P", hollow=True),
-    family.PAPER: Look(label=family.PAPER, colour=RED),
-    family.DEFAULT: Look(label=family.DEFAULT, colour=BLUE),
-    family.EIGHT: Look(label=family.EIGHT, colour=PURPLE, line="", marker="v", hollow=True),
-    family.TWELVE: Look(label=family.TWELVE, colour=GREEN, line="--"),
-    family.FE: Look(label=family.FE, colour=GREY, line=":"),
+    PAPER: Look(label=PAPER, colour=RED),
+    DEFAULT: Look(label=DEFAULT, colour=BLUE),
+    EIGHT: Look(label=EIGHT, colour=PURPLE, line="", marker="v", hollow=True),
+    TWELVE: Look(label=TWELVE, colour=GREEN, line="--"),
+    FE: Look(label=FE, colour=GREY, line=":"),
 }
 #: Looks of critical points, and of where a path stopped, by model.
 CRITICAL, STOPPED = (
@@ -152,7 +153,7 @@ def _loads(tables: Tables, part: str) -> Panel:
 
 def _pivot(branches: pd.DataFrame) -> Panel:
     """Return the branch on which the body turns, and the one on which it does not: dotted where unstable."""
-    refined = branches[(branches["model"] == family.TWELVE) & (branches["branch"] == PRIMARY)]
+    refined = branches[(branches["model"] == TWELVE) & (branches["branch"] == PRIMARY)]
     crossing, deepest = refined["first_bifurcation_mm"].min(), refined["reached_mm"].max()
     other = branches[branches["branch"] == OTHER]
     stopped = other["says"].fillna("").str.startswith("stopped")
@@ -164,9 +165,7 @@ def _pivot(branches: pd.DataFrame) -> Panel:
     marks += [
         Curves(other[~stopped], LOOKS, by="model", along="asked_mm"),
         Curves(other[stopped], STOPPED, by="model", more=LARGE),
-        Curves(
-            pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0}), CRITICAL[family.TWELVE], more=LARGE
-        ),
+        Curves(pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0}), CRITICAL[TWELVE], more=LARGE),
     ]
     return Panel(DOWN, TURN, marks, title=questions.PIVOT)
 
@@ -181,7 +180,7 @@ DIGITS: dict[str, Digits | None] = {
     "warned": None,
 }
 
-STUDY = family.study(
+STUDY = study(
     questions.ASKED,
     Part(ask=lambda: {"curves": _elastica()}),
     Part(at=lambda: product((questions.COLUMN, questions.TOGGLE, questions.LEE), DRAWN), ask=_curve),

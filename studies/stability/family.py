@@ -1,235 +1,128 @@
-"""Families of hard cases: which models are asked, and how each ends: right, refused, wrong or bad input."""
+"""A family of hard cases: designs whose paths or swings every model is asked for, beside a reference.
+
+The reference is a spline refined far beyond the default. It is settled where refinement moves it by less than
+half of the tolerance and finite elements, which share nothing with it, agree with it within the tolerance.
+"""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
-import pandas as pd
+from scipy.interpolate import CubicSpline
 
-from studies.answers.adapters import answer_static
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.mechanism import Mechanism
-from studies.cases.problem import Problem
-from studies.engine import Answer, Part, Row, Study
-from studies.errors import BadInput
-from studies.record.digits import Digits
+from studies.engine import Answer, Row
+from studies.stability.verdict import FE, PATHS, RIGHT, Found, judged
 
-DEFAULT = "spline, default"
-#: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
-VARIED = "spline, settings varied"
-SIX = "spline n = 6"
-PAPER = "spline n = 4, as the paper"
-PRINTED = "spline n = 4, printed forces"
-LOCKING_FREE = "spline n = 4, locking-free"
-FE = "FE, 20 elements"
-
-#: Column -> settings. A peer is a column of the families when its settings are answered by
-#: `studies.answers.adapters`, as these are: add it here.
-COLUMNS: dict[str, Settings] = {
-    DEFAULT: SplineSettings(),
-    LOCKING_FREE: SplineSettings(control_points=4),
-    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
-    PRINTED: SplineSettings(control_points=4, measure="printed", stretch="consistent"),
-    FE: FeSettings(),
-}
-
-#: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
-#: Motions and arcs of frames take six by default.
-PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
-
-#: Those of paths in arc length: finer splines, as the default reaches its end there.
-EIGHT, TWELVE = "spline n = 8", "spline n = 12"
-ARCS: dict[str, Settings] = {
-    **COLUMNS,
-    EIGHT: SplineSettings(control_points=8),
-    TWELVE: SplineSettings(control_points=12),
-}
-
-#: All columns, in the order of tables and figures.
-ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
-
-#: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
-#: count there, as the paper has no such check.
-UNCHECKED = (PAPER, PRINTED)
-
-#: A spline refined far beyond the default, with n + 2 Gauss points: what the others are held against.
-REFINED = SplineSettings(control_points=14)
-#: Another one, whose distance to it bounds what refinement still changes.
-CHECK = SplineSettings(control_points=11)
-#: An independent one.
-INDEPENDENT = FeSettings(elements=40)
-
-
-RIGHT, REFUSED, WRONG, BAD_INPUT = "right", "refused", "wrong", "bad input"
-
-#: The four outcomes in the order of tables and legends; there is no fifth.
-OUTCOMES = (RIGHT, REFUSED, WRONG, BAD_INPUT)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Found:
-    """What a model answered to a case, compared with what is known to be right.
-
-    Attributes:
-        error: the distance to the reference, or of an invariant to its value, over its scale [1].
-        reached: whether the model says that it got to the end; if not, `reason` says why not.
-        reason: what the model itself says about its answer; a limitation that it states makes an answer that
-            is off a refusal, provided `states_limit` is set.
-        warning: what the model's own check of its resolution finds; it states a limit, where it counts.
-        fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
-        counters: work done, by kind. measured: what else the table has of the answer, by column.
-    """
-
-    error: float
-    reached: bool = True
-    reason: str = ""
-    states_limit: bool = False
-    warning: str = ""
-    fault: str = ""
-    counters: Mapping[str, int] = field(default_factory=dict)
-    measured: Mapping[str, float] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, answer: Any, error: float, *, fault: str = "", **measured: float) -> Self:
-        """Return what an answer, neutral or a model's, says of itself, with its error."""
-        return cls(
-            error=error,
-            reached=getattr(answer.status, "value", answer.status) == "converged",
-            reason=answer.message,
-            warning=answer.resolution,
-            fault=fault,
-            counters=answer.counters,
-            measured=measured,
-        )
-
-
-def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> Row:
-    """Return how `attempt` of a column ends, right within `tolerance` [1], as columns of a table.
-
-    Columns: outcome, one of `OUTCOMES`; error [1]; reason in words; iterations and halvings; stopped, whether
-    it did not reach its end, and warned, whether its own check finds it unresolved, be that counted for this
-    `model` or not: with both, every model can be judged with its own warnings and without; and what was
-    measured beside.
-
-    An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
-    refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
-    """
-    outcome = ""
-    try:
-        found = attempt()
-    except BadInput as refusal:
-        outcome, found = BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split()))
-    except Exception as fault:  # whatever escapes a model is an outcome to be counted, not the study's end
-        reason = " ".join(f"{type(fault).__name__}: {fault}".split())
-        outcome, found = WRONG, Found(error=math.nan, reason=reason)
-    warning = "" if model in UNCHECKED else found.warning
-    work = found.counters
-    return {
-        "outcome": outcome or _outcome(found, tolerance, limited=found.states_limit or bool(warning)),
-        "error": found.error,
-        "reason": found.fault or (warning if found.reached else "") or found.reason or warning,
-        "iterations": work.get("newton_iterations", work.get("iterations", 0)),
-        "halvings": work.get("halved_increments", 0) + work.get("halved_steps", 0),
-        "stopped": not found.reached,
-        "warned": bool(found.warning),
-        **found.measured,
-    }
-
-
-def _outcome(found: Found, tolerance: float, *, limited: bool) -> str:
-    if found.fault:
-        return WRONG
-    # what a path or run holds up to where it stopped is judged as well: a refusal must leave a good state
-    if math.isfinite(found.error) and found.error <= tolerance:
-        return RIGHT if found.reached else REFUSED
-    return REFUSED if limited else WRONG
-
-
-#: Distances reproduce to six digits where the answer is right. Other answers end where round-off leads them.
-_DISTANCE = Digits(floor=1e-9)
-_RIGHT = Digits(floor=1e-9, rows=f"outcome == '{RIGHT}'")
-DIGITS: dict[str, Digits | None] = {
-    **dict.fromkeys(("largest_right_error", "refinement", "independent", "period_s"), _DISTANCE),
-    **dict.fromkeys(("outcomes.error", "outcomes.found", "stopped", "warned"), _RIGHT),
-}
-
-#: A case of one model: name, model, what is asked, and the largest error that is right [1].
-Task = tuple[str, str, Callable[[], Found], float]
-
-
-def study(*parts: Part, **declared: Any) -> Study:
-    """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it.
-
-    `digits` of its own come before `DIGITS`.
-    """
-    counts = {"counts": lambda tables: _counted(tables["outcomes"])}
-    digits = DIGITS | declared.pop("digits", {})
-    return Study(parts=parts, made=counts, digits=digits, **declared)
-
-
-def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
-    """Return how one task ends."""
-    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance, model)}}
-
-
-def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
-    """Return a row a model of `outcomes`: cases tried, one column an outcome, largest right error."""
-    rows = []
-    for model in ORDER:
-        mine = outcomes[outcomes["model"] == model]
-        if mine.empty:
-            continue
-        found = {outcome: int((mine["outcome"] == outcome).sum()) for outcome in OUTCOMES}
-        largest = mine.loc[mine["outcome"] == "right", "error"].max()
-        rows.append({"model": model, "tried": len(mine), **found, "largest_right_error": largest})
-    return pd.DataFrame(rows)
-
-
-#: Largest distance of a path that counts as right [1], over the largest torque and displacement. The error of
-#: six control points grows to 0.03 at a half turn; another branch is off by more than 0.1.
+#: Largest distance that counts as right [1], over the largest torque and displacement of a path, and over the
+#: rotation at the start of a swing. The error of six control points grows to 0.03 at a half turn, and a step
+#: of a twentieth of the swing's period errs by as much after one swing; another branch or motion is off by
+#: more than 0.1.
 TOLERANCE = 0.05
+#: Largest gain of energy over that at the start: of the energy-consistent scheme, and of those that keep
+#: energy in the limit of short steps only.
+MOST_GAIN, MOST_GAIN_OF_OTHERS = 1e-8, 1e-2
+#: Records of a motion.
+RECORDS = 400
+#: Keywords of a motion beside its start and duration: `step` [s] and `integrator`.
+How = Mapping[str, Any]
+#: Settings of a model, and how its motion is integrated.
+Way = tuple[Settings, How]
 
-#: Finer elements, asked where those of the column do not confirm the refined spline.
+#: References of paths: a refined spline, the one whose distance to it bounds what refinement still changes,
+#: and finer elements, asked where those of the column do not confirm it.
+REFINED, CHECK = SplineSettings(control_points=14), SplineSettings(control_points=11)
 ARBITER = FeSettings(elements=80)
 
 
 @dataclass(frozen=True, kw_only=True)
-class StaticCase:
-    """One design and its path: a name, its place on the family's map, and which columns have other settings.
+class Try:
+    """One answer that is asked for: its place in the tables, the column it counts for, and how it is made."""
+
+    place: Row
+    model: str
+    settings: Settings
+    how: How = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """A design, what is asked of it, and all who are asked.
 
     Attributes:
-        x, y: place on the map, in the units of the family's axes.
-        settings: settings of columns for this case, in place of those in `PATHS`.
-        refined, check: of the reference.
+        place: of its reference in the tables. design: whose path is asked for, or with `motion` (start [rad]
+            and duration [s]) its swing. tries: who is asked.
+        refined, check: of the reference. arbiter: elements that decide where no column of theirs is right.
     """
 
-    name: str
-    x: float
-    y: float
+    place: Row
     design: Design
-    settings: Mapping[str, Settings] = field(default_factory=dict)
-    refined: Settings = REFINED
-    check: Settings = CHECK
+    tries: tuple[Try, ...]
+    motion: How | None = None
+    refined: Way = (REFINED, {})
+    check: Way = (CHECK, {})
+    arbiter: Way = (ARBITER, {})
+
+    def answer(self, settings: Settings, how: How) -> Any:
+        """Return what a model answers."""
+        if self.motion is None:
+            return answer_static(self.design, settings)
+        return answer_release(self.design, settings, records=RECORDS, **{**self.motion, **how})
+
+    def found(self, settings: Settings, how: How, reference: Any) -> Found:
+        """Return an answer compared with the reference."""
+        answer = self.answer(settings, how)
+        if self.motion is None:
+            return Found.of(answer, path_distance(answer, reference))
+        if not len(answer.time):  # statics does not reach the start
+            return Found.of(answer, 0.0)
+        gain = _energy_gain(answer)
+        much = gain > (MOST_GAIN_OF_OTHERS if how.get("integrator") else MOST_GAIN)
+        fault = f"the energy grows by {gain:.2g} of itself" if much else ""
+        return Found.of(answer, _swing_distance(answer, reference), fault=fault, energy_gain=gain)
 
 
-def as_mechanism(given: Problem, degrees: float) -> Mechanism:
-    """Return the pivot as a mechanism of two strips and a body, driven to `degrees`."""
-    return Mechanism(
-        strips=given.strips,
-        bodies=given.bodies,
-        body=given.body,
-        rotation=math.radians(degrees),
-        increments=given.increments,
-        effects=given.effects,
-    )
+def of_path(
+    name: str,
+    x: float,
+    y: float,
+    design: Design,
+    own: Mapping[str, Settings] | None = None,
+    finer: tuple[Way, Way] = ((REFINED, {}), (CHECK, {})),
+) -> Question:
+    """Return the question for a path that all columns of `PATHS` are asked: its name, its place on the map,
+    settings of columns of its own, and settings of its reference and of the check of it."""
+    place = {"case": name, "x": x, "y": y}
+    settings = PATHS | dict(own or {})
+    tries = tuple(Try(place=place, model=model, settings=each) for model, each in settings.items())
+    return Question(place=place, design=design, tries=tries, refined=finer[0], check=finer[1])
 
 
-def _distance(path: Response, reference: Response) -> float:
+def answers_of(question: Question) -> Answer:
+    """Return how all who are asked end, a row each, and the row of the reference."""
+    reference = question.answer(*question.refined)
+    rows: list[Row] = []
+    for each in question.tries:
+        attempt = partial(question.found, each.settings, each.how, reference)
+        rows.append({**each.place, "model": each.model, **judged(attempt, TOLERANCE, each.model)})
+    confirmed = (row["error"] for row in rows if (row["model"], row["outcome"]) == (FE, RIGHT))
+    gap = min(confirmed, default=math.inf)
+    if not gap <= TOLERANCE:
+        gap = question.found(*question.arbiter, reference).error
+    spread = question.found(*question.check, reference).error
+    settled = reference.converged and spread <= TOLERANCE / 2.0 and gap <= TOLERANCE
+    known = {"refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
+    return {"outcomes": rows, "references": {**question.place, **known}}
+
+
+def path_distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
     Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
@@ -238,38 +131,27 @@ def _distance(path: Response, reference: Response) -> float:
     near = np.abs(path.load_factor[:, None] - reference.load_factor).min(axis=1) < 1e-9
     same = np.abs(path.load_factor[near][:, None] - reference.load_factor).argmin(axis=1)
     if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
-        return float("inf")
+        return math.inf
     torque = np.abs(path.torque[near] - reference.torque[same]).max()
     place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
     travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
     return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
 
 
-def outcomes_of(case: StaticCase) -> Answer:
-    """Return the outcomes of a case, a row a model, and the row of its reference.
+def _swing_distance(motion: Motion, reference: Motion) -> float:
+    """Return the largest difference of rotation at the motion's records, as far as the reference goes [1].
 
-    A reference is settled where refinement moves it by less than a fifth of the tolerance and elements agree
-    with it within the tolerance.
+    Over the rotation at the start. Infinite for a motion without a record or with one that is no number.
     """
-    reference = answer_static(case.design, case.refined)
-    spread = attempted(case.design, case.check, reference).error
-    place = {"case": case.name, "x": case.x, "y": case.y}
-    rows: list[Row] = []
-    gap = float("inf")
-    for model, settings in PATHS.items():
-        chosen = case.settings.get(model, settings)
-        attempt = partial(attempted, case.design, chosen, reference)
-        rows.append({**place, "model": model, **judged(attempt, TOLERANCE, model)})
-        if model == FE:
-            gap = rows[-1]["error"]
-    if not gap <= TOLERANCE:
-        gap = attempted(case.design, ARBITER, reference).error
-    settled = reference.converged and spread <= TOLERANCE / 5.0 and gap <= TOLERANCE
-    known = {**place, "refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
-    return {"outcomes": rows, "references": known}
+    if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
+        return math.inf
+    known = motion.time <= reference.time[-1] * (1.0 + 1e-9)
+    expected = CubicSpline(reference.time, reference.rotation)(motion.time[known])
+    return float(np.abs(motion.rotation[known] - expected).max() / abs(reference.rotation[0]))
 
 
-def attempted(design: Design, settings: Settings, reference: Response) -> Found:
-    """Solve `design` and compare the path."""
-    path = answer_static(design, settings)
-    return Found.of(path, _distance(path, reference))
+def _energy_gain(motion: Motion) -> float:
+    """Return the largest gain of the balance of energies over the stored one at the start [1]."""
+    stored = motion.kinetic_energy + motion.strain_energy
+    balance = stored + motion.gravity_energy - motion.work + motion.dissipated
+    return float((balance / balance[0] - 1.0).max())

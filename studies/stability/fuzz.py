@@ -14,7 +14,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Tables
 from studies.errors import BadInput
-from studies.stability import family
+from studies.stability.verdict import DEFAULT, VARIED, Found, judged, study
 
 EXAMPLES, SEED = 400, 20260101
 #: Largest error of torque at the ends of the legs, over the largest of them, that is right [1]: the distance
@@ -29,7 +29,7 @@ SAMPLE, ELEMENTS = 100, 80
 #: Steps of a motion.
 STEPS = 6
 STATIC, MOTION = "path", "motion"
-MODELS = (family.VARIED, family.DEFAULT)
+MODELS = (VARIED, DEFAULT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +95,7 @@ def _outcomes(number: int, example: _Example) -> Answer:
     models = (SplineSettings(control_points=example.control_points), SplineSettings())
     rows = [
         {**place, "model": model, "panel": f"{model}: {example.kind}"}
-        | family.judged(partial(_asked, example, settings), TOLERANCE)
+        | judged(partial(_asked, example, settings), TOLERANCE)
         for model, settings in zip(MODELS, models, strict=True)
     ]
     return {"outcomes": rows}
@@ -124,24 +124,24 @@ def _drawn(generator: np.random.Generator) -> _Example:
     return example
 
 
-def _asked(example: _Example, settings: SplineSettings) -> family.Found:
+def _asked(example: _Example, settings: SplineSettings) -> Found:
     """Ask the spline for what the example says and compare it with what is known to be right."""
     return _path(example, settings) if example.step is None else _motion(example, settings)
 
 
-def _path(example: _Example, settings: SplineSettings) -> family.Found:
+def _path(example: _Example, settings: SplineSettings) -> Found:
     """Compare the torque at the ends of the legs with a refined path; the books of energy as well."""
     unit = _unit(example)
     path = _legs(example, settings, example.increments)
     books = np.abs(path.bending_energy + path.axial_energy - path.work).max()
     stored = np.abs(path.bending_energy + path.axial_energy).max()
     if not np.isfinite(path.torque).all():
-        return family.Found(error=math.inf, fault="the torque is not a finite number")
+        return Found(error=math.inf, fault="the torque is not a finite number")
     points = settings.control_points
     refined = replace(settings, control_points=FINEST if points is None else max(REFINED, points + 3))
     error, both = _apart(path, _legs(example, refined, _finer(example)), example)
     closed = books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
-    return family.Found.of(path, error if both else 0.0, fault="" if closed else "work and energy differ")
+    return Found.of(path, error if both else 0.0, fault="" if closed else "work and energy differ")
 
 
 def _legs(example: _Example, settings: Settings, increments: int) -> Any:
@@ -210,7 +210,7 @@ def _ends(rotation: Any, example: _Example) -> list[int]:
     return found
 
 
-def _motion(example: _Example, settings: SplineSettings) -> family.Found:
+def _motion(example: _Example, settings: SplineSettings) -> Found:
     """Let the pivot go: whatever the step, the books of energy close and the clamps hold."""
     problem = example.problem()
     inertia = problem.body_moment_of_inertia + problem.body_mass * problem.length**2
@@ -219,7 +219,7 @@ def _motion(example: _Example, settings: SplineSettings) -> family.Found:
     step = period * float(example.step or 0.0)
     motion = answer_release(problem, settings, duration=STEPS * step, step=step)
     if not len(motion.time):
-        return family.Found.of(motion, 0.0)
+        return Found.of(motion, 0.0)
     stored = motion.kinetic_energy + motion.strain_energy
     scale = max(float(stored[0]), UNLOADED * rigidity / problem.length)
     gain, lost = float((stored - stored[0]).max()) / scale, float(np.abs(stored - stored[0]).max()) / scale
@@ -231,10 +231,10 @@ def _motion(example: _Example, settings: SplineSettings) -> family.Found:
         "the motion is not of finite numbers": not finite,
     }
     fault = next((fault for fault, holds in faults.items() if holds), "")
-    return family.Found.of(motion, max(lost, gap), fault=fault)
+    return Found.of(motion, max(lost, gap), fault=fault)
 
 
-STUDY = family.study(
+STUDY = study(
     Part(at=_examples, ask=_outcomes),
     Part(at=_sample, ask=_independent),
     claims=(

@@ -11,13 +11,13 @@ from spline_model.dynamics import solve_motion
 from studies.answers.models import put
 from studies.cases.problem import named_case
 from studies.engine import Answer, Part
-from studies.stability import family
+from studies.stability.verdict import COLUMNS, DEFAULT, LOCKING_FREE, Found, judged, study
 
 LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
 #: tenth of it of the others.
 PIECE = 10_000
-PIECES = {family.DEFAULT: 100, family.LOCKING_FREE: 10}
+PIECES = {DEFAULT: 100, LOCKING_FREE: 10}
 #: Largest change of energy that is right [1].
 DRIFT = 1e-6
 #: Factor by which the constraint residual of the last tenth may exceed that of the first.
@@ -32,7 +32,7 @@ def _pieces(model: str, count: int) -> Answer:
 
 def _run(model: str, count: int, steps: int = PIECE) -> Iterator[dict[str, Any]]:
     """Yield the row of drift after each piece of so many steps, until one stops early."""
-    mechanism = put(named_case(), family.COLUMNS[model], moving=True).modelled
+    mechanism = put(named_case(), COLUMNS[model], moving=True).modelled
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
     first, change = 0.0, 0.0
     for number in range(1, count + 1):
@@ -62,7 +62,7 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
     ordered = drift.sort_values("steps")["constraint_residual_m"].to_numpy()
     growth = float(ordered[-tenth:].max() / ordered[:tenth].max())
     message = str(drift["message"].iloc[-1])
-    found = family.Found(
+    found = Found(
         error=float(drift["energy_change"].max()),
         reached=not message,
         reason=message,
@@ -71,7 +71,7 @@ def _judgement(model: str, drift: pd.DataFrame) -> dict[str, Any]:
         measured={"growth": growth},
     )
     name = f"{int(drift['steps'].max())} steps"
-    return {"case": name, "model": model, **family.judged(lambda: found, DRIFT, model)}
+    return {"case": name, "model": model, **judged(lambda: found, DRIFT, model)}
 
 
-STUDY = family.study(Part(at=PIECES.items, ask=_pieces))
+STUDY = study(Part(at=PIECES.items, ask=_pieces))

@@ -8,21 +8,23 @@ from functools import partial
 import numpy as np
 from scipy.special import ellipe, ellipk
 
-from studies.answers.settings import Settings
+from studies.answers.settings import FeSettings, Settings
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
-from studies.stability import family
-from studies.stability.family import TOLERANCE, Found, judged
+from studies.stability.family import CHECK, REFINED, TOLERANCE
+from studies.stability.verdict import ARCS, FE, Found, as_mechanism, judged
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
 #: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].
 SLENDERNESS, BEYOND = 1e3, 4.0
 #: Depths that the pivot's body is pushed down to [m]: the first before its strips buckle.
 SHALLOW, DEPTHS = 1e-3, (2e-3, 5e-3, 1e-2, 2e-2)
+#: Elements that confirm the refined spline.
+INDEPENDENT = FeSettings(elements=40)
 #: Tilt of the body over its depth, in lengths of a strip, from which elements find the branch [rad].
 TILT = 2.0
 
@@ -145,7 +147,7 @@ def pushed_pivot(depth: float) -> Frame:
         names=("bending", "stretching", "driven_displacement"),
         tables={"driven_displacement": {"displacement": (0.0, -depth)}},
     )
-    design = replace(family.as_mechanism(given, 0.0), rotation=None, effects=effects)
+    design = replace(as_mechanism(given, 0.0), rotation=None, effects=effects)
     return Frame(design=design, load=depth, body="body", tilt=TILT * depth / given.length)
 
 
@@ -154,19 +156,19 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 
     It is settled by elements, or by the value in print where they do not reach it.
     """
-    refined = case.value(case.arc(family.REFINED))
+    refined = case.value(case.arc(REFINED))
     reference = refined if math.isnan(case.exact) else case.exact
-    spread = max(_difference(case.value(case.arc(family.CHECK)), refined), _difference(refined, reference))
-    independent = case.value(case.arc(family.INDEPENDENT))
+    spread = max(_difference(case.value(case.arc(CHECK)), refined), _difference(refined, reference))
+    independent = case.value(case.arc(INDEPENDENT))
     gap = _difference(case.published if math.isnan(independent) else independent, reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}
     rows = []
-    for model, settings in family.ARCS.items():
+    for model, settings in ARCS.items():
         asked = {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
         rows.append(asked | judged(partial(_attempt, case, settings, reference), TOLERANCE, model))
-    reached = {"model": family.FE, "refinement": spread, "independent": gap, "settled": settled}
+    reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
 
 

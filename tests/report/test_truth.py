@@ -11,7 +11,7 @@ from report.build import quotable
 from report.content.hard_cases import kinds
 from studies.record.source import ROOT
 from studies.record.store import Store
-from studies.stability.family import COLUMNS, DEFAULT, VARIED
+from studies.stability.verdict import COLUMNS, DEFAULT, VARIED
 from tests.report.sources import OneTable, text
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from studies.record.store import Store
 from studies.stability.buckling import OTHER, PRIMARY
-from studies.stability.family import DEFAULT, FE, PAPER, TWELVE
+from studies.stability.verdict import DEFAULT, FE, PAPER, TWELVE
 from tests import gates
 
 

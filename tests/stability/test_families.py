@@ -10,7 +10,7 @@ from studies.answers.models import put
 from studies.cases.problem import named_case
 from studies.record.store import Store
 from studies.registry import STUDIES
-from studies.stability.family import DEFAULT, PAPER, PATHS, SIX, VARIED
+from studies.stability.verdict import DEFAULT, PAPER, PATHS, SIX, VARIED
 from tests import gates
 
 FAMILIES = [name for name in STUDIES if name.startswith("stability/")]

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from studies.answers.settings import SplineSettings
 from studies.stability import fuzz
-from studies.stability.family import judged
 from studies.stability.fuzz import TOLERANCE
+from studies.stability.verdict import judged
 from tests import gates
 
 #: Values that no design can have, among those that it can.

@@ -7,8 +7,8 @@ import pytest
 from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
-from studies.stability import family as columns
-from studies.stability.family import OUTCOMES, Found, judged
+from studies.stability import verdict as columns
+from studies.stability.verdict import OUTCOMES, Found, judged
 
 
 def raising(error):

@@ -18,7 +18,7 @@ from studies.record.digits import as_csv
 from studies.record.source import ROOT
 from studies.record.store import Store
 from studies.registry import STUDIES, study_of
-from studies.stability.family import DEFAULT
+from studies.stability.verdict import DEFAULT
 
 #: A study of half a second.
 NAME = "convergence/elements"

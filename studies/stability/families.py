@@ -1,0 +1,339 @@
+"""Six families of hard cases: rotation, slenderness, geometry, axial modes; steps and ratios of swings."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain, pairwise, product
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.metrics import observed_order
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
+from studies.cases.mechanism import Strip
+from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
+from studies.engine import Part, Row, Tables
+from studies.kinds import Array
+from studies.record.digits import Digits
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import GREEN, GREY, RED, YELLOW, Look
+from studies.stability.family import Question, Try, Way, answers_of, of_path
+from studies.stability.verdict import (
+    BAD_INPUT,
+    COLUMNS,
+    DEFAULT,
+    FE,
+    LOCKING_FREE,
+    ORDER,
+    PAPER,
+    PATHS,
+    REFUSED,
+    RIGHT,
+    SIX,
+    VARIED,
+    WRONG,
+    as_mechanism,
+    study,
+)
+
+#: Rotations [deg] and numbers of increments; a reference so far needs more points than at a quarter turn.
+ROTATIONS, INCREMENTS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260), (1, 2, 5, 20, 200)
+FAR: tuple[Way, Way] = (SplineSettings(control_points=16), {}), (SplineSettings(control_points=14), {})
+
+
+def _rotated() -> Iterator[Question]:
+    """Yield every rotation in every number of increments."""
+    for degrees, count in product(ROTATIONS, INCREMENTS):
+        design = replace(named_case(), rotation=math.radians(degrees), increments=count)
+        yield of_path(f"{degrees} deg in {count}", degrees, count, design, finer=FAR)
+
+
+ROTATION = study(Part(at=_rotated, ask=answers_of))
+"""Rotation to a half turn and beyond, in any number of increments."""
+
+#: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
+SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
+#: Where inextensible strips stand on the map, and factor between neighbours that may lose no digits.
+INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
+
+
+def _slender_cases() -> Iterator[Question]:
+    """Yield every slenderness at every rotation, and strips that cannot stretch."""
+    rigid = {name: _inextensible(PATHS[name]) for name in (DEFAULT, LOCKING_FREE, SIX)}
+    refined, check = (SplineSettings(control_points=n, stretch="inextensible") for n in (14, 11))
+    finer: tuple[Way, Way] = (refined, {}), (check, {})
+    for degrees in SLENDER_ROTATIONS:
+        for slenderness in SLENDER:
+            design = replace(_slender(slenderness), rotation=math.radians(degrees))
+            yield of_path(f"L/t = {slenderness:g}, {degrees} deg", slenderness, degrees, design)
+        design = replace(_slender(SLENDER[-1]), rotation=math.radians(degrees))
+        yield of_path(f"inextensible, {degrees} deg", INEXTENSIBLE, degrees, design, rigid, finer)
+
+
+def _slender(slenderness: float) -> Problem:
+    """Return Table 1 with strips of that L/t and the same flexural rigidity: the more slender, the wider."""
+    given = named_case()
+    return replace(given, area=12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2)
+
+
+def _inextensible(settings: Settings) -> Settings:
+    assert isinstance(settings, SplineSettings)
+    return replace(settings, stretch="inextensible")
+
+
+def _limit() -> pd.DataFrame:
+    """Return, slenderness by slenderness, how six control points come to the inextensible strip.
+
+    With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
+    `lost_digits` is what the torques of neighbouring designs differ by beyond that law.
+    """
+    six, rows = PATHS[SIX], []
+    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(six))
+
+    def gap(one: Array, other: Array) -> float:
+        return float(np.abs(one - other).max() / np.abs(other).max())
+
+    for slenderness in SLENDER:
+        here, beside = (answer_static(_slender(slenderness * f), six) for f in (1.0, NEIGHBOUR))
+        error = gap(here.torque, rigid.torque)
+        rows.append(
+            {
+                "slenderness": slenderness,
+                "error": error,
+                "constant": error * slenderness**2,
+                "iterations": here.counters["newton_iterations"],
+                "iterations_inextensible": rigid.counters["newton_iterations"],
+                "lost_digits": abs(gap(here.torque, beside.torque) - error * (1.0 - NEIGHBOUR**-2)),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+#: Looks of the outcomes.
+LOOKS = {
+    RIGHT: Look(label="right", colour=GREEN, line="", marker="o"),
+    REFUSED: Look(label="refused, or said to be unresolved", colour=YELLOW, line="", marker="D"),
+    WRONG: Look(label="wrong", colour=RED, line="", marker="X"),
+    BAD_INPUT: Look(label="cannot be asked", colour=GREY, line="", marker="s"),
+}
+
+
+def _map(tables: Tables) -> Figure:
+    """Draw one panel a model: a mark a case, by its outcome."""
+    rows = tables["outcomes"]
+    x = Axis("x", "slenderness L/t [1]", log=True)
+    y = Axis("y", "rotation [deg]", limits=(0.0, 145.0))
+    panels = [
+        Panel(x, y, (Curves(mine, LOOKS, by="outcome", more={"markersize": 3.5}),), title=model)
+        for model in ORDER
+        if len(mine := rows[rows["model"] == model])
+    ]
+    half = -(-len(panels) // 2)
+    return sheet(8.8, 5.2, [panels[:half], panels[half:]], legend=4)
+
+
+SLENDERNESS = study(
+    Part(at=_slender_cases, ask=answers_of),
+    Part(ask=lambda: {"limit": _limit()}),
+    digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
+    figures={"stability_slenderness": _map},
+)
+"""Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
+
+#: Distance of the crossing from the ground end over L, and angle of the strips to the ground [deg].
+RATIOS_OF_CROSSING = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
+INCLINATIONS = (10, 20, 30, 45, 60, 70, 80)
+#: Rotations of pairs of strips that are no symmetric cross [deg]: half of what the pivot is driven to.
+OTHER_ROTATION = 45.0
+
+
+def _grid() -> Iterator[Question]:
+    """Yield the pivots of all crossing ratios and inclinations, driven as the paper's."""
+    for ratio, degrees in product(RATIOS_OF_CROSSING, INCLINATIONS):
+        design = replace(named_case(), crossing_ratio=ratio, inclination=math.radians(degrees))
+        yield of_path(f"cross {ratio:g}, {degrees:g} deg", ratio, degrees, design)
+
+
+def _others() -> Iterator[Question]:
+    """Yield parallel strips, unequal strips in length, stiffness and angle, strips curved at rest."""
+    given = named_case()
+    cross = as_mechanism(given, OTHER_ROTATION)
+    first, second = cross.strips
+    length = given.length
+    (x, y), (end_x, end_y) = second.start, second.end
+    shorter = (x + 0.3 * (end_x - x), y + 0.3 * (end_y - y))
+    pairs = {
+        "parallel strips, half a length apart": (first, _beside(first, length / 2.0)),
+        "parallel strips, a tenth of a length apart": (first, _beside(first, length / 10.0)),
+        "second strip 0.7 as long": (first, replace(second, start=shorter)),
+        "strips at 45 and 59 degrees": (first, replace(second, start=(0.6 * second.start[0], 0.0))),
+        "second strip 10 times as stiff": (first, _thicker(second, 10.0)),
+        "second strip 100 times as stiff": (first, _thicker(second, 100.0)),
+    }
+    for one, other in ((0.05, 0.05), (0.05, -0.05), (-0.05, 0.05), (0.15, 0.15), (0.15, -0.15)):
+        curved = (replace(first, rise=one * length), replace(second, rise=other * length))
+        pairs[f"curved at rest, sagitta {one:+g} and {other:+g} L"] = curved
+    for place, (name, strips) in enumerate(pairs.items()):
+        yield of_path(name, place, 0.0, replace(cross, strips=strips))
+
+
+def _beside(strip: Strip, by: float) -> Strip:
+    """Return the second strip parallel to a first one."""
+    (x, y), (end_x, end_y) = strip.start, strip.end
+    return replace(strip, name=STRIPS[1], start=(x + by, y), end=(end_x + by, end_y))
+
+
+def _thicker(strip: Strip, factor: float) -> Strip:
+    """Return the strip with its depth grown so that it bends `factor` times as hard."""
+    area, second = strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor
+    return replace(strip, area=area, second_moment_of_area=second)
+
+
+GEOMETRY = study(Part(at=lambda: chain(_grid(), _others()), ask=answers_of))
+"""Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
+
+COUNTS = (4, 5, 6, 8, 10)
+MODES, FLOATING = "axial modes,\nslide stiffness 10", "axial modes,\nno slide stiffness"
+POINTS, PAPER_POINTS = "Gauss points,\nmixed stretch", "Gauss points,\nconsistent stretch"
+
+
+def _discretised() -> Iterator[Question]:
+    """Yield one path, asked with every count of axial modes, with and without slide stiffness, and of Gauss
+    points; elements confirm the reference."""
+    tries = []
+
+    def add(panel: str, model: str, other: int, settings: SplineSettings) -> None:
+        place = {"panel": panel, "x": settings.points, "y": other}
+        tries.append(Try(place=place, model=model, settings=settings))
+
+    for n in COUNTS:
+        plain = SplineSettings(control_points=n)
+        for m in range(1, n):
+            modes = replace(plain, axial_modes=m)
+            add(MODES, VARIED, m, modes)
+            add(FLOATING, VARIED, m, replace(modes, slide_stiffness=0.0))
+        for points in range(1, n + 3):
+            few = replace(plain, gauss_points=points)
+            add(POINTS, VARIED, points, few)
+            add(PAPER_POINTS, PAPER, points, replace(few, stretch="consistent", measure="spatial"))
+    design = replace(named_case(), rotation=math.radians(45.0))
+    yield Question(place={"case": TABLE_1}, design=design, tries=tuple(tries))
+
+
+AXIAL_MODES = study(Part(at=_discretised, ask=answers_of))
+"""Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
+
+#: Columns of swings. The paper's measure is for the leapfrog alone.
+SWINGING = (DEFAULT, LOCKING_FREE, FE)
+#: What swings are held against: a spline, elements, and the steps of Table 1's motion [s].
+FINE, INDEPENDENT = SplineSettings(control_points=9), FeSettings(elements=30)
+FINE_STEP, COARSER_STEP = 2.5e-6, 5e-6
+STEPS = (1e-7, 1e-6, 1e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)
+STARTS = (10, 45, 90, 135)
+#: One swing of Table 1 from 90 degrees [s], over which the rotation is compared.
+SWING = 0.012
+#: Steps of a motion: at least, so that energy could drift; at most, so that the finest end in seconds.
+FEWEST, MOST = 15, 1200
+
+
+def _swinging(place: Row, step: float, **more: float) -> list[Try]:
+    """Return the swings of all columns in steps of so long [s]."""
+    implicit = {FE: {"integrator": "generalised-alpha"}}
+    how = {name: {"step": step, **implicit.get(name, {}), **more} for name in SWINGING}
+    return [Try(place=place, model=name, settings=COLUMNS[name], how=own) for name, own in how.items()]
+
+
+def _steps() -> Iterator[Question]:
+    """Yield a swing from each start, asked in all steps: at least so many of them, and at most."""
+    for degrees in STARTS:
+        tries = []
+        for step in STEPS:
+            place = {"case": f"from {degrees} deg, {step:g} s", "x": step, "y": degrees}
+            duration = min(max(round(SWING / step), FEWEST), MOST) * step
+            tries += _swinging(place, step, duration=duration)
+        yield Question(
+            place={"case": f"from {degrees} deg"},
+            design=named_case(),
+            motion={"start": math.radians(degrees), "duration": SWING},
+            tries=tuple(tries),
+            refined=(FINE, {"step": FINE_STEP}),
+            check=(FINE, {"step": COARSER_STEP}),
+            arbiter=(INDEPENDENT, {}),
+        )
+
+
+#: Steps of the table of orders and of its limit [s], and the duration of its motions [s].
+ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
+LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
+
+
+def _orders() -> pd.DataFrame:
+    """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
+    motions = [
+        answer_release(named_case(), COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
+        for step in (*ORDER_STEPS, LIMIT_STEP)
+    ]
+    *answers, limit = motions
+    errors = [float(np.abs(answer.rotation - limit.rotation).max()) for answer in answers]
+    orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
+    resolved = ["no" if answer.resolution else "yes" for answer in answers]
+    return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
+
+
+STEP_SIZE = study(Part(at=_steps, ask=answers_of), Part(ask=lambda: {"order": _orders()}))
+"""Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
+
+#: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
+FACTORS, STIFFER = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6), (1e2, 1e4)
+START_DEG = 30.0
+#: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
+STEPS_A_PERIOD, REFINED_STEPS, COARSER_STEPS = 200, 1600, 800
+KINDS = ("mass and inertia", "mass alone", "inertia alone")
+
+
+def _designs() -> Iterator[tuple[str, str, float, Design]]:
+    """Yield all designs with a ratio at its end: name, kind (a line of the map), factor (its place there)."""
+    given = named_case()
+    mass, inertia = given.body_mass, given.body_moment_of_inertia
+    for kind, factor in product(KINDS, FACTORS):
+        design = replace(
+            given,
+            body_mass=mass if kind == KINDS[2] else factor * mass,
+            body_moment_of_inertia=inertia if kind == KINDS[1] else factor * inertia,
+        )
+        yield f"body: {kind} x {factor:g}", kind, factor, design
+    yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
+    without = [name for name in given.effects.names if name != "strip_inertia"]
+    yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
+    cross = as_mechanism(given, START_DEG)
+    for factor in STIFFER:  # of another material
+        second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
+        stiffer = replace(cross, strips=(cross.strips[0], second))
+        yield f"second strip {factor:g} times as stiff", "stiffness", factor, stiffer
+
+
+def _ratios() -> Iterator[Question]:
+    """Yield the first swing of every design, in steps of the same part of its period."""
+    for case, kind, factor, design in _designs():
+        period = 1.0 / float(answer_modes(design, FINE, count=1).frequency[0])
+        place = {"case": case, "kind": kind, "x": factor}
+        fine = {"step": period / REFINED_STEPS}
+        yield Question(
+            place={"case": case, "period_s": period},
+            design=design,
+            motion={"start": math.radians(START_DEG), "duration": period},
+            tries=tuple(_swinging(place, period / STEPS_A_PERIOD)),
+            refined=(FINE, fine),
+            check=(FINE, {"step": period / COARSER_STEPS}),
+            arbiter=(INDEPENDENT, {"integrator": "generalised-alpha", **fine}),
+        )
+
+
+RATIOS = study(
+    Part(at=_ratios, ask=answers_of),
+    digits={"outcomes.error": Digits(relative=0.05, floor=1e-9, rows="outcome == 'right'")},
+)
+"""Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""
