@@ -114,6 +114,11 @@ class Fields:
         return np.asarray(sum(self.energies[name] for name in parts if name in self.energies))
 
     @property
+    def gravity_energy(self) -> Array | None:
+        """(S,) against rest [J]; None without weight."""
+        return self.energies.get("gravity")
+
+    @property
     def max_stress(self) -> Array:
         """(S,) largest of all strips [Pa]."""
         return np.asarray(self.stress.max(axis=(1, 2)))

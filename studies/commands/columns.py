@@ -17,8 +17,6 @@ PREFIXES = {6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p", -15: "f"
 DIGITS = 7
 #: Decimals of angles at least, which have no prefix, and what no solver resolves [rad].
 ANGLE_DECIMALS, ANGLE_FLOOR = 3, 1e-10
-#: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
-FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
 NOTHING = "-"
 
 

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.quantities import QUANTITIES, STANDING, quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
@@ -48,13 +49,11 @@ PLOT_MODES = Argument(
 #: Lines of the table: name there, key in JSON, unit, and power of ten of the largest prefix.
 ROWS = (
     ("rotation, end", "rotation_rad", "deg", 0),
-    ("torque, end", "torque_Nm", "N m", 0),
+    *((f"{q.heading}, {q.standing}", q.key, q.unit, q.highest) for q in QUANTITIES if q.standing),
     ("stiffness, begin", "stiffness_begin_Nm_per_rad", "N m/rad", 0),
     ("stiffness, end", "stiffness_end_Nm_per_rad", "N m/rad", 0),
     ("stiffness, variation", "stiffness_variation", "", 0),
     ("centre shift, largest", "largest_centre_shift_m", "m", -3),
-    ("stress, largest", "max_stress_Pa", "Pa", 6),
-    ("strain energy, end", "strain_energy_J", "J", 0),
     ("safety to yield", "safety", "", 0),
     ("yields from", "yield_rotation_rad", "deg", 0),
     ("first frequency", "first_frequency_Hz", "Hz", 0),
@@ -80,15 +79,12 @@ def _values(answer: Response, shown: Shown) -> dict[str, float]:
     """Return the numbers of a path by their keys."""
     fields, limits = shown.fields, strength(answer)
     found: dict[str, Any] = {
-        "max_stress_Pa": fields.max_stress.max(),
-        "strain_energy_J": fields.strain_energy[-1],
+        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(fields) if q.standing},
         "safety": limits.safety,
         "yield_rotation_rad": limits.yields and limits.yields.rotation,
     }
     if shown.rotation is not None:
         found["rotation_rad"] = shown.rotation[-1]
-    if fields.torque is not None:
-        found["torque_Nm"] = fields.torque[-1]
     if fields.stiffness is not None:
         found["stiffness_begin_Nm_per_rad"] = begin = fields.stiffness[0]
         found["stiffness_end_Nm_per_rad"] = fields.stiffness[-1]

@@ -15,6 +15,7 @@ from typing import Any
 
 import pandas as pd
 
+from studies.answers import quantities
 from studies.commands.case import PAGE, markdown_head
 from studies.commands.parser import command
 from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TOLERANCES
@@ -244,6 +245,15 @@ def _time(seconds: float) -> str:
     return f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
 
 
+def _quantities(store: Store) -> Iterator[str]:
+    """Yield the table of the quantities of a path."""
+    yield markdown_head("key", "unit", "meaning", "in a sweep")
+    for each in quantities.QUANTITIES:
+        swept = f"`{each.name_in_sweep}`, {each.standing}" if each.standing else "–"
+        meaning = each.meaning + (", of mechanisms" if each.mechanisms else "")
+        yield f"| `{each.key}` | {each.unit} | {meaning} | {swept} |"
+
+
 def _of_page(name: str) -> Callable[[Store], Iterable[str]]:
     return lambda store: PAGE[name]()
 
@@ -259,6 +269,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "hard cases": _hard_cases,
         "sized": _sized,
     },
+    ROOT / "docs" / "data.md": {"quantities": _quantities},
     ROOT / "docs" / "cases.md": {name: _of_page(name) for name in PAGE},
 }
 

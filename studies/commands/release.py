@@ -37,13 +37,14 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
+from studies.answers.quantities import energy_floor
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
 from studies.cases.problem import Problem
 from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.columns import ENERGY_FLOOR, angle, plain, quantity, table
+from studies.commands.columns import angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
 from studies.errors import BadInput
 
@@ -201,7 +202,7 @@ def _readable(answer: Motion) -> Iterator[str]:
             *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
             angle(answer.rotation[shown]),
             *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
-            *quantity("J", floor=ENERGY_FLOOR * scale, kinetic=kinetic, strain=strain),
+            *quantity("J", floor=energy_floor(answer.design), kinetic=kinetic, strain=strain),
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )

@@ -35,10 +35,10 @@ import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
+from studies.answers.quantities import quantities_of, stress_floor
 from studies.answers.response import Response
 from studies.answers.strength import strength
 from studies.answers.validity import validity
-from studies.cases.design import flexural_scale
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands import columns
@@ -158,11 +158,7 @@ def _arrays(answer: Response) -> dict[str, Array]:
         found |= {"rotation_rad": answer.rotation}
         found |= dict(zip(("com_x_m", "com_y_m"), answer.centre.T, strict=True))
         found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
-    found |= {"torque_Nm": answer.torque, "stiffness_Nm_per_rad": answer.stiffness}
-    found["strain_energy_J"] = answer.strain_energy
-    if not pivot:
-        found |= {"gravity_energy_J": answer.gravity_energy, "work_J": answer.work}
-    found["max_stress_Pa"] = answer.max_stress
+    found |= {each.key: values for each, values in quantities_of(answer) if not (pivot and each.mechanisms)}
     if answer.body is not None:
         matrix = answer.body_stiffness
         found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
@@ -239,7 +235,7 @@ def _readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from tell.strength_told(strength(answer), floor=_stress_floor(answer))
+    yield from tell.strength_told(strength(answer), floor=stress_floor(answer.design))
     # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
@@ -260,18 +256,17 @@ def _states(answer: Response) -> Iterator[Column]:
 
 
 def _columns(answer: Response) -> Iterator[Column]:
-    """Yield the columns of places, torque, stiffness, energy and stress."""
-    pivot, scale = answer.crossing is not None, flexural_scale(answer.design)
+    """Yield the columns of places and of the quantities of a path."""
     if answer.crossing is not None:
         yield from quantity("m", highest=-3, x=answer.centre[:, 0], y=answer.centre[:, 1])
         floor = SHIFT_FLOOR * _length(answer)
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
-    if pivot or np.isfinite(answer.torque).any():
-        yield from quantity("N m", floor=columns.FORCE_FLOOR * scale, torque=answer.torque)
-        yield from quantity("N m/rad", floor=columns.FORCE_FLOOR * scale, stiffness=answer.stiffness)
-    yield from quantity("J", floor=columns.ENERGY_FLOOR * scale, energy=answer.strain_energy)
-    yield from quantity("Pa", floor=_stress_floor(answer), highest=6, digits=6, stress=answer.max_stress)
-    if not pivot:
+    for each, values in quantities_of(answer):
+        if each.column and np.isfinite(values).any():
+            named: dict[str, Any] = {each.heading: values}
+            floor = each.floor(answer.design)
+            yield from quantity(each.unit, floor=floor, highest=each.highest, digits=each.digits, **named)
+    if answer.crossing is None:
         for name, place in answer.bodies.items():
             yield from quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])
             yield columns.angle(place[:, 2], group=name)
@@ -294,8 +289,3 @@ def _body_columns(answer: Response) -> Iterator[Column]:
     yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
     for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
         yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
-
-
-def _stress_floor(answer: Response) -> float:
-    """Return the stress below which it is round-off [Pa]."""
-    return columns.STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in answer.design.strips)

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.fields import Fields
+from studies.answers.quantities import QUANTITIES, quantities_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
@@ -21,16 +22,12 @@ COLUMNS = {
     "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
     "com_x_m": "of the only body, as by `solve --csv` [m]",
     "com_y_m": "of the only body, as by `solve --csv` [m]",
-    "stiffness_Nm_per_rad": "of the rotation at fixed loads [N m/rad]",
-    "strain_energy_J": "of all strips, on a static path [J]",
-    "gravity_energy_J": "of a static path against rest [J]",
-    "max_stress_Pa": "largest extreme-fibre stress of all strips [Pa]",
+    **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
     "kinetic_J": "of a motion [J]",
     "strain_J": "of a motion, of all strips [J]",
     "gravity_J": "of a motion against rest [J]",
     "dissipated_J": "of a motion since its start [J]",
     "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
-    "torque_Nm": "of the drive of a static path [N m]",
     "strip": "name of the strip",
     "body": "name of the body",
     "end": "root or tip of the strip",
@@ -72,13 +69,9 @@ def _states(fields: Fields) -> pd.DataFrame:
     if len(fields.blocks) == 1:
         com_x, com_y, turn = fields.bodies[:, 0].T
         columns |= {"rotation_rad": turn, "com_x_m": com_x, "com_y_m": com_y}
-    for name, array in (("torque_Nm", fields.torque), ("stiffness_Nm_per_rad", fields.stiffness)):
-        columns |= {} if array is None else {name: array}
     if fields.analysis == "static":
-        columns["strain_energy_J"] = fields.strain_energy
-        kept = {f"{name}_energy_J": fields.energies[name] for name in ("gravity",) if name in fields.energies}
-    else:
-        kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
+        return pd.DataFrame(columns | {each.key: values for each, values in quantities_of(fields)})
+    kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
     return pd.DataFrame(columns | kept | {"max_stress_Pa": fields.max_stress})
 
 

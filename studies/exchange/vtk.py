@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.fields import Fields
+from studies.answers.quantities import quantities_of
 from studies.cases.keys import GROUND
 from studies.kinds import Array
 
@@ -55,7 +56,9 @@ def mesh(fields: Fields, state: int) -> meshio.Mesh:
     the ends that bodies carry, as points of the bodies. What the state has as a whole is data of every cell.
     """
     cells = list(_cells(fields))
-    whole = {fields.series: fields.values, "torque_Nm": fields.torque, "frequency_Hz": fields.frequency}
+    whole = {fields.series: fields.values, "frequency_Hz": fields.frequency}
+    if fields.analysis == "static":
+        whole |= {each.key: values for each, values in quantities_of(fields)}
     of_cells: dict[str, list[Any]] = {
         "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in cells],
         "part_number": [parts for _, _, parts, _ in cells],

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.answers.fields import fields_of, own_fields
+from studies.answers.quantities import QUANTITIES
 from studies.answers.response import Answered
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -65,16 +66,11 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     def over(each: Shown) -> Array:
         return turning(np.asarray(each.rotation)) if turned else each.fields.values
 
-    first = (
-        {
-            Quantity(name="torque", unit="N m"): lambda each: each.fields.torque,
-            Quantity(name="stiffness", unit="N m/rad"): lambda each: each.fields.stiffness,
-        }
-        if turned
-        else {ROTATION: lambda each: each.rotation}
-    )
-    for quantity, values in first.items():
-        yield from _chart(shown, x, quantity, over, values)
+    if not turned:
+        yield from _chart(shown, x, ROTATION, over, lambda each: each.rotation)
+    for each in (own for own in QUANTITIES if path and own.chart):
+        y = Quantity(name=each.heading, unit=each.unit)
+        yield from _chart(shown, x, y, over, partial(_of_path, each.of, turned))
     if not path:
         yield from _energies(shown, x, over)
     yield from _chart(shown, X, Y, partial(_travel, axis=0), partial(_travel, axis=1), equal=True)
@@ -103,6 +99,12 @@ def _chart(
             curves.append((look, along, values))
     if curves:
         yield Chart(x=x, y=y, curves=tuple(curves), **more)
+
+
+def _of_path(of: Callable[[Any], Array | None], turned: bool, shown: Shown) -> Array | None:
+    """Return the values of a quantity (S,); those of a drive are drawn where it turns."""
+    values, drive = of(shown.fields), (shown.fields.torque, shown.fields.stiffness)
+    return values if turned or not any(values is each for each in drive) else None
 
 
 def _travel(shown: Shown, axis: int) -> Array | None:

@@ -8,6 +8,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from studies.answers.models import model_of
+from studies.answers.quantities import QUANTITIES
 from studies.answers.response import centre_shift, shift_error
 from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
@@ -60,12 +61,24 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
+#: Quantities of a path that the kernel has, by the names that it gives them; stress it has as strain.
+KERNEL = {
+    "torque_Nm": "torque",
+    "stiffness_Nm_per_rad": "stiffness",
+    "strain_energy_J": "energy",
+    "max_stress_Pa": "",
+}
+
+
 def takes(task: Task) -> bool:
     """Whether the kernel may take the designs of a sweep: plain pivots on a static path, by splines.
 
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
+    asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
+    if not asked <= set(KERNEL):
+        return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
     effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
@@ -147,13 +160,15 @@ def _paths(
         return np.zeros(len(turns), dtype=bool), {}
     unstable = np.count_nonzero(batch.inertia, axis=1)
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
-    own = {name: getattr(batch, name) for name in ("rotation", "torque", "stiffness", "energy")}
+    found = {key: np.asarray(getattr(batch, name)) for key, name in KERNEL.items() if name}
+    found["max_stress_Pa"] = batch.strain * given["youngs_modulus"][:, None]
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
     by_name = (*batch.errors.values(), shift_error(batch.errors["trajectory"], batch.centre, shift))
     error = np.fmax.reduce(by_name)
     paths = Paths(
         rest=0,
-        stress=batch.strain * given["youngs_modulus"][:, None],
+        rotation=batch.rotation,
+        values=found,
         defect=batch.moment_defect,
         unstable=unstable,
         iterations=(1 + task.options["both_sides"]) * batch.iterations,
@@ -163,7 +178,6 @@ def _paths(
         effects=tuple(PLAIN),
         control_points=batch.control_points.astype(float),
         error=error,
-        **own,
     )
     resolved = batch.accuracy is None or error <= batch.accuracy
     sure = batch.converged & (unstable == 0) & ~turning & resolved

@@ -15,6 +15,7 @@ from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import put
 from studies.answers.motion import Motion, Spectrum
+from studies.answers.quantities import QUANTITIES, STANDING, Quantity, quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.validity import Strip, strips_of
@@ -47,8 +48,8 @@ class _Quantity(NamedTuple):
 class Paths:
     """Static paths of D designs over S states in the order of the rotation; `rest` is the unloaded one.
 
-    torque [N m]; stiffness [N m/rad]; shift (D, S, 2) of the crossing point [m]; stress the largest of the
-    strips [Pa]; energy of strain [J]; defect of the moments [1]; unstable (D,) states, -1 where the model
+    values (D, S) of the quantities of a path by their key; shift (D, S, 2) of the crossing point [m]; defect
+    of the moments [1]; unstable (D,) states, -1 where the model
     cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad];
     strips with the most that happens to them, arrays (D,); effects that were assembled; control_points (D,),
     nan of another model; error (D,) the largest estimated one [1], nan where it is not estimated.
@@ -56,10 +57,7 @@ class Paths:
 
     rest: int
     rotation: Array
-    torque: Array
-    stiffness: Array
-    stress: Array
-    energy: Array
+    values: Mapping[str, Array]
     defect: Array
     unstable: NDArray[np.int64]
     iterations: NDArray[np.int64]
@@ -69,6 +67,11 @@ class Paths:
     effects: tuple[str, ...]
     control_points: Array
     error: Array
+
+    @property
+    def stiffness(self) -> Array:
+        """(D, S) of the driven rotation [N m/rad]."""
+        return self.values["stiffness_Nm_per_rad"]
 
 
 def _shift(paths: Paths) -> Array:
@@ -80,19 +83,22 @@ def _most(ratio: str) -> Callable[[Paths], Array]:
     return lambda paths: np.max([np.asarray(getattr(s, ratio), dtype=float) for s in paths.strips], axis=0)
 
 
+def _standing(each: Quantity) -> _Quantity:
+    """Return the column of a quantity of a path: its value in the state that stands for it."""
+    return _Quantity(
+        f"{each.meaning}, {each.standing}", lambda p: STANDING[each.standing](p.values[each.key])
+    )
+
+
 PATH = {
     "rotation_rad": _Quantity("rotation at the end", lambda p: p.rotation[:, -1]),
-    "torque_Nm": _Quantity("driving torque at the end", lambda p: p.torque[:, -1]),
+    **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
     "stiffness_rest_Nm_per_rad": _Quantity("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
     "stiffness_end_Nm_per_rad": _Quantity("rotational stiffness at the end", lambda p: p.stiffness[:, -1]),
     "stiffness_variation": _Quantity(
         "largest less smallest stiffness of the path, over that at rest",
         lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, p.rest]),
     ),
-    "stress_max_Pa": _Quantity(
-        "largest |N|/A + |M| d/(2 I) of all strips and states", lambda p: p.stress.max(axis=1)
-    ),
-    "energy_J": _Quantity("strain energy at the end", lambda p: p.energy[:, -1]),
     "moment_defect": _Quantity(
         "largest relative imbalance of the strips' moments, of a spline", lambda p: p.defect.max(axis=1)
     ),
@@ -111,10 +117,12 @@ PATH = {
         whole=True,
     ),
     "torque_max_Nm": _Quantity(
-        "largest magnitude of the driving torque", lambda p: np.abs(p.torque).max(axis=1), usual=False
+        "largest magnitude of the driving torque",
+        lambda p: np.abs(p.values["torque_Nm"]).max(axis=1),
+        usual=False,
     ),
     "stress_end_Pa": _Quantity(
-        "largest stress of the strips at the end", lambda p: p.stress[:, -1], usual=False
+        "largest stress of the strips at the end", lambda p: p.values["max_stress_Pa"][:, -1], usual=False
     ),
     # what an answer is worth; the curvature is taken as high as the strain allows
     "width_ratio": _Quantity("b/L, largest of the strips", _most("width_ratio")),
@@ -233,10 +241,7 @@ def _paths_of(answer: Response) -> Paths:
     return Paths(
         rest=0,
         rotation=places[design.body][..., 2] if design.body else nowhere[None, :, 0],
-        torque=answer.torque[None],
-        stiffness=answer.stiffness[None],
-        stress=answer.max_stress[None],
-        energy=answer.strain_energy[None],
+        values={each.key: values[None] for each, values in quantities_of(answer)},
         defect=np.asarray(getattr(result, "moment_defect", nowhere[:, 0]))[None],
         unstable=np.array([-1 if inertia is None else np.count_nonzero(inertia)]),
         iterations=np.array([result.counters["newton_iterations"]]),
@@ -251,10 +256,13 @@ def _paths_of(answer: Response) -> Paths:
 
 def _joined(one: Paths, other: Paths) -> Paths:
     """Return the paths to both sides as one, from the end of `other` through rest to that of `one`."""
-    arrays = ("rotation", "torque", "stiffness", "stress", "energy", "defect", "shift")
-    both: dict[str, Any] = {
-        name: np.concatenate((getattr(other, name)[:, :0:-1], getattr(one, name)), axis=1) for name in arrays
-    }
+
+    def through(back: Array, forth: Array) -> Array:
+        return np.concatenate((back[:, :0:-1], forth), axis=1)
+
+    arrays = ("rotation", "defect", "shift")
+    both: dict[str, Any] = {name: through(getattr(other, name), getattr(one, name)) for name in arrays}
+    both["values"] = {name: through(other.values[name], array) for name, array in one.values.items()}
     strips = zip(one.strips, other.strips, strict=True)
     return replace(
         one,

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import main
+from studies.answers.quantities import QUANTITIES
 from studies.cases.problem import FOLDER
 from studies.exchange.formats import COLUMNS
 from studies.exchange.vtk import mesh
@@ -16,6 +17,8 @@ from studies.record.store import RESULTS
 from tests.exchange.test_files import fields
 
 PAGE = (ROOT / "docs" / "data.md").read_text(encoding="utf-8")
+#: What a path has in every state, which has a table of its own.
+KEYS = {each.key for each in QUANTITIES}
 #: Tables that are the same in all studies.
 COMMON = ("findings", "findings_of_time", "counts")
 #: What a name that ends so says of its unit.
@@ -104,9 +107,9 @@ def test_keys_of_json_are_described(words, capsys):
     path = str(FOLDER / f"{case}.toml")
     assert main([command, path, "--model", "spline", "--control-points", "4", "--json", "-", *options]) == 0
     document = json.loads(capsys.readouterr().out)
-    known = described("## JSON of the commands")
-    assert set(document) <= set(known)
-    for key in document:
+    known, quantities = described("## JSON of the commands"), described("## Quantities of a path")
+    assert set(document) <= set(known) | set(quantities)
+    for key in set(document) - (set(quantities) if command == "solve" else set()):
         places = known[key][2]
         kinds = (command, "all", "pivots" if case == "cross_axis_pivot" else "mechanisms")
         assert any(kind in places for kind in kinds), f"{key} in {command}"
@@ -121,9 +124,12 @@ def test_arrays_of_vtk_are_described():
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points
-    assert {name for name, row in known.items() if row[1] == "cells"} == cells
+    quantities = set(described("## Quantities of a path"))
+    assert {name for name, row in known.items() if row[1] == "cells"} == cells - quantities
 
 
 def test_columns_of_exports_are_described():
     """The columns of exported tables are described in the words that the JSON has."""
-    assert {name: row[0] for name, row in described("**Tables.**").items()} == COLUMNS
+    found = {name: row[0] for name, row in described("**Tables.**").items()}
+    assert found == {name: said for name, said in COLUMNS.items() if name not in KEYS}
+    assert set(described("## Quantities of a path")) == KEYS

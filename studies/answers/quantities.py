@@ -1,0 +1,149 @@
+"""The numbers that every state of a static path has, each declared once.
+
+Tables, JSON, CSV, VTK, pictures, the columns of a sweep, `compare` and docs/data.md follow from these
+entries: a new quantity is one more of them.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from studies.cases.design import Design, flexural_scale
+from studies.kinds import Array
+
+#: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
+FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
+#: Which state stands for a path, by what is said of it, of values (..., S).
+STANDING: dict[str, Callable[[Array], Array]] = {
+    "end": lambda values: np.asarray(values[..., -1]),
+    "largest": lambda values: np.asarray(np.abs(values).max(axis=-1)),
+}
+
+
+def moment_floor(design: Design) -> float:
+    """Return the moment, or stiffness of a turn, that is round-off [N m]."""
+    return FORCE_FLOOR * flexural_scale(design)
+
+
+def energy_floor(design: Design) -> float:
+    """Return the energy that is round-off [J]."""
+    return ENERGY_FLOOR * flexural_scale(design)
+
+
+def stress_floor(design: Design) -> float:
+    """Return the stress that is round-off [Pa]."""
+    return STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in design.strips)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """One number of every state of a path.
+
+    Attributes:
+        key: its name in files, with its unit. heading: in tables and pictures. unit: in SI.
+        meaning: what it is.
+        of: its values (S,) in a neutral answer, or in fields along the strips; None where they have none.
+        floor: of a design, the value that is round-off.
+        highest, digits: power of ten of the largest prefix, and significant digits, in tables.
+        standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
+        swept: name of its column in a sweep; "": as the key.
+        column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
+        chart: whether a picture of a path has a curve of it over the states.
+    """
+
+    key: str
+    heading: str
+    unit: str
+    meaning: str
+    of: Callable[[Any], Array | None]
+    floor: Callable[[Design], float]
+    highest: int = 0
+    digits: int = 7
+    standing: str = "end"
+    swept: str = ""
+    column: bool = True
+    mechanisms: bool = False
+    chart: bool = True
+
+    @property
+    def name_in_sweep(self) -> str:
+        """Name of its column in a sweep."""
+        return self.swept or self.key
+
+
+QUANTITIES = (
+    Quantity(
+        key="torque_Nm",
+        heading="torque",
+        unit="N m",
+        meaning="torque of the drive",
+        of=lambda path: path.torque,
+        floor=moment_floor,
+    ),
+    Quantity(
+        key="stiffness_Nm_per_rad",
+        heading="stiffness",
+        unit="N m/rad",
+        meaning="stiffness of the driven rotation at fixed loads",
+        of=lambda path: path.stiffness,
+        floor=moment_floor,
+        standing="",
+    ),
+    Quantity(
+        key="strain_energy_J",
+        heading="energy",
+        unit="J",
+        meaning="energy stored in all strips",
+        of=lambda path: path.strain_energy,
+        floor=energy_floor,
+        swept="energy_J",
+        chart=False,  # its parts are drawn
+    ),
+    Quantity(
+        key="gravity_energy_J",
+        heading="gravity",
+        unit="J",
+        meaning="energy of the weight against rest",
+        of=lambda path: path.gravity_energy,
+        floor=energy_floor,
+        standing="",
+        column=False,
+        mechanisms=True,
+        chart=False,
+    ),
+    Quantity(
+        key="work_J",
+        heading="work",
+        unit="J",
+        meaning="work of drives and loads since the first state",
+        of=lambda path: getattr(path, "work", None),
+        floor=energy_floor,
+        standing="",
+        column=False,
+        mechanisms=True,
+        chart=False,
+    ),
+    Quantity(
+        key="max_stress_Pa",
+        heading="stress",
+        unit="Pa",
+        meaning="largest extreme-fibre stress of all strips",
+        of=lambda path: path.max_stress,
+        floor=stress_floor,
+        highest=6,
+        digits=6,
+        standing="largest",
+        swept="stress_max_Pa",
+        chart=False,  # drawn with the yield strength
+    ),
+)
+
+
+def quantities_of(path: Any) -> Iterator[tuple[Quantity, Array]]:
+    """Yield the quantities that a path has, an answer or fields, with their values (S,)."""
+    for quantity in QUANTITIES:
+        values = quantity.of(path)
+        if values is not None:
+            yield quantity, np.asarray(values)
