@@ -46,8 +46,8 @@ def deliver(
     failure: str | None,
     frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
-    """Write `document` where `--json` says and `frame` where `--csv` does, else print `table`; return the
-    exit code.
+    """Print `table`, and write `document` where `--json` says and `frame` where `--csv` does; return the exit
+    code. What goes to the output stream goes there alone.
 
     Args:
         arguments: of the command.
@@ -58,12 +58,12 @@ def deliver(
         frame: makes the answer as a table of numbers, of a command that has `--csv`.
     """
     csv = getattr(arguments, "csv", None)
+    if STREAM not in (arguments.json, csv):
+        print("\n".join(table))
     if arguments.json is not None:
         _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
         _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
-    if arguments.json is None and csv is None:
-        print("\n".join(table))
     return 0 if failure is None else not_converged(failure)
 
 

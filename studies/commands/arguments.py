@@ -125,12 +125,12 @@ INTEGRATOR = Argument(
 
 JSON = Argument(
     "--json FILE|-",
-    "write the answer as JSON to FILE or the output stream (default: a table to read)",
+    "write the answer as JSON to FILE too, or to the output stream alone (default: a table to read)",
     _file_or_stream,
 )
 CSV = Argument(
     "--csv FILE|-",
-    "write a row a state as CSV to FILE or the output stream (default: a table to read)",
+    "write a row a state as CSV to FILE too, or to the output stream alone (default: a table to read)",
     _file_or_stream,
 )
 PLOT = Argument(

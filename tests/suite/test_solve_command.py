@@ -37,12 +37,15 @@ def test_settings_of_the_answer_are_those_asked_for(case, command, form):
 
 
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
-    """`--json FILE` writes the same object as `--json -`, time aside, says so and leaves no other file."""
+    """`--json FILE` writes the same object as `--json -`, time aside, says so below the table, and leaves no
+    other file."""
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")
     written = json.loads((tmp_path / "answer.json").read_text(encoding="utf-8"))
-    assert (outcome.code, outcome.out) == (0, f"{tmp_path / 'answer.json'}: the answer as JSON\n")
+    *table, said = outcome.out.splitlines()
+    assert (outcome.code, said) == (0, f"{tmp_path / 'answer.json'}: the answer as JSON")
+    assert any(line.lstrip().startswith("rotation") for line in table)
     assert streamed.keys() == written.keys()
     assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]

@@ -1,6 +1,7 @@
 """Progress and timing report what happened and stay out of the way."""
 
 import gc
+import sys
 
 import pytest
 
@@ -22,15 +23,18 @@ def test_timing_warms_up_and_counts_repeats():
 
 
 def test_bar_shows_long_work_on_the_error_stream_only(capsys, monkeypatch):
-    """Work that lasts is shown on the error stream, short work is not shown at all."""
+    """Work that lasts is shown on the error stream of a terminal, short work never, and none in a log."""
     with Bar("short") as bar:
         bar(1, 2)
         bar(2, 2)
     assert capsys.readouterr() == ("", "")
     monkeypatch.setattr(progress, "DELAY", 0.0)
-    with Bar("long") as bar:
-        bar(1, 2)
-        bar(2, 2)
+    for terminal in (False, True):
+        assert capsys.readouterr() == ("", "")
+        monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
+        with Bar("long") as bar:
+            bar(1, 2)
+            bar(2, 2)
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "long" in captured.err
