@@ -42,11 +42,11 @@ def _effects(results: Results) -> Table:
 LISTINGS["validity"] = VALIDITY.table(
     {
         "pivot": ("pivot", lambda name: name.replace("cross_axis", "benchmark").replace("_", " ")),
-        "to": ("rotation_deg", angle()),
+        "rotation": ("rotation_deg", angle()),
         "t/L": ("thickness_ratio", significant),
         "b/L": ("width_ratio", significant),
-        "clamped width, least": ("clamped_least", percent),
-        "most": ("clamped_most", percent),
+        "clamping, from": ("clamped_least", percent),
+        "to": ("clamped_most", percent),
         "anticlastic": ("flattened", percent),
         "supports": ("roots", percent),
         "shear": ("shear", percent),

@@ -8,16 +8,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Part, Tables
+from studies.engine import Part
 from studies.record.digits import Digits
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import GREEN, GREY, RED, YELLOW, Look
 from studies.stability import family
 
 ROTATIONS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260)
@@ -42,7 +39,7 @@ ROTATION = family.study(
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
 SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
-#: Where inextensible strips stand on the map.
+#: Slenderness that stands for inextensible strips.
 INEXTENSIBLE = 1e6
 #: Factor between neighbouring designs, between which no digits may be lost.
 NEIGHBOUR = 1.001
@@ -113,35 +110,10 @@ def _gap(one: Response, other: Response) -> float:
     return float(np.abs(one.torque - other.torque).max() / np.abs(other.torque).max())
 
 
-#: Looks of the outcomes.
-LOOKS = {
-    family.RIGHT: Look(label="right", colour=GREEN, line="", marker="o"),
-    family.REFUSED: Look(label="refused, or said to be unresolved", colour=YELLOW, line="", marker="D"),
-    family.WRONG: Look(label="wrong", colour=RED, line="", marker="X"),
-    family.BAD_INPUT: Look(label="cannot be asked", colour=GREY, line="", marker="s"),
-}
-
-
-def _map(tables: Tables) -> Figure:
-    """Draw one panel a model: a mark a case, by its outcome."""
-    rows = tables["outcomes"]
-    models = [model for model in family.ORDER if (rows["model"] == model).any()]
-    x = Axis("x", "slenderness L/t [1]", log=True)
-    y = Axis("y", "rotation [deg]", limits=(0.0, 145.0))
-    small = {"markersize": 3.5}
-    panels = [
-        Panel(x, y, (Curves(rows[rows["model"] == model], LOOKS, by="outcome", more=small),), title=model)
-        for model in models
-    ]
-    half = -(-len(panels) // 2)
-    return sheet(8.8, 5.2, [panels[:half], panels[half:]], legend=4)
-
-
 SLENDERNESS = family.study(
     Part(at=_slender_cases, ask=family.outcomes_of),
     # the approach of six control points to the inextensible strip
     Part(ask=lambda: {"limit": _limit_table(family.PATHS[family.SIX])}),
     digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
-    figures={"stability_slenderness": _map},
 )
 """Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
