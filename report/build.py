@@ -110,7 +110,7 @@ def gathered(results: Results) -> dict[str, Any]:
         kind: {name: entry.given(f"{kind} {name}", results) for name, entry in entries.items()}
         for kind, entries in quotable().items()
     }
-    content["figures"] = {name: digest for name, (_, digest) in results.figures().items()}
+    content["figures"] = results.figures()
     content["date"] = max(results.record(study)["date"] for study in STUDIES)
     content["stale"] = sorted(results.stale)
     content["fingerprint"] = _fingerprint(content)

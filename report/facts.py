@@ -1,13 +1,12 @@
-"""Facts, sentences that hold, and tables: what the text may quote, and the stored results it comes from.
+"""Facts, conditions and tables: what the text may quote, and the stored results it comes from.
 
-The modules of `report.content` enter what is quoted here by name: numbers in `FACTS`, conditions and
-tables as functions of the results under `holds` and `listing`.
+The modules of `report.content` enter them by name in `FACTS`, `HOLDS` and `LISTINGS`.
 """
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import pandas as pd
 
@@ -16,12 +15,8 @@ from studies.errors import BadInput
 from studies.record.store import Store
 from studies.registry import STUDIES
 
-#: One cell of a table: text, or text with a colour beside it.
-Cell = str | dict[str, str]
 #: A table of the report: its heading, then rows of cells, one for each part of the heading.
-Table = Iterable[Sequence[Cell]]
-#: Heading -> the column below it and how its values are written, or the cell made of a whole row.
-Shown = Mapping[str, tuple[str, Callable[[Any], Cell]] | Callable[[Any], Cell]]
+Table = Iterable[Sequence[str]]
 
 
 class ReportError(BadInput):
@@ -58,10 +53,10 @@ class Results:
         self._of(study)
         return self.store.record(study)
 
-    def figures(self) -> dict[str, tuple[str, str]]:
-        """Return study and hash of every vector figure by its name; none is stale."""
+    def figures(self) -> dict[str, str]:
+        """Return the hash of every vector figure by its name; none is stale."""
         return {
-            file.removesuffix(".svg"): (study, digest)
+            file.removesuffix(".svg"): digest
             for study in STUDIES
             for file, digest in self.record(study)["figures"].items()
             if file.endswith(".svg")
@@ -98,7 +93,7 @@ class Fact:
     Attributes:
         made: the value from all results; LookupError when a table does not have what it is made of.
         form: how the text gets it; ValueError when it cannot be written.
-        said: where it comes from, or what must be true, for messages.
+        said: where it comes from, for messages.
     """
 
     made: Callable[[Results], Any]
@@ -122,40 +117,10 @@ class Fact:
             raise ReportError(f"{name}: {error} ({self.said})") from None
 
 
-class _Register(dict[str, Fact]):
-    """Facts by name, each entered once."""
-
-    def __setitem__(self, name: str, fact: Fact) -> None:
-        if name in self:
-            raise ReportError(f"report.content: got {name} twice, expected one of a name")
-        super().__setitem__(name, fact)
-
-    def __ior__(self, given: Any) -> Self:  # type: ignore[misc, override]
-        for name, fact in given.items():
-            self[name] = fact
-        return self
-
-
 #: What the text may quote, by name: numbers, conditions, tables.
-FACTS, HOLDS, LISTINGS = _Register(), _Register(), _Register()
-
-
-def holds(name: str, *, timed: bool = False) -> Callable[[Callable[[Results], Any]], None]:
-    """Enter a condition: a function of the results whose docstring says what must be true.
-
-    `timed`: whether it rests on measured seconds. Its sentence is then replaced by what was not so in the run
-    that the tables are of, where others are no longer printed at all: a machine may be busy.
-    """
-
-    def enter(test: Callable[[Results], Any]) -> None:
-        words = " ".join((test.__doc__ or name).split())
-
-        def form(value: Any) -> dict[str, Any]:
-            return {"holds": bool(value), "words": words, "timed": timed}
-
-        HOLDS[name] = Fact(made=test, form=form, said=words)
-
-    return enter
+FACTS: dict[str, Fact] = {}
+HOLDS: dict[str, Fact] = {}
+LISTINGS: dict[str, Fact] = {}
 
 
 def table(given: Table) -> dict[str, Any]:
@@ -183,66 +148,65 @@ class Stored:
 
     def rows(self, results: Results, /, **equal: Any) -> pd.DataFrame:
         """Return the rows; LookupError when there are none."""
-        return where(results.table(self._study, self._table), **self._equal, **equal)
+        rows = results.table(self._study, self._table)
+        for name, value in (self._equal | equal).items():
+            rows = rows[_column(rows, name) == value]
+            if rows.empty:
+                raise LookupError(f"no row with {name} = {value}")
+        return rows
 
     def value(self, results: Results, name: str, /, **equal: Any) -> Any:
         """Return the value of a column in the one row that there is; LookupError when there are more."""
-        return _only(name, equal)(self.rows(results, **equal))
-
-    def fact(self, pick: Callable[[pd.DataFrame], Any], form: Form, /, **equal: Any) -> Fact:
-        """Return a fact that `pick` makes of the rows."""
-        said = f"{self._study}/{self._table}"
-        return Fact(made=lambda results: pick(self.rows(results, **equal)), form=form, said=said)
-
-    def at(self, name: str, form: Form, /, **equal: Any) -> Fact:
-        """Return the fact that is the value of a column in the one row that there is."""
-        return self.fact(_only(name, equal), form, **equal)
-
-    def table(self, shown: Shown, *, by: str | None = None) -> Fact:
-        """Return the table with a row for each of the rows, in the order of the column `by`."""
-
-        def made(results: Results) -> Table:
-            rows = self.rows(results)
-            return columns(rows.sort_values(by) if by else rows, shown)
-
-        return Fact(made=made, form=table, said="a table")
-
-    def largest(self, name: str, form: Form, /, **equal: Any) -> Fact:
-        """Return the fact that is the largest magnitude of a column."""
-        return self.fact(lambda rows: _column(rows, name).abs().max(), form, **equal)
-
-    def least(self, name: str, form: Form, /, **equal: Any) -> Fact:
-        """Return the fact that is the smallest magnitude of a column."""
-        return self.fact(lambda rows: _column(rows, name).abs().min(), form, **equal)
-
-
-def _only(name: str, equal: Mapping[str, Any]) -> Callable[[pd.DataFrame], Any]:
-    def pick(rows: pd.DataFrame) -> Any:
+        rows = self.rows(results, **equal)
         if len(rows) != 1:
             raise LookupError(f"{len(rows)} rows with {equal}, expected one")
         return _column(rows, name).iloc[0]
 
-    return pick
+    def at(self, name: str, form: Form, /, **equal: Any) -> Fact:
+        """Return the fact that is the value of a column in the one row that there is."""
+        return self._fact(lambda results: self.value(results, name, **equal), form)
 
+    def largest(self, name: str, form: Form, /, **equal: Any) -> Fact:
+        """Return the fact that is the largest magnitude of a column."""
+        return self._fact(lambda results: _column(self.rows(results, **equal), name).abs().max(), form)
 
-def columns(rows: pd.DataFrame, shown: Shown) -> Table:
-    """Return a table with a row for each of `rows`."""
-    yield list(shown)
-    for row in rows.to_dict("records"):
-        yield [made(row) if callable(made) else made[1](row[made[0]]) for made in shown.values()]
+    def table(self, shown: Mapping[str, tuple[str, Form]], *, by: str) -> Fact:
+        """Return the table with a row for each of the rows, in the order of the column `by`.
 
+        Args:
+            shown: heading -> the column below it, and how its values are written.
+            by: name of a column.
+        """
 
-def where(rows: pd.DataFrame, /, **equal: Any) -> pd.DataFrame:
-    """Return those of `rows` whose columns have the values `equal`.
+        def made(results: Results) -> Table:
+            yield list(shown)
+            for row in self.rows(results).sort_values(by).to_dict("records"):
+                yield [form(row[name]) for name, form in shown.values()]
 
-    Raises:
-        LookupError: no such column, or no such row.
-    """
-    for name, value in equal.items():
-        rows = rows[_column(rows, name) == value]
-        if rows.empty:
-            raise LookupError(f"no row with {name} = {value}")
-    return rows
+        return self._fact(made, table)
+
+    def found(self, claim: str, *formulations: str, holds: str = "yes") -> Fact:
+        """Return the condition that all findings on a claim are `holds`.
+
+        Args:
+            claim: how the claim begins.
+            formulations: the findings on these alone; on all without any.
+            holds: "yes" or "no".
+        """
+
+        def made(results: Results) -> bool:
+            rows = self.rows(results)
+            rows = rows[rows["claim"].str.startswith(claim)]
+            if formulations:
+                rows = rows[rows["formulation"].isin(formulations)]
+            if len(rows) < max(1, len(formulations)):
+                raise LookupError(f"{len(rows)} findings on {claim!r}")
+            return bool((rows["holds"] == holds).all())
+
+        return self._fact(made, bool)
+
+    def _fact(self, made: Callable[[Results], Any], form: Callable[[Any], Any]) -> Fact:
+        return Fact(made=made, form=form, said=f"{self._study}/{self._table}")
 
 
 def _column(rows: pd.DataFrame, name: str) -> Any:

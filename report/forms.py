@@ -33,11 +33,8 @@ def _ten(exponent: int) -> str:
 
 
 def power(value: Any) -> str:
-    """Return an error as mantissa and power of ten; one that is no small number, as it is."""
-    value = float(value)
-    if value == 0.0 or 1.0 <= abs(value) < 100.0:
-        return significant(value)
-    mantissa, _, exponent = f"{value:.1e}".partition("e")
+    """Return a small number as mantissa and power of ten."""
+    mantissa, _, exponent = f"{float(value):.1e}".partition("e")
     return f"{mantissa}{SPACE}×{SPACE}{_ten(int(exponent))}".replace("-", MINUS)
 
 
@@ -50,7 +47,9 @@ def decade(value: Any) -> str:
 
 
 def percent(value: Any) -> str:
-    """Return a ratio in percent: to two digits, to whole ones from a hundred on."""
+    """Return a ratio in percent with two digits, from a hundred on whole; below 0.01 % as a power of ten."""
+    if 0.0 < abs(float(value)) < 1e-4:
+        return power(value)
     share = 100.0 * float(value)
     return f"{significant(share, max(2, len(str(int(abs(share))))))}{SPACE}%"
 

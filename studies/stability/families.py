@@ -7,7 +7,6 @@ from itertools import chain, pairwise, product
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.metrics import observed_order
@@ -15,26 +14,19 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
-from studies.engine import Part, Row, Tables
+from studies.engine import Part, Row
 from studies.kinds import Array
 from studies.record.digits import Digits
-from studies.record.panels import Axis, Curves, Panel, sheet
-from studies.record.style import GREEN, GREY, RED, YELLOW, Look
 from studies.stability.family import Question, Try, Way, answers_of, of_path
 from studies.stability.verdict import (
-    BAD_INPUT,
     COLUMNS,
     DEFAULT,
     FE,
     LOCKING_FREE,
-    ORDER,
     PAPER,
     PATHS,
-    REFUSED,
-    RIGHT,
     SIX,
     VARIED,
-    WRONG,
     as_mechanism,
     study,
 )
@@ -56,7 +48,7 @@ ROTATION = study(Part(at=_rotated, ask=answers_of))
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
 SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
-#: Where inextensible strips stand on the map, and factor between neighbours that may lose no digits.
+#: Slenderness that stands for inextensible strips, and factor between neighbours that may lose no digits.
 INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 
 
@@ -112,34 +104,10 @@ def _limit() -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-#: Looks of the outcomes.
-LOOKS = {
-    RIGHT: Look(label="right", colour=GREEN, line="", marker="o"),
-    REFUSED: Look(label="refused, or said to be unresolved", colour=YELLOW, line="", marker="D"),
-    WRONG: Look(label="wrong", colour=RED, line="", marker="X"),
-    BAD_INPUT: Look(label="cannot be asked", colour=GREY, line="", marker="s"),
-}
-
-
-def _map(tables: Tables) -> Figure:
-    """Draw one panel a model: a mark a case, by its outcome."""
-    rows = tables["outcomes"]
-    x = Axis("x", "slenderness L/t [1]", log=True)
-    y = Axis("y", "rotation [deg]", limits=(0.0, 145.0))
-    panels = [
-        Panel(x, y, (Curves(mine, LOOKS, by="outcome", more={"markersize": 3.5}),), title=model)
-        for model in ORDER
-        if len(mine := rows[rows["model"] == model])
-    ]
-    half = -(-len(panels) // 2)
-    return sheet(8.8, 5.2, [panels[:half], panels[half:]], legend=4)
-
-
 SLENDERNESS = study(
     Part(at=_slender_cases, ask=answers_of),
     Part(ask=lambda: {"limit": _limit()}),
     digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
-    figures={"stability_slenderness": _map},
 )
 """Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
 

@@ -14,9 +14,16 @@ _NUMBER = r"\d+(?:\.\d+)?(?:\s*(?:–|,|and|to|a|c)\s*\d+)*"
 NAMES = rf"\b(?:Eqs?|Figs?|Sec|section|Table|body|Part)\s{_NUMBER}"
 #: Wholes that quote the paper, or are the definition of a measure.
 QUOTED = (
-    "than 1 %", "within 1 %", "paper's 1 %", "1/100 s", "25 pictures", "95 %", "1/4", "4-point", "19 degrees",
-    "19 coordinates", "m²", "m⁴",
-)  # fmt: skip
+    "1/100 s",
+    "25 pictures",
+    "95th percentile",
+    "1/4",
+    "4-point",
+    "19 degrees",
+    "19 coordinates",
+    "m²",
+    "m⁴",
+)
 
 
 def text(path) -> str:
@@ -31,7 +38,7 @@ def prose(source: str) -> str:
     source = re.sub(r"#equation\[[^\]]*\]", " ", source)
     source = re.sub(r"<[\w-]+>|@[\w-]+", " ", source)
     source = re.sub(r'#import "[^"]*"|#include "[^"]*"', " ", source)
-    source = re.sub(r'(?:fact|see|seetable|plot|listing|supported|either|family)\("[^"]*"', " ", source)
+    source = re.sub(r'(?:fact|see|seetable|plot|bars|listing|supported)\("[^"]*"', " ", source)
     source = re.sub(
         r'"\w+_\w+"|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"S1"|level: 2|len\(\) > 0',
         " ",
