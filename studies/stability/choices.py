@@ -10,6 +10,7 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Answer, Part
 from studies.stability import family
 
@@ -69,11 +70,8 @@ def _beside(strip: Strip, by: float) -> Strip:
 
 def _thicker(strip: Strip, factor: float) -> Strip:
     """Return the strip with its depth grown so that it bends `factor` times as hard."""
-    return replace(
-        strip,
-        area=strip.area * factor ** (1.0 / 3.0),
-        second_moment_of_area=strip.second_moment_of_area * factor,
-    )
+    thicker = of_moments(strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor)
+    return replace(strip, **thicker)
 
 
 GEOMETRY = family.study(

@@ -14,6 +14,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Part, Tables
 from studies.record.digits import Digits
 from studies.record.panels import Axis, Curves, Panel, sheet
@@ -73,7 +74,7 @@ def _slender(slenderness: float) -> Problem:
     """Return Table 1 with strips of that L/t and the same flexural rigidity: the more slender, the wider."""
     given = named_case()
     area = 12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2
-    return replace(given, area=area)
+    return replace(given, **of_moments(area, given.second_moment_of_area))
 
 
 def _inextensible(settings: Any) -> SplineSettings:
