@@ -14,6 +14,9 @@ function of w = x^4 = (c kappa)^2, and with f_1 = w f'(w) and f_2 = w^2 f''(w)
     M = D kappa (1 - nu^2 g f_M),            f_M = f + f_1,
     dM/dkappa = D (1 - nu^2 g f_K),          f_K = f + 5 f_1 + 2 f_2.
 
+The product of g and f is no plate theory: what holds a section flat twice is counted twice. Beside a shell
+between clamps it is up to 1.2 % too stiff, and g alone up to 4.5 % too soft (b/L to 1, c |kappa| to 33).
+
 All three are read off a table over x^2 = c |kappa|, to round-off and at one cost for any strip.
 
 Sources: D. G. Ashwell, J. Roy. Aeronaut. Soc. 54 (1950) 708-715; B. Audoly, S. Neukirch, J. Mech. Phys.

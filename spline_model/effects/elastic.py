@@ -39,7 +39,8 @@ class Curl:
 
     with g the share of the curl that clamps over the whole width leave (``spline_model.effects.plate``)
     and f the one that the curvature of a wide strip leaves, x^2 = (3 (1 - nu^2))^(1/2) b^2 kappa / t
-    (``spline_model.strip.laws.curl_law``). Each is 1 where its effect is not named.
+    (``spline_model.strip.laws.curl_law``). Each is 1 where its effect is not named. Their product counts near
+    a clamp twice what either holds: beside a shell it is up to 1.2 % too stiff, g alone up to 4.5 % too soft.
 
     Parameters: poisson_ratio nu; clamped: b/L, or 0; flattening: x^2 / kappa, or 0 [m].
     """

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from studies.cases.document import is_mechanism, parsed
+from studies.cases.effects import refuse_unknown_sides
 from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import FOLDER, Problem, read_problem
@@ -35,7 +36,9 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 def design_of(where: str, document: Mapping[str, Any], changes: str | None = None) -> Design:
     """Return the design of a parsed case file, a mechanism if it has [[strips]]; as of `read_design`."""
     read = read_mechanism if is_mechanism(document) else read_problem
-    return read(where, document, changes)
+    design: Design = read(where, document, changes)
+    refuse_unknown_sides(where, design.effects, design.strips)
+    return design
 
 
 def named_design(name: str) -> Design:

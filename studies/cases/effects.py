@@ -29,6 +29,9 @@ MOTION_ONLY = (
     "body_damping",
 )
 
+#: Effects of the third dimension: they know the sides of a section.
+OF_SIDES = ("clamped_width", "anticlastic", "root_compliance")
+
 #: How a scene is named.
 WORDS = "+NAME and -NAME, or names alone"
 
@@ -147,6 +150,17 @@ def _require_parameters(where: str, effects: Effects) -> None:
         for key in EFFECT_KEYS.get(name, ()):
             if not key.optional and key.attribute not in effects.tables.get(name, {}):
                 raise document.missing(where, key, key.section)
+
+
+def refuse_unknown_sides(where: str, effects: Effects, strips: Sequence[Any]) -> None:
+    """Raise CaseError that names the keys to give if an effect of the sides meets a strip without them."""
+    named = [name for name in effects.names if name in OF_SIDES]
+    for strip in strips if named else ():
+        if strip.width is None:
+            got = f"{where}: {strip.name}: got no sides for {' and '.join(named)}"
+            raise CaseError(
+                f"{got}, expected width_m and thickness_m in place of area_m2 and second_moment_m4"
+            )
 
 
 def _registered() -> Mapping[str, Any]:

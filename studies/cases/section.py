@@ -131,6 +131,16 @@ def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
     }
 
 
+def of_moments(area: float, second_moment_of_area: float) -> dict[str, Any]:
+    """Return a section of that A [m^2] and I [m^4], whose sides are not known, to replace another by."""
+    return {
+        "area": area,
+        "second_moment_of_area": second_moment_of_area,
+        "width": None,
+        "thickness": None,
+    }
+
+
 def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
     """Return width and thickness [m] of the rectangle with that A and I: sqrt(12 I / A) thick."""
     thickness = math.sqrt(12.0 * second_moment_of_area / area)

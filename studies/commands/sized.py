@@ -5,12 +5,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from spline_model.accuracy import DEFAULT
+from studies.cases.effects import OF_SIDES
 from studies.cases.problem import Problem
 from studies.design.evaluate import PLAIN
 from studies.design.numbers import NumbersTask
 from studies.design.optimise import Outcome, numbered
 from studies.design.task import Sizing, Task, variables_of
-from studies.effects.beyond import SECTIONS
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
 SHOWN = {
@@ -66,7 +66,7 @@ def question(task: Sizing) -> tuple[str, str]:
     """Return what is asked, in two lines."""
     names, rotation = task.start.effects.names, task.start.rotation
     loads = [name for name in names if name not in PLAIN]
-    taken = [name.replace("_", " ") for name in SECTIONS if name in names]
+    taken = [name.replace("_", " ") for name in OF_SIDES if name in names]
     degrees = (
         "" if rotation is None else f" over {'+-' * isinstance(task, Task)}{math.degrees(rotation):.4g} deg"
     )

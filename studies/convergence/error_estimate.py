@@ -22,6 +22,7 @@ from studies.answers.reference import sampled
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.record.digits import Digits
 from studies.record.style import BLUE, GREEN, ORANGE
@@ -82,8 +83,7 @@ def _drawn(
         depth = problem.length / math.exp(logarithm)
         yield replace(
             problem,
-            area=width * depth,
-            second_moment_of_area=width * depth**3 / 12.0,
+            **of_moments(width * depth, width * depth**3 / 12.0),
             crossing_ratio=float(crossing_ratio),
             inclination=float(inclination),
             rotation=float(rotation),

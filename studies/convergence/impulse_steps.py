@@ -12,6 +12,7 @@ from spline_model.sequential_impulse import solve_impulses, stability_limit
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.record.marks import Level, Slope
 from studies.record.panels import Axis, Curves, Panel, sheet
@@ -49,8 +50,7 @@ def _designs() -> dict[str, Problem]:
     given = named_case()
     polymer = replace(
         given,
-        area=8e-6,
-        second_moment_of_area=1e-2 * 8e-4**3 / 12.0,
+        **of_moments(8e-6, 1e-2 * 8e-4**3 / 12.0),
         youngs_modulus=2e9,
         density=1100.0,
         body_mass=0.05,

@@ -9,6 +9,7 @@ import numpy as np
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
+from studies.cases.effects import OF_SIDES
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.effects.scenes import Unanswered, reached, strayed
@@ -16,8 +17,6 @@ from studies.errors import BadInput
 
 Either = TypeVar("Either", bound=Problem | Mechanism)
 
-#: Effects of the third dimension, which both models know by their names.
-SECTIONS = ("clamped_width", "anticlastic", "root_compliance")
 #: What stands for all of them at once, and for shear.
 ALL, SHEAR = "all three", "shear"
 CHANGED = ("trajectory", "stiffness", "torque", "stress", "first_mode")
@@ -25,7 +24,7 @@ CHANGED = ("trajectory", "stiffness", "torque", "stress", "first_mode")
 CONTROL_POINTS, ELEMENTS = 10, 160
 
 
-def with_sections(design: Either, names: tuple[str, ...] = SECTIONS) -> Either:
+def with_sections(design: Either, names: tuple[str, ...] = OF_SIDES) -> Either:
     """Return a design with these effects beside its own, its sections as the rectangles of their A and I;
     roots are those of one block."""
     effects = design.effects
@@ -58,7 +57,7 @@ def prices(design: Design) -> list[dict[str, Any]]:
     spline = SplineSettings(control_points=CONTROL_POINTS)
     design = _sided(design)
     own = _answers(design, spline)
-    missing = tuple(name for name in SECTIONS if name not in design.effects.names)
+    missing = tuple(name for name in OF_SIDES if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
     stiff = FeSettings(elements=ELEMENTS)

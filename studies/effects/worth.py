@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_moments
 from studies.effects.audit import audit
 from studies.effects.scenes import CHANGES, SIZES
 from studies.engine import Answer, Claim, Part, Study, Tables, records
@@ -43,7 +44,7 @@ def _designs() -> dict[str, Problem]:
     return {
         "Table 1": given,
         "ten times more slender": replace(
-            given, area=given.area / 10.0, second_moment_of_area=given.second_moment_of_area / 1000.0
+            given, **of_moments(given.area / 10.0, given.second_moment_of_area / 1000.0)
         ),
         "body ten times heavier": _with_body(given, 10.0),
         "body ten times lighter": _with_body(given, 0.1),

@@ -14,6 +14,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Part, Row
 from studies.kinds import Array
 from studies.record.digits import Digits
@@ -68,7 +69,8 @@ def _slender_cases() -> Iterator[Question]:
 def _slender(slenderness: float) -> Problem:
     """Return Table 1 with strips of that L/t and the same flexural rigidity: the more slender, the wider."""
     given = named_case()
-    return replace(given, area=12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2)
+    area = 12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2
+    return replace(given, **of_moments(area, given.second_moment_of_area))
 
 
 def _inextensible(settings: Settings) -> Settings:
@@ -156,8 +158,8 @@ def _beside(strip: Strip, by: float) -> Strip:
 
 def _thicker(strip: Strip, factor: float) -> Strip:
     """Return the strip with its depth grown so that it bends `factor` times as hard."""
-    area, second = strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor
-    return replace(strip, area=area, second_moment_of_area=second)
+    thicker = of_moments(strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor)
+    return replace(strip, **thicker)
 
 
 GEOMETRY = study(Part(at=lambda: chain(_grid(), _others()), ask=answers_of))

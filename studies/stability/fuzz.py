@@ -12,6 +12,7 @@ from studies.answers.adapters import answer_release
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
+from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Tables
 from studies.errors import BadInput
 from studies.stability.verdict import DEFAULT, VARIED, Found, judged, study
@@ -69,8 +70,7 @@ class _Example:
             inclination=self.inclination,
             crossing_ratio=self.crossing_ratio,
             youngs_modulus=self.youngs_modulus,
-            area=2.0 * depth**2,
-            second_moment_of_area=2.0 * depth**4 / 12.0,
+            **of_moments(2.0 * depth**2, 2.0 * depth**4 / 12.0),
             body_mass=given.body_mass * (self.length / given.length) ** 3,
             body_moment_of_inertia=given.body_moment_of_inertia * (self.length / given.length) ** 5,
             rotation=self.targets[0],

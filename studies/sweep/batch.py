@@ -112,7 +112,8 @@ def _together(
 def _attributes(task: Task, columns: Mapping[str, list[Any]], count: int) -> Columns:
     """Return what the kernel and the ratios ask for as columns in SI, (count,) or (count, 2)."""
     slenderness = columns.get(plan.SLENDERNESS)
-    design = task.design({} if slenderness is None else {plan.SLENDERNESS: slenderness[0]})
+    shaping = (plan.SLENDERNESS, *plan.MOMENTS)
+    design = task.design({key: columns[key][0] for key in shaping if key in columns})
     assert isinstance(design, Problem)
     sides = () if design.width is None else SIDES
     names = (*PIVOT_PARAMETERS, *sides, "rotation", "section_depth", "yield_strength")

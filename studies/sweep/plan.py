@@ -11,7 +11,7 @@ from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
 from studies.cases.rules import Rule, not_negative, number, positive, text, whole
-from studies.cases.section import rectangle_of
+from studies.cases.section import of_sides, rectangle_of
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")
@@ -108,8 +108,9 @@ class Plan:
 SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
-#: What it takes the place of.
-SECTION = ("strip.area_m2", "strip.second_moment_m4", "strip.thickness_m", "strip.section_depth_m")
+#: Keys of a section without known sides, and what a slenderness takes the place of.
+MOMENTS = ("strip.area_m2", "strip.second_moment_m4", "strip.section_depth_m")
+SECTION = (*MOMENTS, "strip.thickness_m")
 #: Parts of a key that holds two numbers.
 PARTS = {"x": 0, "y": 1}
 #: The list of a scene's effects, as names with commas.
@@ -218,12 +219,22 @@ def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
     """Set the keys of one design in place, its list of effects first, a slenderness last; settings are not of
     the document."""
     for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
+        if key in MOMENTS:
+            to_moments(document["strip"])
         if key != SLENDERNESS and not is_setting(key):
             _put(document, key, value)
     if SLENDERNESS in values:
         strip = document["strip"]
         to_sides(strip)
         strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
+
+
+def to_moments(section: dict[str, Any]) -> None:
+    """Give a table of the document its section by area and second moment, in place of width and thickness."""
+    width, thickness = (key.name for key in keys.SIDES)
+    if width in section and thickness in section:
+        made = of_sides(section.pop(width), section.pop(thickness))
+        section |= {key.name: made[key.attribute] for key in keys.MOMENTS}
 
 
 def to_sides(section: dict[str, Any]) -> None:

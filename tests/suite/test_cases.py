@@ -8,18 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.cases.design import as_toml, document_of, named_design, read_design
+from studies.cases.design import as_toml, document_of, read_design
 from studies.cases.effects import Effects
 from studies.cases.keys import EFFECT_KEYS, EFFECTS, MATERIALS, OWN
 from studies.cases.mechanism import Mechanism
-from studies.cases.problem import FOLDER, Problem, named_case
+from studies.cases.problem import FOLDER, CaseError, Problem, named_case
 from studies.commands.case import MECHANISM, PIVOT
 
 DECLARED = [
     *(key for each in (PIVOT, MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
     *OWN,
 ]
-AREA, MOMENT = "area_m2 = 5e-5 ", "second_moment_m4 = 1.041e-10 "
+AREA, MOMENT = "width_m = 0.01000320153681966 ", "thickness_m = 0.0049983997439180475 "
 
 
 def test_every_key_says_what_it_is():
@@ -57,7 +57,12 @@ def test_sides_are_area_and_second_moment(case):
     assert found.second_moment_of_area == pytest.approx(0.01 * 0.004**3 / 12.0, rel=1e-15)
     given = found.pivot_parameters()
     assert (given["width"], given["thickness"]) == (0.01, 0.004)
-    assert "width" not in named_design("cross_axis_pivot").pivot_parameters()
+    moments = case((AREA, "area_m2 = 5e-5 "), (MOMENT, "second_moment_m4 = 1e-10 "))
+    assert "width" not in read_design(moments).pivot_parameters()
+    with pytest.raises(
+        CaseError, match="strip_1: got no sides for clamped_width and anticlastic, expected wid"
+    ):
+        read_design(moments, changes="+clamped_width,+anticlastic")
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -10,8 +10,8 @@ from studies.commands.columns import angle, fixed, plain, quantity, significant,
 #: A pivot 1 mm long of silicon strips 20 um by 50 um, written over Table 1.
 SMALL = (
     ("length_m = 0.08485281374238571", "length_m = 1e-3"),
-    ("area_m2 = 5e-5", "area_m2 = 1e-9"),
-    ("second_moment_m4 = 1.041e-10", "second_moment_m4 = 3.333e-20"),
+    ("width_m = 0.01000320153681966", "width_m = 5e-5"),
+    ("thickness_m = 0.0049983997439180475", "thickness_m = 2e-5"),
     ("mass_kg = 0.2", "mass_kg = 1e-7"),
     ("moment_of_inertia_kg_m2 = 0.002", "moment_of_inertia_kg_m2 = 1e-14"),
 )

@@ -10,6 +10,7 @@ from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
+from studies.cases.section import of_moments, of_sides
 from studies.sweep import batch, points
 from studies.sweep.plan import Plan
 from studies.sweep.sample import Drawer
@@ -34,8 +35,7 @@ def single(row, **settings):
         case,
         crossing_ratio=row["strip.crossing_ratio"],
         inclination=math.radians(row["strip.inclination_deg"]),
-        area=case.area / case.depth * depth,
-        second_moment_of_area=case.area / case.depth * depth**3 / 12.0,
+        **of_moments(case.area / case.depth * depth, case.area / case.depth * depth**3 / 12.0),
         rotation=math.pi / 4,
     )
     return answer_static(design, SplineSettings(**{"control_points": 6, **settings}))
@@ -169,13 +169,13 @@ def test_a_mechanism_is_swept_by_its_parts():
     asked = plan("""
         case = "four_bar_of_flexures"
         set.drive = { rotation_deg = 5, increments = 2 }
-        vary.strips.crank_coupler.second_moment_m4 = [2.25e-14, 4e-14]
+        vary.strips.crank_coupler.thickness_m = [3e-4, 4e-4]
         vary.bodies.coupler.centre_m.y = [0.1, 0.12]
     """)
     found = rows(asked)
     design = named_design("four_bar_of_flexures")
     strips = tuple(
-        replace(strip, second_moment_of_area=4e-14) if strip.name == "crank_coupler" else strip
+        replace(strip, thickness=4e-4, **of_sides(0.01, 4e-4)) if strip.name == "crank_coupler" else strip
         for strip in design.strips
     )
     turned = replace(design, strips=strips, rotation=math.radians(5), increments=2)
