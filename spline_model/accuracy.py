@@ -147,16 +147,16 @@ def wanted(accuracy: float | None, design: Design) -> float | None:
 
 
 def search(
-    design: Design,
+    grid: Discretisation,
     accuracy: float,
     attempt: Callable[[int, int], tuple[float, Found] | None],
 ) -> Search[Found]:
-    """Raise the control points, from those of the design on, until the estimate is below ``accuracy``.
+    """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy``.
 
     attempt: solves with two numbers of control points and returns the estimated error of the first, and its
     answer, or None where they do not have one.
     """
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=design.discretisation)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid)
     while not outcome.ended:
         tried = attempt(outcome.points, outcome.finer)
         outcome.judge(*((None,) if tried is None else tried))
@@ -205,7 +205,7 @@ def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: fl
     for basis, first in ((asked.basis, asked.control_points), ("bspline", FIRST_SPANS)):
         grid = replace(asked, basis=basis, control_points=first)
         attempt = partial(_attempt, design, trials, basis)
-        outcome = search(replace(design, discretisation=grid), accuracy, attempt)
+        outcome = search(grid, accuracy, attempt)
         if outcome.found is not None or asked.basis == "bspline" or asked.stretch == "consistent":
             break
     if outcome.found is None:

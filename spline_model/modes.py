@@ -123,7 +123,7 @@ def _accurate_modes(
             return None
         return _apart(coarse.frequency, fine.frequency), coarse
 
-    outcome = search(pivot.design, accuracy, attempt)
+    outcome = search(pivot.design.discretisation, accuracy, attempt)
     if outcome.found is None:
         return solve(pivot.with_control_points(outcome.trials[-1]).in_motion())
     if strict and outcome.message:

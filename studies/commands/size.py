@@ -26,11 +26,12 @@ import argparse
 import math
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from studies.answers.reference import NoReference
+from spline_model.accuracy import NOTHING
+from studies.answers.adapters import answer_static
+from studies.answers.settings import SplineSettings
 from studies.cases.design import as_toml, document_of
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
@@ -38,8 +39,8 @@ from studies.cases.problem import Problem
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
-from studies.commands.sized import as_document, question, readable
-from studies.design.evaluate import STRESS, Answers, PathEnds, answers, sides_of
+from studies.commands.sized import Optimum, as_document, question, readable
+from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search
 from studies.design.task import OBJECTIVES, Sizing, Task
@@ -47,6 +48,8 @@ from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
 
+#: Part by which bounds may miss one another.
+ROUND_OFF = 1e-9
 #: Variable -> option, its unit in SI, what the option must be below, and its bounds where it is not given.
 BOUNDS: dict[str, tuple[str, float, float, str]] = {
     "length": ("length_mm", 1e-3, math.inf, "in mm, default 0.5 to 1 of the case's"),
@@ -113,21 +116,43 @@ def main(arguments: argparse.Namespace) -> int:
     content = parsed(arguments.case)
     mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)
-    given = _numbers(content, arguments) if mechanism else _start(arguments)
+    asked: Sizing = _numbers(content, arguments) if mechanism else _pivot(arguments)
     try:
-        task: Sizing = _task(given, arguments) if isinstance(given, Problem) else _asked(given, arguments)
+        task, own = _limited(asked, arguments)
         with Bar("size") as bar:
             outcomes = search(task, task.starts(arguments.starts), bar)
-        found = best(outcomes)
-        checked = None if found is None else task.by_elements(found.problem)
-    except (PathEnds, NoReference) as error:
+        best_one = best(outcomes)
+        found = None if best_one is None else Optimum.of(task, best_one)
+    except PathEnds as error:
         return not_converged(error)
     failure = _failure(outcomes) if found is None else None
-    document = as_document(task, outcomes, found, checked)
+    document = as_document(task, own, outcomes, found)
     if arguments.out is not None and found is not None:
-        write_whole(arguments.out, _file(task, found, Path(arguments.case).stem).encode())
+        write_whole(arguments.out, _file(task, found.outcome, Path(arguments.case).stem).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
-    return deliver(arguments, document, readable(task, outcomes, found, checked), failure=failure)
+    return deliver(arguments, document, readable(task, own, outcomes, found), failure=failure)
+
+
+def _pivot(arguments: argparse.Namespace) -> Task:
+    """Return what is asked of a pivot, within the bounds that are given."""
+    start, bounds = _start(arguments), {}
+    for name, (attribute, unit, _, _) in BOUNDS.items():
+        given = getattr(arguments, attribute)
+        if given is not None:
+            bounds[name] = given[0] * unit, given[1] * unit
+    limits = {"stiffness": math.nan, "allowable_stress": math.inf, "largest_aspect": arguments.aspect}
+    task = Task.usual(start, bounds, objective=arguments.objective, **limits)
+    longest, thinnest, narrowest = (
+        1e3 * task.bounds[name][end] for name, end in (("length", 1), ("thickness", 0), ("width", 0))
+    )
+    for option, least, most, why in (
+        ("--thickness-mm", thinnest, longest / task.least_slenderness, "the case's thickness to the length"),
+        ("--width-mm", narrowest, longest * task.largest_aspect, "--aspect times the length"),
+    ):
+        if least > most * (1.0 + ROUND_OFF):
+            expected = f"no more than {most:.4g}, {why}, which is at most {longest:.4g} mm"
+            raise BadInput(f"{option}: got at least {least:.4g}, expected {expected}")
+    return task
 
 
 def _start(arguments: argparse.Namespace) -> Problem:
@@ -187,16 +212,29 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
     return task
 
 
-def _asked(task: NumbersTask, arguments: argparse.Namespace) -> NumbersTask:
-    """Return the question with what is held and allowed: as given, or the case's own."""
-    case: Answers = task.case()
+def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accurate]:
+    """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
+    try:
+        own = task.accurate()
+    except PathEnds:
+        told = answer_static(task.start, SplineSettings())
+        reason = (
+            told.message or f"it takes more than {CONTROL_POINTS} control points, from which sizing goes on"
+        )
+        raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}") from None
+    if own.quantities[task.objective] <= NOTHING:
+        expected = "what is not zero already: its stiffness does not vary"
+        raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
     known = [each for each in strengths if each is not None]
     strength = min(known) if len(known) == len(strengths) else None
-    allowed = _allowable(strength, arguments, case.largest(STRESS))
-    return replace(task, stiffness=case.stiffness if wanted is None else wanted, allowable_stress=allowed)
+    limits = {
+        "stiffness": own.answers.stiffness if wanted is None else wanted,
+        "allowable_stress": _allowable(strength, arguments, own.answers.largest(STRESS)),
+    }
+    return task.changed(**limits, control_points=own.control_points), own
 
 
 def _file(task: Sizing, found: Outcome, name: str) -> str:
@@ -222,25 +260,7 @@ def _allowable(strength: float | None, arguments: argparse.Namespace, own: float
     return own if strength is None else strength / (factor or 1.0)
 
 
-def _task(start: Problem, arguments: argparse.Namespace) -> Task:
-    case, bounds = answers(start), {}
-    for name, (attribute, unit, _, _) in BOUNDS.items():
-        given = getattr(arguments, attribute)
-        if given is not None:
-            bounds[name] = given[0] * unit, given[1] * unit
-    return Task.usual(
-        start,
-        bounds,
-        objective=arguments.objective,
-        stiffness=case.stiffness if arguments.stiffness is None else arguments.stiffness,
-        allowable_stress=_allowable(start.yield_strength, arguments, case.largest(STRESS)),
-        largest_aspect=arguments.aspect,
-    )
-
-
 def _failure(outcomes: list[Outcome]) -> str:
     """Return why there is no optimum, from the start that came nearest."""
-    if not outcomes:
-        return "the path of no start reaches the end of the range"
-    nearest = min(outcomes, key=lambda each: each.violation)
-    return f"no optimum from {len(outcomes)} starts: {nearest.message}"
+    nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
+    return f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {outcomes[nearest].message}"

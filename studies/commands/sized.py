@@ -1,15 +1,23 @@
 """The answer of `size`: what is asked in words, the optimum as JSON, and the table to read."""
 
 import math
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+import numpy as np
 
 from spline_model.accuracy import DEFAULT
+from studies.answers.adapters import answer_static
+from studies.answers.reference import NoReference
+from studies.answers.response import Response
+from studies.answers.settings import SplineSettings
+from studies.answers.validity import validity
 from studies.cases.effects import OF_SIDES
 from studies.cases.problem import Problem
-from studies.design.evaluate import PLAIN
+from studies.design.evaluate import PLAIN, Accurate
 from studies.design.numbers import NumbersTask
-from studies.design.optimise import Outcome, numbered
+from studies.design.optimise import SAME, Outcome, numbered, settled
 from studies.design.task import Sizing, Task, variables_of
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
@@ -23,29 +31,54 @@ SHOWN = {
 DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
 
 
-Quantities = dict[str, float]
+Quantities = Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Optimum:
+    """The best design: where the search ended, what it answers to the accuracy, as `solve` does, and by the
+    finite elements, or why they have no answer."""
+
+    outcome: Outcome
+    answers: Accurate
+    path: Response
+    elements: Quantities
+    no_elements: str = ""
+
+    @classmethod
+    def of(cls, task: Sizing, found: Outcome) -> Self:
+        """Return an optimum with all that is said of it."""
+        found, answers = settled(task, found)
+        path, reason = answer_static(found.problem, SplineSettings()), ""
+        try:
+            elements: Quantities = task.by_elements(found.problem)
+        except NoReference as error:
+            elements, reason = dict.fromkeys(answers.quantities, math.nan), str(error)
+        return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
 
 
 def as_document(
-    task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
+    task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None
 ) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command."""
+    """Return the answer as the JSON object of the command; own: the case's answers."""
     optimum = None
-    if found is not None and checked is not None:
+    if found is not None:
         optimum = {
-            **_dimensions(task, found),
-            **_section(found.problem),
-            "spline": _named(task.quantities(found.answers)),
-            "estimated_error": _named(task.errors(task.values(found.at), found.answers)),
-            "finite_elements": _named(checked),
-            "active": [{"constraint": each.name, "price": each.price} for each in found.active],
+            **_dimensions(task, found.outcome),
+            **_section(found.outcome.problem),
+            "spline": _named(found.answers.quantities),
+            "estimated_error": _named(found.answers.errors),
+            "control_points": found.answers.control_points,
+            "finite_elements": _named(found.elements),
+            "validity": asdict(validity(found.path)),
+            "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
         }
     return {
         "objective": task.objective,
         SHOWN[task.held][0]: task.stiffness,
         "allowable_stress_Pa": task.allowable_stress,
         "bounds": {name: list(task.bounds[name]) for name in task.variables},
-        "case": _named(task.quantities(task.case())),
+        "case": _named(own.quantities),
         "optimum": optimum,
         "starts": [
             {
@@ -54,7 +87,7 @@ def as_document(
                 "violation": each.violation,
                 "kkt_residual": each.residual,
                 "paths_solved": each.solved,
-                "message": each.message,
+                "message": _ended(number, each),
                 **_dimensions(task, each),
             }
             for number, each in zip(numbered(outcomes), outcomes, strict=True)
@@ -67,10 +100,8 @@ def question(task: Sizing) -> tuple[str, str]:
     names, rotation = task.start.effects.names, task.start.rotation
     loads = [name for name in names if name not in PLAIN]
     taken = [name.replace("_", " ") for name in OF_SIDES if name in names]
-    degrees = (
-        "" if rotation is None else f" over {'+-' * isinstance(task, Task)}{math.degrees(rotation):.4g} deg"
-    )
-    wanted = f"{task.stiffness:.6g} N m/rad"
+    degrees = "" if rotation is None else f" over {_range(task, math.degrees(rotation))} deg"
+    wanted = f"{task.stiffness:.6g} N m/rad{', which is negative,' * (task.stiffness < 0.0)}"
     if task.held == "travel":
         wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
     return (
@@ -79,6 +110,11 @@ def question(task: Sizing) -> tuple[str, str]:
         + (f" with {', '.join(taken)}" if taken else ""),
         f"at {wanted} and at most {task.allowable_stress / 1e6:.6g} MPa",
     )
+
+
+def _range(task: Sizing, degrees: float) -> str:
+    """Return the range in words: of a pivot to both sides, of a mechanism to the one it turns to."""
+    return f"+-{abs(degrees):.4g}" if isinstance(task, Task) else f"{degrees:.4g}"
 
 
 def _named(measured: Quantities) -> dict[str, float]:
@@ -100,41 +136,75 @@ def _section(design: Any) -> dict[str, float]:
     return {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
 
 
-def readable(
-    task: Sizing, outcomes: list[Outcome], found: Outcome | None, checked: Quantities | None
-) -> Iterator[str]:
+def readable(task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    case = task.quantities(task.case())
     yield from question(task)
-    if found is not None and checked is not None:
-        yield from _comparison(task, case, found, checked)
+    if found is not None:
+        yield from _comparison(task, own.quantities, found)
+        yield from _remarks(found)
+        yield from _dimensioned(task, found.outcome)
     yield ""
     yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(task)}"
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
-        share = each.objective / case[task.objective]
+        share = each.objective / own.quantities[task.objective]
         line = (
             f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(task, task.values(each.at))}"
         )
-        yield f"{line}  {each.message}".rstrip()
+        yield f"{line}  {_ended(number, each)}".replace(" nan ", " -   ")
 
 
-def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) -> Iterator[str]:
-    spline = task.quantities(found.answers)
+def _ended(number: int, outcome: Outcome) -> str:
+    """Return where a start led, in words."""
+    return outcome.message or ("the least" if number == 1 else "an optimum, not the least")
+
+
+def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]:
+    """Yield what case and optimum answer, and how sure that is."""
+    spline, errors = found.answers.quantities, found.answers.errors
     yield ""
     yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
     for key, (_, label, factor) in SHOWN.items():
         if key in case:
-            yield f"{label:<28}{factor * case[key]:12.5g}{factor * spline[key]:12.5g}{factor * fe[key]:12.5g}"
-    yield f"{case[task.objective] / spline[task.objective]:.4g} times less than the case's"
-    errors = task.errors(task.values(found.at), found.answers)
+            columns = (factor * each[key] for each in (case, spline, found.elements))
+            told = (f"{value:12.5g}" if math.isfinite(value) else f"{'-':>12}" for value in columns)
+            yield f"{label:<28}{''.join(told)}"
+    if found.no_elements:
+        yield f"the finite elements have no answer: {found.no_elements}"
+    yield _gain(case[task.objective] / spline[task.objective])
     told = (
         f"{name} {error:.1e}" if math.isfinite(error) else f"{name} not estimated"
         for name, error in errors.items()
     )
-    yield f"estimated error of the splines, sized: {', '.join(told)}"
+    points = found.answers.control_points
+    yield f"estimated error of the splines, sized, {points} control points: {', '.join(told)}"
     missed = [name for name, error in errors.items() if error > DEFAULT]
     if missed:
         yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
+
+
+def _gain(times: float) -> str:
+    """Return in words how much less the objective is, which the case has so many times."""
+    if abs(times - 1.0) < SAME:
+        return "as much as the case's, which is an optimum already"
+    if times > 1.0:
+        return f"{times:.4g} times less than the case's"
+    return f"{1.0 / times:.4g} times the case's, which does not meet what is asked"
+
+
+def _remarks(found: Optimum) -> Iterator[str]:
+    """Yield what is to be said of the optimum, as `solve` does of its answer, and where it snaps."""
+    path = found.path
+    yield from (f"beyond the model: {each}" for each in validity(path).outside)
+    if path.message:
+        yield path.message
+    least = float(np.fmin.reduce(path.stiffness))
+    if least < 0.0:
+        where = math.degrees(path.rotation[int(np.nanargmin(path.stiffness))])
+        yield f"the stiffness is negative at {where:.4g} deg, {least:.4g} N m/rad: there it snaps unless held"
+
+
+def _dimensioned(task: Sizing, found: Outcome) -> Iterator[str]:
+    """Yield the dimensions of case and optimum, and what holds this back."""
     yield ""
     if isinstance(task, NumbersTask):
         yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))
@@ -142,8 +212,8 @@ def _comparison(task: Sizing, case: Quantities, found: Outcome, fe: Quantities) 
     yield f"{'case':<10}{_line(task, task.own)}"
     yield f"{'sized':<10}{_line(task, task.values(found.at))}"
     yield ""
-    active = (f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
-    yield f"held back by, with prices: {', '.join(active)}"
+    active = ", ".join(f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
+    yield f"held back by, with prices: {active or 'nothing'}"
     spans = zip(task.variables, task.span, strict=True)
     held = [_said(task, name) for name, span in spans if span == 0.0]
     if held:

@@ -97,6 +97,7 @@ class NumbersTask(Sizing):
     objective: str = STRESS
     stiffness: float = math.nan
     allowable_stress: float = math.inf
+    control_points: int = CONTROL_POINTS
 
     @cached_property
     def start(self) -> Mechanism:
@@ -134,11 +135,11 @@ class NumbersTask(Sizing):
         """Return the mechanism with these values (N,)."""
         return read_mechanism(self.where, self.content(values))
 
-    def answers(self, values: Array, control_points: int = CONTROL_POINTS) -> Answers:
-        """Solve the mechanism with these values, with exact gradients by its numbers; errors as of
-        `evaluate.answers`."""
+    def answers(self, values: Array, control_points: int | None = None) -> Answers:
+        """Solve the mechanism with these values, with exact gradients by its numbers; as of `Sizing`."""
         names, chain = self._chain(values)
-        return answers(self.problem(values), control_points, parameters=names, chain=chain)
+        points = control_points or self.control_points
+        return answers(self.problem(values), points, parameters=names, chain=chain)
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name: what is held, and the objectives."""
@@ -179,7 +180,10 @@ class NumbersTask(Sizing):
         for number in self.numbers:
             alone = replace(self, numbers=(number,))
             for value in (number.low, number.high):
-                other = alone.problem(np.array([value]))
+                try:
+                    other = alone.problem(np.array([value]))
+                except BadInput as error:
+                    raise BadInput(f"--free: {number.name} at its bound of {value:g}: {error}") from None
                 if _rest(other) != given:
                     expected = "a number of sections, moduli, ends of straight strips or centres"
                     raise BadInput(f"--free: got {number.name}, expected {expected}")

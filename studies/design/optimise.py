@@ -4,6 +4,7 @@ Both with exact gradients. Far outside the constraints the minimisation goes ast
 would hang on round-off.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +12,8 @@ import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import CENTRE_SHIFT, Answers
+from studies.design.evaluate import CENTRE_SHIFT, Accurate, Answers
+from studies.design.missed import missed
 from studies.design.programme import Active, Programme
 from studies.design.task import Sizing
 from studies.kinds import Array, Progress
@@ -32,6 +34,8 @@ LONGEST, SHORTEST = 0.25, 1e-6
 KEPT = 0.1
 #: Stiffness over the wanted one below which no logarithm tells more.
 SOFTEST = 1e-2
+#: Times that a start without an answer is moved half of the way to the design to compare with.
+MOST_MOVES = 4
 #: Weight of a step's length beside the violations that it leaves.
 LENGTH = 1e-3
 #: Residual of the Karush-Kuhn-Tucker conditions below which a point is an optimum, relative to the gradient.
@@ -47,7 +51,7 @@ class Outcome:
     Attributes:
         at: scaled variables (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
-        problem: the design there; answers: its own.
+        problem: the design there; answers: its own, None where its path does not reach the end.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
         solved: designs that were solved.
@@ -57,7 +61,7 @@ class Outcome:
     converged: bool
     message: str
     problem: Any
-    answers: Answers
+    answers: Any
     objective: float
     violation: float
     residual: float
@@ -65,20 +69,21 @@ class Outcome:
     solved: int
 
 
-def optimise(task: Sizing, start: Array) -> Outcome | None:
-    """Minimise from a scaled start (N,); None where the start itself has no answer.
+def optimise(task: Sizing, start: Array) -> Outcome:
+    """Minimise from a scaled start (N,), or from nearer the design to compare with if it has no answer.
 
     An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature.
     """
-    programme = Programme.of(task)
-    if programme.answers(start) is None:
-        return None
-    outcome, at = None, feasible(programme, start)
-    for _ in range(MOST_RUNS):
-        outcome = _run(programme, at)
-        if outcome is None or outcome.converged or outcome.violation > FEASIBLE:
+    programme, own = Programme.of(task), task.starts(1)[0]
+    moves = (own + 0.5**k * (start - own) for k in range(MOST_MOVES + 1))
+    begin = next((at for at in moves if programme.answers(at) is not None), None)
+    if begin is None:
+        return _unsolved(programme, start)
+    outcome = _run(programme, feasible(programme, begin))
+    for _ in range(MOST_RUNS - 1):
+        if outcome.converged or outcome.violation > FEASIBLE:
             break
-        at = outcome.at[:-1]
+        outcome = _run(programme, outcome.at[:-1])
     return outcome
 
 
@@ -140,11 +145,11 @@ def _towards(excess: Array, jacobian: Array, low: Array, high: Array) -> Array:
     return step
 
 
-def _run(programme: Programme, at: Array) -> Outcome | None:
-    """Run the optimiser once from ``at``."""
+def _run(programme: Programme, at: Array) -> Outcome:
+    """Run the optimiser once from ``at``, which has an answer; of a run that ends outside the constraints, or
+    where there is no answer, its better end."""
     begin = programme.answers(at)
-    if begin is None:
-        return None
+    assert begin is not None, "it has an answer"
     found = minimize(
         lambda x: (x[-1], np.eye(len(x))[-1]),
         np.append(at, _t(programme, begin)),
@@ -157,13 +162,29 @@ def _run(programme: Programme, at: Array) -> Outcome | None:
         ],
         options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
     )
-    return _outcome(programme, found.x, str(found.message))
+    end = _outcome(programme, found.x, programme.answers(found.x), str(found.message))
+    if end.violation <= FEASIBLE:
+        return end
+    return min((_outcome(programme, at, begin, str(found.message)), end), key=lambda each: each.violation)
 
 
 def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
-    """Optimise from scaled starts (K, N); those without an answer are left out."""
-    found = [optimise(task, start) for start in watched(list(begin), progress)]
-    return [each for each in found if each is not None]
+    """Optimise from scaled starts (K, N)."""
+    return [optimise(task, start) for start in watched(list(begin), progress)]
+
+
+def settled(task: Sizing, found: Outcome) -> tuple[Outcome, Accurate]:
+    """Return an optimum with the control points that its own answers take, found again with them if these are
+    more than it was found with, and what it answers."""
+    while True:
+        answers = task.accurate(task.values(found.at))
+        if answers.control_points <= task.control_points:
+            return found, answers
+        task = task.changed(control_points=answers.control_points)
+        again = optimise(task, found.at[:-1])
+        if not again.converged:
+            return found, answers
+        found = again
 
 
 def best(outcomes: list[Outcome]) -> Outcome | None:
@@ -213,19 +234,21 @@ def _t(programme: Programme, found: Answers) -> float:
     return float(ratio**2 if name == CENTRE_SHIFT else ratio)
 
 
-def _outcome(programme: Programme, at: Array, message: str) -> Outcome | None:
+def _outcome(programme: Programme, at: Array, found: Answers | None, message: str) -> Outcome:
     task = programme.task
-    found = programme.answers(at)
     if found is None:
-        return None
+        return _unsolved(programme, at[: len(task.span)])
     at = np.append(at[: len(task.span)], _t(programme, found))
     violation = float(np.abs(_violated(programme.excesses(at)[0])).max())
     active, residual = programme.conditions(at)
     converged = violation <= FEASIBLE and residual <= STATIONARY
+    reason = f"not stationary (residual {residual:.1e}): {message}"
+    if violation > FEASIBLE:
+        reason = f"no design here meets the constraints: {missed(task, task.values(at), found)}"
     return Outcome(
         at=at,
         converged=converged,
-        message="" if converged else _reason(message, violation, residual),
+        message="" if converged else reason,
         problem=task.problem(task.values(at)),
         answers=found,
         objective=found.largest(task.objective),
@@ -236,7 +259,18 @@ def _outcome(programme: Programme, at: Array, message: str) -> Outcome | None:
     )
 
 
-def _reason(message: str, violation: float, residual: float) -> str:
-    if violation > FEASIBLE:
-        return f"no design here meets the constraints (worst by {100.0 * violation:.3g} %)"
-    return f"not stationary (residual {residual:.1e}): {message}"
+def _unsolved(programme: Programme, at: Array) -> Outcome:
+    """Return what is known of a design (N,) whose path ends early."""
+    task = programme.task
+    return Outcome(
+        at=np.append(at, math.nan),
+        converged=False,
+        message=f"no answer over the range: {programme.ended}",
+        problem=task.problem(task.values(at)),
+        answers=None,
+        objective=math.nan,
+        violation=math.inf,
+        residual=math.nan,
+        active=(),
+        solved=programme.solved,
+    )

@@ -43,12 +43,13 @@ class Active:
 class Programme:
     """The programme of a task; `scale` holds the start's largest value of every objective.
 
-    Counts designs that were solved; keeps the last design's answer.
+    Counts designs that were solved; keeps the last design's answer, and why the last path `ended` early.
     """
 
     task: Sizing
     scale: dict[str, float]
     solved: int = 0
+    ended: str = ""
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     @classmethod
@@ -64,8 +65,8 @@ class Programme:
             self.solved += 1
             try:
                 found = self.task.answers(self.task.values(y))
-            except PathEnds:
-                found = None
+            except PathEnds as error:
+                found, self.ended = None, str(error)
             self._last = (key, found)
         return self._last[1]
 

@@ -3,22 +3,24 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from scipy.stats import qmc
 
-from spline_model.confirmed import MORE
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_sides
 from studies.design import evaluate
 from studies.design.evaluate import (
     CENTRE_SHIFT,
+    CONTROL_POINTS,
     STATIONS,
     STRESS,
     VARIABLES,
     VARIATION,
+    Accurate,
     Answers,
+    accurate,
     held_states,
     sides_of,
 )
@@ -42,6 +44,7 @@ class Sizing:
         objective: what is to be least, one of `objectives`.
         stiffness: wanted: of the body as it begins to turn, under the loads [N m / rad], or its travel [m].
         allowable_stress: of the extreme fibres, at the states of `held_states` [Pa].
+        control_points: of the strips while designs are sought.
         own: variables of the start (N,).
         columns: of the variables in a table: heading, factor to the unit it shows them in, and format.
     """
@@ -51,6 +54,7 @@ class Sizing:
     objective: str
     stiffness: float
     allowable_stress: float
+    control_points: int
     #: Properties of one kind, fields of the other.
     own: Any
     objectives: Any
@@ -106,22 +110,25 @@ class Sizing:
         relative ones of their limits by name: none unless a kind of design has some."""
         return np.zeros(0), np.zeros((0, len(values))), {}
 
-    def answers(self, values: Array, control_points: int = evaluate.CONTROL_POINTS) -> Answers:
-        """Return what the design with these variables (N,) answers; errors as of `evaluate.answers`."""
-        return evaluate.answers(self.problem(values), control_points)
+    def changed(self, **fields: Any) -> Self:
+        """Return the question with other values of some of its fields."""
+        return replace(self, **fields)  # type: ignore[type-var]
 
-    def errors(self, values: Array, found: Answers) -> dict[str, float]:
-        """Return relative errors of what is found, by what more control points change; NaN: not estimated."""
-        mine = self.quantities(found)
-        try:
-            finer = self.quantities(self.answers(values, evaluate.CONTROL_POINTS + MORE))
-        except evaluate.PathEnds:
-            return dict.fromkeys(mine, math.nan)
-        return {name: abs(mine[name] - value) / abs(value) for name, value in finer.items() if value}
+    def answers(self, values: Array, control_points: int | None = None) -> Answers:
+        """Return what the design with these variables (N,) answers, with the task's control points unless
+        some are given; errors as of `evaluate.answers`."""
+        return evaluate.answers(self.problem(values), control_points or self.control_points)
 
-    def case(self) -> Answers:
+    def case(self, control_points: int | None = None) -> Answers:
         """Return what the start answers."""
-        return self.answers(self.own)
+        return self.answers(self.own, control_points)
+
+    def accurate(self, values: Array | None = None) -> Accurate:
+        """Return what the design with these variables (N,) answers, or the start, with as many control points
+        as it takes."""
+        if values is None:
+            return accurate(self.case, self.quantities)
+        return accurate(lambda points: self.answers(values, points), self.quantities)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,6 +149,7 @@ class Task(Sizing):
     bounds: Mapping[str, tuple[float, float]]
     least_slenderness: float
     largest_aspect: float
+    control_points: int = CONTROL_POINTS
 
     objectives = tuple(OBJECTIVES)
     columns = (
@@ -195,9 +203,9 @@ class Task(Sizing):
         """Return the design with these variables (5,) [m, rad, 1, m, m]."""
         return varied(self.start, variables)
 
-    def case(self) -> Answers:
+    def case(self, control_points: int | None = None) -> Answers:
         """Return what the start answers."""
-        return evaluate.answers(self.start)
+        return evaluate.answers(self.start, control_points or self.control_points)
 
     def quantities(self, found: Answers) -> dict[str, float]:
         """Return what the splines say of a design, by name."""

@@ -10,14 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import legendre
 
+from spline_model.accuracy import FIRST
 from spline_model.basis import bezier
 from spline_model.pivot import Pivot, cross_axis_pivot
+from spline_model.solution import Status
+from spline_model.statics import solve_statics
 from studies.kinds import Array
 
-#: Control points a strip: 5e-4 of the torque and 12 micrometres at 90 degrees, below what a camera tells.
-CONTROL_POINTS = 6
 #: In EI/L^2: strips that a hand compresses fold their control points at the smaller default.
 SLIDE_STIFFNESS = 1000.0
+#: Rotation up to which a design is known [rad], and at how many places; increments of the path to there by
+#: which control points are chosen: 11 ms, 32 ms at most of 60 designs.
+REACH, PLACES, INCREMENTS = 1.8, 25, 4
+#: Load in EI/L^2 above which they are chosen without it: a path that loses its stability takes seconds.
+HEAVY = 10.0
 #: Places along a strip where its shape and stress are given, as fractions of its length.
 STATIONS = np.linspace(0.0, 1.0, 25)
 
@@ -43,8 +49,9 @@ def scene(
     return (*EFFECTS, *parameters), parameters
 
 
-def build(values: Mapping[str, float], *, loaded: bool = False) -> Pivot:
-    """Return the pivot of the parameters, in SI units, and what acts on it but for its load."""
+def build(values: Mapping[str, float], control_points: int | None = None, *, loaded: bool = False) -> Pivot:
+    """Return the pivot of the parameters, in SI units, and what acts on it but for its load; without a number
+    its control points are left open."""
     effects, parameters = scene(values, loaded=loaded)
     given: dict[str, Any] = {name: values[name] for name in GIVEN}
     return cross_axis_pivot(
@@ -52,20 +59,31 @@ def build(values: Mapping[str, float], *, loaded: bool = False) -> Pivot:
         poisson_ratio=POISSON_RATIO,
         effects=effects,
         parameters=parameters,
-        control_points=CONTROL_POINTS,
+        control_points=control_points,
         slide_stiffness=SLIDE_STIFFNESS,
     )
 
 
+def chosen(values: Mapping[str, float]) -> tuple[int, str]:
+    """Return how many control points a strip of a design takes, on the path by a moment alone to `REACH`, and
+    what is to be said of their error; empty if it is below that of all answers."""
+    heavy = abs(values["load"]) > HEAVY * scales(values)["force"]
+    pivot = build(values, loaded=not heavy)
+    path = solve_statics(pivot, rotation=REACH, increments=INCREMENTS, raise_on_failure=False)
+    if path.status is not Status.CONVERGED or path.basis != "bezier":
+        return FIRST, f"not estimated: {path.message}"
+    return path.control_points, path.resolution or "estimated without the load" * heavy
+
+
 @cache
-def _tables() -> tuple[list[Array], Array, Array]:
+def _tables(control_points: int) -> tuple[list[Array], Array, Array]:
     """Tables of a strip's shape and its derivatives at the stations, of its slope at Gauss points, and from
     the stretch there to the axial modes' at the stations."""
-    basis = bezier(CONTROL_POINTS)
-    u, weight = legendre.leggauss(CONTROL_POINTS + 3)
-    modes = legendre.legvander(u, CONTROL_POINTS - 3)
-    project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(CONTROL_POINTS - 2) + 1)
-    spread = legendre.legvander(2.0 * STATIONS - 1.0, CONTROL_POINTS - 3) @ project.T
+    basis = bezier(control_points)
+    u, weight = legendre.leggauss(control_points + 3)
+    modes = legendre.legvander(u, control_points - 3)
+    project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(control_points - 2) + 1)
+    spread = legendre.legvander(2.0 * STATIONS - 1.0, control_points - 3) @ project.T
     shapes = [basis.evaluate(STATIONS, order) for order in range(3)]
     return shapes, basis.evaluate((u + 1.0) / 2.0, 1), spread
 
@@ -77,17 +95,13 @@ def read(values: Mapping[str, float], points: Array) -> tuple[Array, Array]:
     Exact for the discretised strip: material curvature times E h / 2, and the stretch projected on the axial
     modes times E; leaves out what the clamps' fillets add.
     """
-    shapes, slope, spread = _tables()
+    shapes, slope, spread = _tables(points.shape[1])
     shape, tangent, bend = (table @ points for table in shapes)
     cross = tangent[..., 0] * bend[..., 1] - tangent[..., 1] * bend[..., 0]
     curvature = cross / np.einsum("spi,spi->sp", tangent, tangent) / values["length"]
     stretch = np.linalg.norm(slope @ points, axis=-1) / values["length"] - 1.0
     axial = stretch @ spread.T
     return shape, values["youngs_modulus"] * (np.abs(axial) + np.abs(curvature) * values["thickness"] / 2.0)
-
-
-#: Rotation up to which it is known [rad], and at how many places.
-REACH, PLACES = 1.8, 25
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

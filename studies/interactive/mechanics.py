@@ -12,7 +12,7 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
 from spline_model.pivot import BODY, STRIPS
-from studies.interactive.design import PLACES, REACH, Curve, build, read, scales
+from studies.interactive.design import PLACES, REACH, Curve, build, chosen, read, scales
 from studies.interactive.motion import Motion, Pull, motion
 from studies.interactive.presets import STEP
 from studies.kinds import Array
@@ -64,15 +64,17 @@ class Mechanics:
         values: all parameters in SI units, as `presets.checked` returns them.
 
     Attributes:
+        control_points: of a strip; doubt: what is to be said of the error that they leave, empty if nothing.
         begun: energy [J] of strips, body and load at the release, or where the solver was changed.
     """
 
     def __init__(self, values: Mapping[str, float]) -> None:
         self.values = dict(values)
-        self.pivot = build(values)
+        self.control_points, self.doubt = chosen(values)
+        self.pivot = build(values, self.control_points)
         self.step = STEP * values["time_scale"]
         self._held = HeldPivot(self.pivot)
-        self._acting = build(values, loaded=True)
+        self._acting = build(values, self.control_points, loaded=True)
         self._system = compile_scene(self._acting.released())
         self._load = np.array([0.0, -values["load"], 0.0])
         self._motion: Motion | None = None

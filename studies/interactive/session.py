@@ -52,6 +52,8 @@ class Session(Bench):
         action(event, time)
         self.time = time
         self.readings.take(self.mechanics, None if self.spread is None else self.ways @ self.spread)
+        if self.mechanics.doubt:
+            self._warn("coarse", self.mechanics.doubt)
         if not self.mechanics.resolved:
             self._warn("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
         if self.mechanics.moving and not self.paused and self.clock.pace < SLOWED:

@@ -43,8 +43,10 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     found: dict[str, Any] = {name: np.full(count, np.nan) for name in task.quantities}
     status, reason = [CONVERGED] * count, [""] * count
     alone = np.ones(count, dtype=bool)
-    for rows, quantities in _together(task, columns, count) if task.batch else ():
+    for rows, quantities, told in _together(task, columns, count) if task.batch else ():
         alone[rows] = False
+        for row in rows.tolist():
+            reason[row] = told
         for name, values in quantities.items():
             found[name][rows] = values
     for row in np.flatnonzero(alone).tolist():
@@ -89,8 +91,8 @@ def takes(task: Task) -> bool:
 
 def _together(
     task: Task, columns: Mapping[str, list[Any]], count: int
-) -> Iterator[tuple[NDArray[np.int64], Columns]]:
-    """Yield rows of designs whose compiled paths are sure, and their quantities.
+) -> Iterator[tuple[NDArray[np.int64], Columns, str]]:
+    """Yield rows of designs whose compiled paths are sure, their quantities and the reason of them all.
 
     Both sides of a plain pivot are mirror images (its strips are alike and only the couple acts, wherever the
     body's centre lies), so that one is enough.
@@ -106,7 +108,8 @@ def _together(
         increments = values.get(INCREMENTS, task.case["drive"]["increments"])
         settings = task.settings_of(values)
         sure, found = _paths(task, settings, increments, {name: each[rows] for name, each in given.items()})
-        yield rows[sure], {name: column[sure] for name, column in found.items()}
+        told = points.NOT_ESTIMATED if "control_points" in settings.keywords() else ""
+        yield rows[sure], {name: column[sure] for name, column in found.items()}, told
 
 
 def _attributes(task: Task, columns: Mapping[str, list[Any]], count: int) -> Columns:

@@ -30,6 +30,8 @@ CONVERGED, NOT_CONVERGED = "converged", "not_converged"
 REFUSED, FAILED = "refused", "failed"
 #: Columns beside keys and quantities.
 POINT, STATUS, REASON = "point", "status", "reason"
+#: Reason of a static row whose error nothing estimates: of elements, and of a given number of control points.
+NOT_ESTIMATED = "error not estimated"
 
 
 class _Quantity(NamedTuple):
@@ -226,7 +228,9 @@ def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tu
     answers = [Response.of(side, result) for side, result in zip(asked, found, strict=True)]
     remarks = (each for answer in answers for each in (answer.message, answer.resolution) if each)
     paths = list(map(_paths_of, answers))
-    return CONVERGED, "; ".join(dict.fromkeys(remarks)), paths[0] if len(paths) == 1 else _joined(*paths)
+    path = paths[0] if len(paths) == 1 else _joined(*paths)
+    unknown = (NOT_ESTIMATED,) * bool(np.isnan(path.error[0]))
+    return CONVERGED, "; ".join(dict.fromkeys((*remarks, *unknown))), path
 
 
 def _paths_of(answer: Response) -> Paths:

@@ -49,7 +49,8 @@ def test_no_design_meets_the_constraints(capsys):
     """A stress that nothing meets ends with code 3, the starts, and how far they missed."""
     assert main(["size", CASE, *QUICK, "--max-stress-MPa", "1"]) == 3
     out, err = capsys.readouterr()
-    assert "no optimum from 1 starts: no design here meets the constraints (worst by" in err
+    assert "no optimum from 1 starts; nearest, start 0: no design here meets the constraints: " in err
+    assert " below the wanted 505.5 N m/rad" in err and " the allowable 1 MPa" in err
     assert "times less" not in out
 
 

@@ -10,7 +10,7 @@ from spline_model import cross_axis_pivot, solve_statics
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, total, turned
-from tests.table_one import SIX, TABLE_ONE
+from tests.table_one import TABLE_ONE
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -25,7 +25,7 @@ def test_state_is_plain_finite_numbers(preset):
 def apart(quantity, degrees=40):
     """Relative difference of what the preset of Table 1 shows at a rotation to the path of the solver."""
     state = turned(session("table-1"), 20, degrees)
-    path = solve_statics(cross_axis_pivot(**SIX), rotation=math.radians(degrees))
+    path = solve_statics(cross_axis_pivot(**TABLE_ONE), rotation=math.radians(degrees))
     assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-6
     half = math.sqrt(3 * TABLE_ONE["second_moment_of_area"] / TABLE_ONE["area"])
     bending = np.abs(path.bending_moment[-1]) * half / TABLE_ONE["second_moment_of_area"]

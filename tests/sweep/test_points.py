@@ -221,7 +221,7 @@ def test_a_fault_at_one_design_is_told_in_its_row(monkeypatch):
     monkeypatch.setattr(points, "static_answer", faulty)
     found = rows(Plan(**{**vars(asked), "task": task}))
     assert list(found["status"]).count("failed") == 4
-    assert set(found["reason"]) == {"", "ZeroDivisionError: seen by nobody"}
+    assert set(found["reason"]) == {"error not estimated", "ZeroDivisionError: seen by nobody"}
 
 
 def test_what_the_kernel_does_not_take_goes_one_by_one():
