@@ -5,9 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_reference import BodyDesign as FeBody
-from fe_reference import StripDesign as FeStrip
-from fe_reference import compliant_mechanism as fe_mechanism
+import fe_reference
 from fe_reference import solve_statics as solve_elements
 from spline_model import cross_axis_pivot, solve_statics
 from studies.answers.settings import FeSettings, SplineSettings
@@ -15,8 +13,8 @@ from studies.published.arcs import LIMIT, arc_of
 from studies.published.case import published
 from tests.fe.cases import extrapolated, observed_order
 from tests.fe.cases import pivot as fe_pivot
+from tests.frames import opposed
 from tests.gates import hold
-from tests.spline.frames import opposed
 from tests.table_one import TABLE_ONE
 
 pytestmark = pytest.mark.slow
@@ -82,28 +80,11 @@ def buckling_deg(answer):
     return math.degrees(point.rotation)
 
 
-def opposed_elements(elements, offset=0.01, half=0.05):
-    """Return the body on two opposed strips as finite elements."""
-    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    section = {name: TABLE_ONE[name] for name in names}
-    ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
-    strips = [
-        FeStrip(name=f"strip_{i}", start=a, end=b, tip="body", **section) for i, (a, b) in enumerate(ends)
-    ]
-    return fe_mechanism(
-        strips=strips,
-        bodies=[FeBody(name="body", centre=(0.0, 0.0))],
-        effects=("bending", "stretching"),
-        elements=elements,
-    )
-
-
 def test_buckling_of_a_driven_body_agrees():
     """Requirement: strips that a driven body pushes together buckle at the same rotation in both models."""
     path = {"rotation": -0.05, "increments": 10}
-    reference = float(
-        extrapolated([buckling_deg(solve_elements(opposed_elements(n), **path)) for n in (10, 20, 40)])
-    )
+    meshes = [opposed(fe_reference, elements=n) for n in (10, 20, 40)]
+    reference = float(extrapolated([buckling_deg(solve_elements(mesh, **path)) for mesh in meshes]))
 
     def error(control_points=10):
         found = solve_statics(opposed(control_points=control_points), **path)

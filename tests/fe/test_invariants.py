@@ -155,27 +155,3 @@ def test_path_does_not_depend_on_the_increments() -> None:
         return float(max(np.abs(gap).max() for gap in gaps))
 
     hold("fe_increment_independence", error)
-
-
-DESIGNS = {
-    "crossing_0.2": {"crossing_ratio": 0.2},
-    "crossing_0.8": {"crossing_ratio": 0.8},
-    "inclination_30": {"inclination": np.pi / 6.0, "crossing_ratio": 0.3},
-    "inclination_60": {"inclination": np.pi / 3.0, "crossing_ratio": 0.7},
-    "ten_times_thinner": {"area": 5e-6, "second_moment_of_area": 1.041e-13},
-    "centre_off_the_plate": {"centre_offset": (0.02, 0.05)},
-}
-
-
-@pytest.mark.parametrize("name", DESIGNS)
-def test_other_designs(name: str) -> None:
-    """Other designs are solved in the twenty increments without a halving, as accurately as the paper's."""
-    design = DESIGNS[name]
-
-    def error(elements: int = 20) -> float:
-        meshes = (elements, 2 * elements)
-        coarse, fine = (solve_statics(pivot(**design, elements=n), rotation=QUARTER) for n in meshes)
-        assert coarse.counters["halvings"] == 0
-        return float(np.abs(coarse.torque - fine.torque).max() / fine.torque.max())
-
-    hold("fe_other_designs", error)

@@ -9,9 +9,7 @@ from fe_reference import ELEMENTS, solve_loads, solve_mechanism, solve_statics
 from studies.published.case import published
 from tests.fe.cases import (
     EI,
-    LENGTH,
     QUICK_ELEMENTS,
-    cantilever,
     extrapolated,
     pivot,
     rotated,
@@ -119,21 +117,6 @@ def test_four_bar_of_flexures() -> None:
         return float(max(abs(moved / exact - 1.0), abs(turned - 1.0)))
 
     hold("fe_four_bar", error)
-
-
-def test_tip_force_is_a_force_on_a_body_without_size() -> None:
-    """A force at a free tip does what the same force does on a massless body at the tip."""
-
-    def error(scale: float = 1.0) -> float:
-        force = (-3.0 * EI / LENGTH**2, 2.0 * EI / LENGTH**2)
-        tip = {"tip_force": {"strip": "strip", "force": tuple(scale * part for part in force)}}
-        one = solve_mechanism(free_cantilever(length=LENGTH, parameters=tip))
-        other = solve_loads(cantilever(elements=20), force=force)
-        gap = float(np.abs(one.shape - other.shape).max() / LENGTH)
-        # the same operations in the same order leave nothing: one unit in the last place stands for it
-        return max(gap, float(np.finfo(float).eps))
-
-    hold("fe_tip_force", error)
 
 
 def test_named_loads_are_those_of_load_control() -> None:

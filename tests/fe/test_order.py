@@ -55,17 +55,3 @@ def test_level_of_twenty_elements(element: str, quantity: str) -> None:
         )
 
     hold(f"fe_level_{quantity}_{element}", error)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("quantity", QUANTITIES)
-def test_reissner_without_shear_is_the_corotational_pivot(quantity: str) -> None:
-    """With a very large shear rigidity both elements extrapolate to the same path."""
-    pick = QUANTITIES[quantity]
-
-    def error(shear_factor: float = 1e3) -> float:
-        meshes = (20, 40, 80)
-        rigid = extrapolated([pick(path("reissner", n, shear_factor)) for n in meshes])
-        return deviation(rigid, extrapolated([pick(path("corotational", n)) for n in meshes]))
-
-    hold(f"fe_shear_limit_{quantity}", error)

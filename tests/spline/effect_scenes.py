@@ -1,6 +1,6 @@
 """Table 1 with any of the registered effects, and a free strip where one needs it."""
 
-from spline_model import DEFAULT_EFFECTS, REGISTRY, StripDesign, compliant_mechanism, cross_axis_pivot
+from spline_model import DEFAULT_EFFECTS, StripDesign, compliant_mechanism, cross_axis_pivot
 from tests.table_one import SIX
 
 #: Parameters with which each registered effect is tried; a new effect without its own is tried without.
@@ -15,9 +15,6 @@ PARAMETERS = {
     "driven_displacement": {"displacement": (-0.0148, -0.0011)},  # near the free path at 0.5 rad
     "pre_strain": {"curvature": 1.0, "strain": 1e-4},
 }
-NOT_HERE = ("inextensible", "root_compliance")
-EXTRA = [name for name in REGISTRY if name not in (*DEFAULT_EFFECTS, *NOT_HERE)]
-"""Effects that a motion can have beside the default ones."""
 
 
 def scene_with(*names, parameters=None, **settings):

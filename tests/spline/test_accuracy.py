@@ -8,7 +8,6 @@ import pytest
 
 from spline_model import (
     ConvergenceError,
-    InvalidParameter,
     Status,
     cross_axis_pivot,
     solve_mechanism,
@@ -170,11 +169,3 @@ def test_accuracy_out_of_reach_is_an_error_with_the_best_answer():
     assert best.rotation[-1] == QUARTER
     kept = solve_statics(pivot(), rotation=QUARTER, accuracy=1e-17, raise_on_failure=False)
     assert (kept.status, kept.message) == (Status.NOT_CONVERGED, str(caught.value))
-
-
-@pytest.mark.parametrize("choice", [{"axial_modes": 3}, {"gauss_points": 9}], ids=str)
-def test_choices_that_contradict_are_refused(choice):
-    """Requirement: axial modes and quadrature go with the control points that are chosen."""
-    (name,) = choice
-    with pytest.raises(InvalidParameter, match=f"{name}: got {choice[name]}, expected none beside accuracy"):
-        solve_statics(pivot(control_points=6, **choice), rotation=QUARTER, accuracy=1e-3)

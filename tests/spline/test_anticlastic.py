@@ -6,10 +6,8 @@ import pytest
 from spline_model import (
     DEFAULT_EFFECTS,
     BodyDesign,
-    InvalidParameter,
     StripDesign,
     compliant_mechanism,
-    impulse_solver,
     solve_many,
     solve_mechanism,
     solve_motion,
@@ -91,12 +89,3 @@ def test_motion_keeps_its_energy(step):
     run = solve_motion(pivot, start=np.pi / 2, duration=5 * step, step=step, check=False)
     energy = run.kinetic_energy + run.strain_energy
     assert np.abs(energy / energy[0] - 1.0).max() < 1e-10
-
-
-def test_what_does_not_know_the_curl_says_so():
-    """The spatial measure and sequential impulses refuse anticlastic bending by its name."""
-    anticlastic = (*DEFAULT_EFFECTS, "anticlastic")
-    with pytest.raises(InvalidParameter, match="measure: got 'spatial', expected material for anticlastic"):
-        thin_pivot(0.01, effects=anticlastic, measure="spatial", stretch="consistent")
-    with pytest.raises(InvalidParameter, match="effects: got 'anticlastic'"):
-        impulse_solver(thin_pivot(0.01, effects=anticlastic))

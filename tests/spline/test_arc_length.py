@@ -5,7 +5,7 @@ import pytest
 
 from spline_model import ConvergenceError, solve_loads, solve_mechanism
 from tests import gates
-from tests.spline.frames import lees_frame, toggle
+from tests.frames import lees_frame, toggle
 
 
 def test_a_load_that_turns_round_keeps_its_sign():

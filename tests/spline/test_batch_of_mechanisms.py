@@ -3,14 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from spline_model import InvalidParameter, Mechanism, compliant_mechanism, solve_many, solve_mechanism
+from spline_model import Mechanism, compliant_mechanism, solve_many, solve_mechanism
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
-from tests.table_one import TABLE_ONE
 
 VALUES = {
     "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
@@ -64,22 +62,3 @@ def batch_error(thickness: float = 1.0) -> float:
 def test_a_batch_of_mechanisms_equals_single_solves():
     """Requirement: a mechanism over its numbers, weight included, gives the answers of single solves."""
     gates.hold("spline_batch_mechanism", batch_error)
-
-
-def test_numbers_of_a_batch_are_refused_by_name():
-    """Requirement: an unknown number of a mechanism, and one out of its range, are named in one line."""
-    given = linkage()
-    with pytest.raises(InvalidParameter, match=r"values: got 'crank\.length', expected one of area"):
-        solve_many(given, {"crank.length": 1.0}, body="crank", rotation=0.1)
-    with pytest.raises(
-        InvalidParameter, match=r"design 1: thickness: got -1\.0, expected a finite number > 0"
-    ):
-        solve_many(given, {"thickness": [1e-4, -1.0]}, body="crank", rotation=0.1)
-
-
-def test_what_a_batch_does_not_read_is_refused():
-    """Requirement: a discretisation beside a mechanism, and values beside columns, are named, not ignored."""
-    with pytest.raises(InvalidParameter, match="none beside a mechanism, which has its own"):
-        solve_many(linkage(), VALUES, body="crank", rotation=0.1, control_points=12)
-    with pytest.raises(InvalidParameter, match="none beside columns of pivots"):
-        solve_many(TABLE_ONE, {"thickness": [1e-3]}, rotation=0.1)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model import InvalidParameter, cross_axis_pivot, solve_many, solve_statics
+from spline_model import cross_axis_pivot, solve_many, solve_statics
 from tests.table_one import TABLE_ONE
 
 ACCURACY = 1e-4
@@ -38,12 +38,6 @@ def test_one_and_many_have_one_order_of_loads(order):
     assert many.torque[0] == pytest.approx(torque, abs=1e-8 * np.abs(torque).max())
     assert many.control_points[0] == one.control_points
     assert (abs(torque[0]) > 1.0) == (order != "together")  # it holds the loaded body
-
-
-def test_an_order_that_no_batch_knows_is_refused():
-    """Requirement: a misspelt order is named, with those that there are."""
-    with pytest.raises(InvalidParameter, match="one of loads first, together"):
-        solve_many(loaded(), {}, rotation=0.1, order="first")
 
 
 def test_every_design_of_a_batch_gets_the_points_that_it_takes():

@@ -7,16 +7,12 @@ import pytest
 from mpmath import ellipk, mp
 
 from spline_model import (
-    InvalidParameter,
     cross_axis_pivot,
-    natural_frequencies,
-    solve_impulses,
     solve_mechanism,
-    solve_release,
     solve_statics,
 )
 from tests import gates
-from tests.spline.frames import column, opposed
+from tests.frames import column, opposed
 from tests.table_one import SIX, TABLE_ONE
 
 EULER = math.pi**2 / 4
@@ -24,26 +20,9 @@ TWO_LIMITS = ("limit point", "limit point")
 ANGLES = (20, 40, 60, 80, 100, 120, 140, 160, 176)
 
 
-def euler_load(*, slenderness=100.0, control_points=8):
-    """Relative error of the located critical load of an extensible column.
-
-    Its critical load P is (1 - P / EA) P = pi^2 EI / (4 L^2): shortened before it buckles.
-    """
-    exact = slenderness**2 / 2 * (1 - math.sqrt(1 - 4 * EULER / slenderness**2))
-    made = column(load=4.0, slenderness=slenderness, control_points=control_points)
-    (point,) = solve_mechanism(made, increments=7).critical_points
-    assert (point.kind, point.inertia) == ("bifurcation", 1)
-    return abs(4.0 * point.load_factor / exact - 1)
-
-
-def test_a_column_buckles_at_its_critical_load():
-    """Requirement: the bifurcation of a compressed column is found where theory has it."""
-    gates.hold("spline_euler_load", euler_load)
-
-
 def test_the_mode_of_a_column_is_a_quarter_wave():
     """Requirement: the critical mode moves the tip across and not along, and turns it as a sine does."""
-    answer = solve_mechanism(column(load=4.0, slenderness=1e4), increments=7)
+    answer = solve_mechanism(column(load=4.0, slenderness=1e4, control_points=6), increments=7)
     (point,) = answer.critical_points
     along, across, turn = point.mode[answer.system.layout.body("tip")]
     assert abs(along) < 1e-6
@@ -108,15 +87,9 @@ def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, k
     assert fast.message == slow.message
 
 
-def test_printed_forces_are_of_statics_alone():
-    """Requirement: forces without a potential have a path without inertia; what needs energy refuses them."""
+def test_printed_forces_have_no_inertia():
+    """Requirement: forces without a potential have a path without inertia and critical points."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="printed", stretch="consistent")
     answer = solve_statics(pivot, rotation=0.5, increments=5)
     assert (answer.inertia == -1).all()
     assert answer.critical_points == ()
-    line = "measure: got 'printed', expected material or spatial"
-    for ask in (natural_frequencies, solve_release, solve_impulses):
-        with pytest.raises(InvalidParameter, match=f"{line} for motions and modes"):
-            ask(pivot)
-    with pytest.raises(InvalidParameter, match=f"{line}: printed forces are of static paths alone"):
-        answer.body_stiffness()

@@ -1,37 +1,16 @@
 """Effects that a scene does not name cost nothing: no row, no kernel, no degree of freedom."""
 
 import numpy as np
-import pytest
 
 from spline_model import (
-    DEFAULT_EFFECTS,
-    REGISTRY,
     compliant_mechanism,
     cross_axis_pivot,
     natural_frequencies,
-    solve_mechanism,
     solve_motion,
 )
 from tests import gates
 from tests.spline.effect_scenes import scene_with
 from tests.table_one import SIX
-
-
-def test_an_unnamed_effect_is_never_asked(monkeypatch):
-    """Requirement: with the makers of all other effects poisoned, a scene runs on its own."""
-
-    def poison(*_, **__):
-        raise RuntimeError("this effect is not in the scene")
-
-    for name in REGISTRY:
-        if name not in DEFAULT_EFFECTS:
-            monkeypatch.setitem(REGISTRY, name, poison)
-    solution = solve_mechanism(scene_with(), rotation=1.0, increments=4)
-    run = solve_motion(scene_with(), start=0.5, duration=2e-4)
-    assert solution.effects == ("bending", "stretching")  # statics asks for no inertia
-    assert run.effects == DEFAULT_EFFECTS
-    with pytest.raises(RuntimeError, match="not in the scene"):
-        scene_with("gravity")
 
 
 def test_massless_strips_leave_the_body_alone_dynamic():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from spline_model import ConvergenceError, InvalidParameter, cross_axis_pivot, solve_mechanism, solve_statics
+from spline_model import ConvergenceError, cross_axis_pivot, solve_mechanism, solve_statics
 from tests.table_one import TABLE_ONE
 
 MOMENT = 100.0  # N m
@@ -22,7 +22,6 @@ LOADS = {
         "pre_strain": {"curvature": 1.0, "strain": 1e-4},
     },
 }
-DEGREES = (-30.0, -1.0, 1.0, 30.0)
 
 
 def loaded(parameters, **settings):
@@ -37,17 +36,6 @@ def turned(parameters, degrees, **how):
     """The loaded pivot's path to a rotation [deg], its loads growing with it."""
     how = {"increments": 5, "order": "together"} | how
     return solve_statics(loaded(parameters), rotation=math.radians(degrees), **how)
-
-
-@pytest.mark.parametrize("degrees", DEGREES)
-def test_a_dead_moment_shifts_the_torque_and_has_no_stiffness(degrees):
-    """Requirement: a dead moment is subtracted from the torque and leaves the stiffness as it is."""
-    bare, under = turned({}, degrees), turned(LOADS["moment"], degrees)
-    share = np.linspace(0.0, 1.0, 6)
-    scale = np.abs(bare.torque).max() + MOMENT
-    assert np.allclose(under.load_factor, share)
-    assert np.abs(under.torque - (bare.torque - share * MOMENT)).max() < 1e-9 * scale
-    assert np.abs(under.stiffness / bare.stiffness - 1).max() < 1e-9
 
 
 @pytest.mark.parametrize("name", ["moment", "force"])
@@ -89,14 +77,12 @@ def test_a_held_pivot_is_loaded():
 
 
 def test_a_held_pivot_without_a_load_is_at_rest():
-    """Requirement: with rotation 0 and nothing that acts all states are at rest; a tiny one is refused."""
+    """Requirement: with rotation 0 and nothing that acts all states are at rest."""
     made = loaded({})
     for answer in (solve_statics(made, rotation=0.0, increments=2), solve_mechanism(made, rotation=0.0)):
         assert np.abs(answer.torque).max() < 1e-9
         assert np.abs(answer.stiffness / answer.stiffness[0] - 1.0).max() < 1e-9
         assert np.abs(answer.states - answer.states[0]).max() < 1e-9
-    with pytest.raises(InvalidParameter, match="rotation: got 1e-13, expected 0, or legs of 1e-12"):
-        solve_statics(made, rotation=1e-13)
 
 
 def test_a_held_pivot_tips_where_its_own_stiffness_vanishes():

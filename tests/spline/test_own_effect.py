@@ -5,42 +5,13 @@ import pytest
 from spline_model import (
     DEFAULT_EFFECTS,
     REGISTRY,
-    InvalidParameter,
     cross_axis_pivot,
     natural_frequencies,
     solve_mechanism,
     solve_motion,
 )
 from spline_model.effects.boundary import AppliedForce
-from tests.table_one import SIX, TABLE_ONE
-
-
-@pytest.mark.parametrize(
-    "effects, parameters, line",
-    [
-        (("bending", "gravty"), {}, "effects: got 'gravty', expected one of bending, .*nearest: gravity"),
-        (("bending", "stretching", "shear"), {}, r"'shear', expected .* \(use --model fe-shear\)"),
-        (("bending", "stretching", "inextensible"), {}, "not both"),
-        (("bending",), {}, "stretching or inextensible beside bending"),
-        (("stretching",), {}, "bending, without which"),
-        (DEFAULT_EFFECTS, {"gravity": {}}, "an effect of the scene"),
-        ((*DEFAULT_EFFECTS, "strip_drag"), {"strip_drag": {"speed": 1.0}}, "only rate"),
-        ((*DEFAULT_EFFECTS, "strip_drag"), {"strip_drag": {"rate": -1.0}}, "rate: got -1.0"),
-        ((*DEFAULT_EFFECTS, "bending"), {}, "each name once"),
-    ],
-    ids=str,
-)
-def test_senseless_scenes_are_refused(effects, parameters, line):
-    """Requirement: unknown, contradictory and missing effects are one clear line that lists what there is."""
-    with pytest.raises(InvalidParameter, match=line):
-        cross_axis_pivot(**TABLE_ONE, effects=effects, parameters=parameters)
-
-
-def test_a_motion_without_inertia_is_refused():
-    """Requirement: dynamics without any inertia says which effects would give it some."""
-    pivot = cross_axis_pivot(**TABLE_ONE, effects=("bending", "stretching"))
-    with pytest.raises(InvalidParameter, match="strip_inertia, section_rotary_inertia, body_inertia"):
-        solve_motion(pivot, start=0.5)
+from tests.table_one import SIX
 
 
 def counterweight(design, mass):

@@ -30,6 +30,7 @@ FORMS = {
     "consistent spatial": {"stretch": "consistent", "measure": "spatial", "control_points": 5},
     "B-spline": {"basis": "bspline", "control_points": 9},
     "four points": {"control_points": 4},
+    "all axial modes": {"control_points": 8, "axial_modes": 7},
 }
 FACTORS = (0.25, 0.5, 0.75, 1.0)
 
@@ -96,9 +97,10 @@ def chain(form):
 
 
 def loaded_pivot(form):
-    """Table 1 turned the other way under a force, a moment and a led centre's height."""
+    """A pivot that is symmetric in nothing, turned the other way under a force and a moment."""
+    unlike = {"crossing_ratio": 0.3, "inclination": 0.6, "centre_offset": (0.01, 0.02), "orientation": 0.4}
     return cross_axis_pivot(
-        **TABLE_ONE,
+        **TABLE_ONE | unlike,
         effects=("bending", stretching(form), "applied_moment", "applied_force"),
         parameters={"applied_moment": {"moment": 100.0}, "applied_force": {"force": (3000.0, 5000.0)}},
         **form,
@@ -115,7 +117,21 @@ def led_pivot(form):
     ).driven(0.2)
 
 
-SCENES = {build.__name__: build for build in (guide, free_end, arc, chain, loaded_pivot, led_pivot)}
+def rooted_pivot(form):
+    """Table 1 under its weight, its strips' roots cut from the same block."""
+    return cross_axis_pivot(
+        **TABLE_ONE,
+        width=0.01,
+        thickness=0.005,
+        effects=("bending", stretching(form), "gravity", "root_compliance"),
+        parameters={"gravity": {"acceleration": (300.0, -500.0)}, "root_compliance": {"root": "monolithic"}},
+        **form,
+    ).driven(1.5)
+
+
+SCENES = {
+    build.__name__: build for build in (guide, free_end, arc, chain, loaded_pivot, led_pivot, rooted_pivot)
+}
 REFUSED = [("arc", "four points"), ("led_pivot", "inextensible")]
 """A curved strip of four points does not resolve its pre-strain, inextensible strips hold their centre."""
 PAIRS = [(scene, form) for scene in SCENES for form in FORMS if (scene, form) not in REFUSED]

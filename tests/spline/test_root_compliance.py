@@ -9,12 +9,10 @@ import pytest
 from spline_model import (
     DEFAULT_EFFECTS,
     BodyDesign,
-    InvalidParameter,
     StripDesign,
     compliant_mechanism,
     cross_axis_pivot,
     natural_frequencies,
-    solve_impulses,
     solve_many,
     solve_mechanism,
     solve_motion,
@@ -28,7 +26,6 @@ from tests import gates
 from tests.table_one import SIX, TABLE_ONE
 
 SIDES = {"width": 0.01, "thickness": 0.005}
-EXPECTED = 'expected "monolithic" or a number >= 0, its length over the thickness'
 ROOTS = (*DEFAULT_EFFECTS, "root_compliance")
 GIVEN = {"root_compliance": {"root": "monolithic"}}
 
@@ -69,20 +66,6 @@ def test_roots_turn_by_their_moment_at_any_angle():
 
 
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
-
-
-@pytest.mark.parametrize("grid", [{}, SPATIAL], ids=["material", "spatial"])
-def test_element_is_the_bordered_form(grid):
-    """The turns of the roots as coordinates of the elements are the clamps' rows that yield."""
-    given = {"gravity": {"acceleration": (300.0, -500.0)}, "root_compliance": {"root": "monolithic"}}
-    pivot = rooted(**grid, effects=(*ROOTS, "gravity"), parameters=given)
-    element, bordered = (
-        solve_statics(pivot, rotation=1.5, increments=6, method=method)
-        for method in ("condensed", "multipliers")
-    )
-    assert element.torque == pytest.approx(bordered.torque, rel=1e-10)
-    assert element.stiffness == pytest.approx(bordered.stiffness, rel=1e-9)
-    assert element.bending_energy == pytest.approx(bordered.bending_energy, rel=1e-10)
 
 
 @pytest.mark.parametrize("grid", [{}, SPATIAL], ids=["material", "spatial"])
@@ -181,28 +164,3 @@ def test_massless_strips_turn_their_roots():
     assert rotation == pytest.approx(turned("energy")[0], abs=2e-3)
     held = solve_statics(rooted(effects=light), rotation=rotation, increments=10)
     assert run.strain_energy[-1] == pytest.approx((held.bending_energy + held.axial_energy)[-1], rel=1e-2)
-
-
-@pytest.mark.parametrize(
-    ("root", "message"),
-    [
-        (
-            "sharp",
-            "root: got 'sharp', expected \"monolithic\" or a number >= 0, its length over the thickness",
-        ),
-        (-1.0, "root: got -1.0, " + EXPECTED),
-    ],
-)
-def test_roots_that_are_none_are_refused(root, message):
-    """A word that is not known and a length below zero are refused in one line."""
-    with pytest.raises(InvalidParameter) as caught:
-        rooted(root)
-    assert str(caught.value) == message
-
-
-def test_what_holds_its_clamps_refuses_roots():
-    """Strips without thickness and impulses refuse roots that turn, each in one line."""
-    with pytest.raises(InvalidParameter, match="thickness of strip_1: got None, expected width and"):
-        rooted(width=None, thickness=None)
-    with pytest.raises(InvalidParameter, match="effects: got 'root_compliance', expected another one for"):
-        solve_impulses(rooted(), start=0.5, duration=1e-3)

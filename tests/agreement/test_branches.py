@@ -1,0 +1,157 @@
+"""Strips that buckle, in both models: the load, the branch beyond it and its state for any increments."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import fe_reference
+import spline_model
+from tests import gates
+from tests.fe.cases import extrapolated
+from tests.frames import HEAVY_TIPS, LED_TIP, column, heavy, led, strained, tip
+
+EULER = math.pi**2 / 4
+BOTH = pytest.mark.parametrize("models", [spline_model, fe_reference], ids=lambda each: each.__name__)
+
+
+def short(models):
+    """Name of a model in its gates."""
+    return models.__name__.partition("_")[0]
+
+
+def refined(ask, elements=None, **grid):
+    """Return what `ask` finds, of finite elements the limit over meshes."""
+    return ask(**grid) if elements is None else extrapolated([ask(elements=count) for count in elements])
+
+
+def held(gate, models, error, control_points=10, elements=(10, 20, 40)):
+    """Hold an error of both models' discretisations against the model's gate."""
+    grid = {"elements": elements} if models is fe_reference else {"control_points": control_points}
+    gates.hold(gate, lambda **coarse: float(error(**grid | coarse)))
+
+
+@BOTH
+def test_a_column_buckles_at_its_critical_load(models):
+    """Requirement: the bifurcation of an extensible column is where theory has it, (1 - P/EA) P = Pe."""
+    slenderness = 100.0
+    exact = slenderness**2 / 2 * (1 - math.sqrt(1 - 4 * EULER / slenderness**2))
+
+    def found(**grid):
+        made = column(models, load=4.0, slenderness=slenderness, **grid)
+        (point,) = models.solve_mechanism(made, increments=7).critical_points
+        assert (point.kind, point.inertia) == ("bifurcation", 1)
+        return 4.0 * point.load_factor
+
+    held(
+        f"{short(models)}_euler_load",
+        models,
+        lambda **grid: abs(refined(found, **grid) / exact - 1),
+        control_points=8,
+    )
+
+
+def led_ends(models, increments, late=0, **grid):
+    """Rotation of the led tip [deg], energy stored, and work over it less one, by numbers of increments.
+
+    late: by how many states the work is that of an earlier one, 0 being right.
+    """
+    ends = []
+    for count in increments:
+        answer = models.solve_mechanism(led(models, **grid), increments=count)
+        assert (answer.inertia.max(), answer.critical_points, answer.message) == (0, (), "")
+        stored = answer.bending_energy[-1] + answer.axial_energy[-1]
+        ends.append((tip(answer), stored, answer.work[-1 - late] / stored - 1))
+    return np.array(ends)
+
+
+@BOTH
+def test_a_led_tip_is_where_it_is_whatever_the_increments(models):
+    """Requirement: a tip that is led into buckling bends to the stable branch, in 1 to 200 increments."""
+
+    def found(**grid):
+        return led_ends(models, (1, 5, 20, 200), **grid)[:, 0]
+
+    held(f"{short(models)}_led_tip", models, lambda **grid: np.abs(refined(found, **grid) - LED_TIP).max())
+
+
+@BOTH
+def test_work_on_a_led_tip_is_the_energy_stored(models):
+    """Requirement: the work of a led path is the energy it stores, in few increments as in many."""
+    grid = {"elements": 20} if models is fe_reference else {"control_points": 10}
+
+    def error(late=0):
+        return np.abs(led_ends(models, (5, 20, 200), late, **grid)[:, 2]).max()
+
+    gates.hold(f"{short(models)}_led_work", error)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("models", "grid"),
+    [(spline_model, {"control_points": n}) for n in (6, 7, 8, 10, 12)]
+    + [(fe_reference, {"elements": n}) for n in (20, 80)],
+)
+def test_a_led_tip_has_one_energy(models, grid):
+    """Requirement: 5, 20, 200 and 1000 increments lead to one state, on coarse and fine discretisations."""
+    stored = led_ends(models, (5, 20, 200, 1000), **grid)[:, 1]
+    assert np.ptp(stored) < 1e-9 * stored[0]
+    assert stored[0] == pytest.approx(9.472e-3, rel=0.005)
+
+
+@BOTH
+def test_a_heavy_column_sinks_to_its_stable_side(models):
+    """Requirement: a column under more than its critical weight, off its centre, hangs down on that side."""
+
+    def found(**grid):
+        ends = []
+        for weight in HEAVY_TIPS:
+            for offset in (1e-3, -1e-3):
+                answer = models.solve_mechanism(heavy(models, weight, offset, **grid), increments=1)
+                assert (answer.inertia.max(), answer.message) == (0, "")
+                ends.append(math.copysign(1.0, offset) * tip(answer, 0))
+        return np.array(ends)
+
+    right = np.repeat(list(HEAVY_TIPS.values()), 2)
+    held(
+        f"{short(models)}_heavy_column",
+        models,
+        lambda **grid: np.abs(refined(found, **grid) - right).max(),
+        12,
+    )
+
+
+@pytest.mark.parametrize(
+    ("gate", "models", "element"),
+    [
+        ("spline_strained_strip", spline_model, {}),
+        ("fe_strained_strip", fe_reference, {}),
+        pytest.param(
+            "fe_strained_strip_reissner", fe_reference, {"element": "reissner"}, marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_a_strip_pre_strained_beyond_euler_says_so(gate, models, element):
+    """Requirement: a clamped strip is told to buckle where its pre-strain has Euler's force."""
+
+    def asked(compression, **grid):
+        made = strained(models, compression, **element, **grid)
+        return models.solve_mechanism(made, rotation=0.0, increments=1, check=False)
+
+    def found(**grid):
+        answer = asked(80.0, **grid)
+        assert answer.inertia.min() == 1
+        assert "the last state is unstable" in answer.message
+        return 0.8 * float(re.search(r" at ([\d.]+) % of ", answer.message).group(1))
+
+    held(
+        "strained_strip" + "_reissner" * bool(element),
+        models,
+        lambda **grid: abs(refined(found, **grid) / (4 * math.pi**2) - 1),
+    )
+    fine = {"elements": 40} if models is fe_reference else {"control_points": 10}
+    assert asked(41.0, **fine).inertia.min() == 1
+    sound = asked(39.0, **fine)
+    assert sound.inertia.max() == 0
+    assert "bifurcation" not in sound.message and "buckle" not in sound.message

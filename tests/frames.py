@@ -1,0 +1,144 @@
+"""Frames with published limit loads, and strips that buckle: mechanisms for tests of either model.
+
+`models` is the package that makes the mechanism: `spline_model` or `fe_reference`.
+"""
+
+import itertools
+import math
+
+import spline_model
+from tests.table_one import TABLE_ONE
+
+STATIC = ("bending", "stretching")
+#: Mass and shear do not matter.
+UNITS = {"youngs_modulus": 1.0, "poisson_ratio": 0.3, "density": 1.0}
+
+#: Spring steel, 100 mm x 10 mm x 0.5 mm, next to weightless.
+LENGTH = 0.1
+STEEL = {
+    "area": 5e-6,
+    "second_moment_of_area": 0.01 * 0.5e-3**3 / 12,
+    "youngs_modulus": 206e9,
+    "poisson_ratio": 0.29,
+    "density": 1e-3,
+}
+RIGIDITY = STEEL["youngs_modulus"] * STEEL["second_moment_of_area"]
+# by collocation on the equations of the extensible elastica (scipy's solve_bvp, tolerance 1e-8)
+LED_TIP = 15.204414550  # deg
+HEAVY_TIPS = {3.0: -71.307634279, 5.0: -124.497920896}  # deg, by weight in EI/L^2
+
+
+def one_strip(models, effects, parameters, *, end=(LENGTH, 0.0), centre=None, mass=0.0, **settings):
+    """A straight strip of spring steel, clamped, with a body at its tip."""
+    strip = models.StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **STEEL)
+    body = models.BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=1e-6)
+    return models.compliant_mechanism(
+        strips=[strip], bodies=[body], effects=(*STATIC, *effects), parameters=parameters, **settings
+    )
+
+
+def led(models, displacement=(-1.3e-3, 13e-3), **settings):
+    """The strip as a cantilever whose tip is led, and free to turn."""
+    given = {"driven_displacement": {"displacement": displacement}}
+    return one_strip(models, given, given, **settings)
+
+
+def heavy(models, weight, offset=1e-3, **settings):
+    """The strip as an upright column under a body of a weight [EI/L^2], off its centre [m]."""
+    given = {"gravity": {"acceleration": (0.0, -10.0)}}
+    mass = weight * RIGIDITY / LENGTH**2 / 10.0
+    more = {"end": (0.0, LENGTH), "centre": (offset, LENGTH), "mass": mass}
+    return one_strip(models, given, given, **more, **settings)
+
+
+def strained(models, compression, **settings):
+    """The strip clamped at both ends and pushed together by a natural strain, in EI/L^2 of axial force."""
+    strain = compression * RIGIDITY / (STEEL["youngs_modulus"] * STEEL["area"] * LENGTH**2)
+    given = {"driven_displacement": {"displacement": (0.0, 0.0)}, "pre_strain": {"strain": strain}}
+    return one_strip(models, given, given, **settings)
+
+
+def tip(answer, state=-1):
+    """Rotation of the tip's body [deg]."""
+    return math.degrees(answer.bodies["tip"][state, 2])
+
+
+def toggle(models=spline_model, *, rise=0.386, load=60.0, **discretisation):
+    """Williams' toggle (1964): two members of 12.943 in, built in, EI = 9.27e3 lb in^2, EA = 1.885e6 lb.
+
+    ``load`` [lb] downwards at the apex at load factor 1.
+    """
+    half = math.sqrt(12.943**2 - rise**2)
+    section = UNITS | {"area": 1.885e6, "second_moment_of_area": 9.27e3}
+    return models.compliant_mechanism(
+        strips=[
+            models.StripDesign(name=name, start=(x, 0.0), end=(0.0, rise), tip="apex", **section)
+            for name, x in (("left", -half), ("right", half))
+        ],
+        bodies=[models.BodyDesign(name="apex", centre=(0.0, rise))],
+        effects=(*STATIC, "applied_force"),
+        parameters={"applied_force": {"body": "apex", "force": (0.0, -load)}},
+        **discretisation,
+    )
+
+
+def lees_frame(*, load=3.0, area=6.0, **discretisation):
+    """Lee, Manuel and Rossow's frame (1968): two members of 120 cm at a right angle, pinned ends.
+
+    A = 6 cm^2, I = 2 cm^4, E = 720 t/cm^2 (in print also 7.06e6 N/cm^2); ``load`` [t] down at 24 cm from the
+    corner. The law is the extensible, shear-rigid elastica. A pin is a body without mass.
+    """
+    section = {"area": area, "second_moment_of_area": 2.0, "youngs_modulus": 720.0, "density": 1.0}
+    joints = {"foot": (0.0, 0.0), "corner": (0.0, 120.0), "loaded": (24.0, 120.0), "far": (120.0, 120.0)}
+    names = list(joints)
+    strips = [
+        spline_model.StripDesign(name=f"{a}_{b}", start=joints[a], end=joints[b], root=a, tip=b, **section)
+        for a, b in itertools.pairwise(names)
+    ]
+    frame = spline_model.compliant_mechanism(
+        strips=strips,
+        bodies=[spline_model.BodyDesign(name=name, centre=place) for name, place in joints.items()],
+        effects=(*STATIC, "applied_force"),
+        parameters={"applied_force": {"body": "loaded", "force": (0.0, -load)}},
+        **discretisation,
+    )
+    return frame.pinned("foot", "far")
+
+
+def column(models=spline_model, *, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):
+    """A cantilever column of length 1 and EI = 1 along x; ``load`` [EI/L^2] pushes its tip back to the root.
+
+    slenderness: L sqrt(EA / EI); side: part of the load that acts across, the imperfection.
+    """
+    section = UNITS | {"area": slenderness**2, "second_moment_of_area": 1.0}
+    strip = models.StripDesign(name="column", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", **section)
+    return models.compliant_mechanism(
+        strips=[strip],
+        bodies=[models.BodyDesign(name="tip", centre=(1.0, 0.0))],
+        effects=(*effects, "applied_force"),
+        parameters={"applied_force": {"body": "tip", "force": (-load, side * load)}},
+        **discretisation,
+    )
+
+
+def opposed(models=spline_model, *, offset=0.01, **discretisation):
+    """A body on two parallel strips of Table 1's section that come from opposite sides, 0.1 m long.
+
+    Turned clockwise, both strips are pushed together alike: half a turn maps the pivot onto
+    itself, until the strips buckle and the body gives way. Of splines as a pivot.
+    """
+    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+    section = {name: TABLE_ONE[name] for name in names}
+    half = 0.05
+    ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
+    strips = [
+        models.StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **section)
+        for i, (start, end) in enumerate(ends, start=1)
+    ]
+    body = models.BodyDesign(name="body", centre=(0.0, 0.0))
+    made = models.compliant_mechanism(strips=strips, bodies=[body], effects=STATIC, **discretisation)
+    if models is not spline_model:
+        return made
+    return spline_model.Pivot(
+        design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene
+    )

@@ -1,0 +1,273 @@
+"""What the splines refuse, in one line: designs and scenes that make no sense, and what is asked of them."""
+
+import math
+from functools import cache, partial
+
+import numpy as np
+import pytest
+
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    ConvergenceError,
+    HeldPivot,
+    InvalidParameter,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    impulse_solver,
+    natural_frequencies,
+    sensitivities,
+    solve_impulses,
+    solve_many,
+    solve_motion,
+    solve_release,
+    solve_statics,
+)
+from tests.frames import opposed
+from tests.spline.test_batch_of_mechanisms import linkage
+from tests.table_one import SIX, TABLE_ONE
+
+#: Between two parts of what is said stands any text.
+ANY = " ... "
+BARE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
+SIDES = {"width": 0.01, "thickness": 0.005}
+CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
+PRINTED = {"measure": "printed", "stretch": "consistent"}
+SPATIAL = {"measure": "spatial", "stretch": "consistent"}
+UNSTEADY = "measure: got 'printed', expected material or spatial"
+ROOT = 'expected "monolithic" or a number >= 0, its length over the thickness'
+
+
+def scene(*names, **parameters):
+    """Return effects and their parameters as keywords."""
+    return {"effects": names, "parameters": parameters}
+
+
+def more(**parameters):
+    """Return the default effects and these with their parameters as keywords."""
+    return scene(*DEFAULT_EFFECTS, *parameters, **parameters)
+
+
+#: What the pivot of Table 1 is given beside or in place of its own, and what is said of it.
+PIVOTS = [
+    ({"axial_modes": 6}, "axial_modes: got 6, expected an integer >= 1 and <= 5"),
+    ({"axial_modes": 2, "stretch": "consistent"}, "axial_modes: got 2, expected none"),
+    ({"measure": "printed"}, "stretch: got 'mixed', expected consistent"),
+    ({"measure": "spatial"}, "stretch: got 'mixed', expected consistent, ... measure = spatial"),
+    ({"control_points": 8, "gauss_points": 5}, "5 Gauss points see 5 of 6 shapes of bending"),
+    ({"control_points": 8, "gauss_points": 6}, "7 axial forces work on 6 strains only"),
+    ({"control_points": 4, "gauss_points": 2, "stretch": "consistent"}, "2 of 3 shapes of stretching"),
+    ({"slide_stiffness": 0.0}, "4 axial modes leave 1 of 5 strains free"),
+    ({"control_points": 8, "axial_modes": 2, "slide_stiffness": 0.0}, "2 axial modes leave 5 of 7"),
+    ({"control_points": 8, "basis": "bspline", "gauss_points": 1}, "5 Gauss points see 5 of 6 shapes"),
+    (scene("bending", "gravty"), "effects: got 'gravty', expected one of bending, ... nearest: gravity"),
+    (scene("bending", "stretching", "shear"), "'shear', expected ... (use --model fe-shear)"),
+    (scene("bending", "stretching", "inextensible"), "not both"),
+    (scene("bending"), "stretching or inextensible beside bending"),
+    (scene("stretching"), "bending, without which"),
+    (scene(*DEFAULT_EFFECTS, gravity={}), "an effect of the scene"),
+    (scene(*DEFAULT_EFFECTS, "bending"), "each name once"),
+    (more(strip_drag={"speed": 1.0}), "only rate"),
+    (more(strip_drag={"rate": -1.0}), "rate: got -1.0"),
+    (SIDES | more(root_compliance={"root": "sharp"}), f"root: got 'sharp', {ROOT}"),
+    (SIDES | more(root_compliance={"root": -1.0}), f"root: got -1.0, {ROOT}"),
+    (more(root_compliance={"root": 0.4}), "thickness of strip_1: got None, expected width and"),
+    (SIDES | CURLED | SPATIAL, "measure: got 'spatial', expected material for anticlastic"),
+    (
+        SIDES | more(clamped_width={}, pre_strain={"curvature": 1.0}),
+        "natural curvature of pre_strain: got 1",
+    ),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), PIVOTS, ids=str)
+def test_pivots_that_make_no_sense(given, said):
+    """Requirement: unknown, contradictory, missing and singular choices are refused with what there is."""
+    refused(lambda: cross_axis_pivot(**SIX | given), said)
+
+
+def refused(ask, said):
+    """See a call refused in one line that says all parts of a text."""
+    with pytest.raises((InvalidParameter, ConvergenceError)) as caught:
+        ask()
+    line = str(caught.value)
+    assert "\n" not in line
+    assert all(part in line for part in said.split(ANY)), line
+
+
+def clamped(**changed):
+    """Return a strip with a clamped width between ground and a stage."""
+    strip = {"name": "strip_0", "start": (0.0, 0.0), "end": (1.0, 0.0), "tip": "stage"}
+    strip |= {"width": 0.4, "thickness": 1e-3, "youngs_modulus": 2e11, "density": 7800.0}
+    stage = BodyDesign(name="stage", centre=(1.0, 0.0))
+    effects = (*DEFAULT_EFFECTS, "clamped_width")
+    return compliant_mechanism(strips=[StripDesign(**strip | changed)], bodies=[stage], effects=effects)
+
+
+NO_SIDES = {"width": None, "thickness": None, "area": 1e-5, "second_moment_of_area": 1e-16}
+STRIPS = [
+    (partial(cross_axis_pivot, **BARE), *row)
+    for row in (
+        ({"width": 0.01}, "thickness: got None, expected width and thickness, both or neither"),
+        ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a finite number > 0 [m]"),
+        (SIDES | {"area": 6e-5}, "area: got 6e-05, expected 5e-05, that of width and thickness, or none"),
+        ({"area": 5e-5}, "area: got 'none', expected area and second_moment_of_area, or width and thick"),
+    )
+] + [
+    (clamped, *row)
+    for row in (
+        ({"tip": None}, "tip of strip_0: got None, expected ground or a body for clamped_width"),
+        ({"rise": 0.1}, "rise of strip_0: got 0.1, expected 0, a straight strip, for clamped_width"),
+        ({"width": 5.0}, "width over length of strip_0: got 5.0, expected 0.005 to 4"),
+        (NO_SIDES, "width of strip_0: got None, expected width and thickness [m] for clamped_width"),
+    )
+]
+
+
+@pytest.mark.parametrize(("make", "given", "said"), STRIPS)
+def test_strips_that_make_no_sense(make, given, said):
+    """Requirement: sides that do not fit a section, and strips without a clamped width, are refused."""
+    refused(lambda: make(**given), said)
+
+
+def pivot(**given):
+    """Return the pivot of Table 1."""
+    return cross_axis_pivot(**SIX | given)
+
+
+def release(integrator="energy", given=None, **options):
+    """Release the pivot, given other things as well."""
+    return solve_release(pivot(**given or {}), integrator=integrator, **options)
+
+
+def impulses(**options):
+    """Release the pivot by sequential impulses."""
+    return solve_impulses(pivot(), **options)
+
+
+def many(values, given=None, **how):
+    """Solve a batch of pivots, to 0.1 rad."""
+    return solve_many(pivot(**given or {}), values, rotation=0.1, **how)
+
+
+def linked(values, **how):
+    """Solve a batch of the linkage."""
+    return solve_many(linkage(), values, body="crank", rotation=0.1, **how)
+
+
+@cache
+def path():
+    """Return a path of the pivot."""
+    return solve_statics(pivot(), rotation=0.3, increments=2)
+
+
+def derived(parameters=("length",), given=None, of=None):
+    """Return the sensitivities of a pivot along a path, its own or of another."""
+    made = pivot(**given or {})
+    along = of if of is not None else solve_statics(made, rotation=0.3, increments=2)
+    return sensitivities(made, along, parameters=parameters)
+
+
+def held(*pose):
+    """Hold the pivot in a pose."""
+    return HeldPivot(pivot()).hold(*pose)
+
+
+def stepped(**pose):
+    """Take a step of the pivot by impulses."""
+    solver = impulse_solver(pivot())
+    return solver.step(solver.start(), 0.01, **pose)
+
+
+MASSLESS = scene("bending", "stretching", "body_inertia")
+STILL = scene("bending", "stretching")
+DAMPED = more(strip_damping={"relaxation_time": 1e-6})
+ROOTED = SIDES | more(root_compliance={"root": "monolithic"})
+UNREACHED = {"control_points": 8, "slide_stiffness": 10.0}
+LONG = {"duration": 1e6, "step": 1e-6}
+WITHIN = "duration: got 1000000.0, expected records within 2 GB"
+ASKED = [
+    (lambda: many({}, order="first"), "one of loads first, together"),
+    (lambda: solve_many([TABLE_ONE, SIX | {"length": -1.0}], rotation=1.0), "design 1: length: got -1.0"),
+    (lambda: solve_many([TABLE_ONE] * 3, rotation=[1.0, 0.5]), "rotation"),
+    (lambda: solve_many([TABLE_ONE] * 2, rotation=[1.0, math.nan]), "design 1: rotation: got nan"),
+    (lambda: many({}, section_depth=0.0), "section_depth: got 0.0, expected a finite number > 0"),
+    (lambda: solve_many(TABLE_ONE, {"thickness": [1e-3]}, rotation=0.1), "none beside columns of pivots"),
+    (lambda: linked({"crank.length": 1.0}), "values: got 'crank.length', expected one of area"),
+    (lambda: linked({"thickness": [1e-4, -1.0]}), "design 1: thickness: got -1.0, expected a finite num"),
+    (lambda: linked({}, control_points=12), "none beside a mechanism, which has its own"),
+    (
+        lambda: many({"strip_1.width": [0.01, 0.02]}, SIDES | more(clamped_width={})),
+        "design 1: b/L of strip_1: got ... that of the mechanism",
+    ),
+    (lambda: solve_statics(pivot(), rotation=1e-13), "rotation: got 1e-13, expected 0, or legs of 1e-12"),
+    (
+        lambda: solve_statics(pivot(axial_modes=3), rotation=1.5, accuracy=1e-3),
+        "axial_modes: got 3, expected none beside accuracy",
+    ),
+    (
+        lambda: solve_statics(pivot(gauss_points=9), rotation=1.5, accuracy=1e-3),
+        "gauss_points: got 9, expected none beside accuracy",
+    ),
+    # which of both is up to round-off: a drive against inextensible strips that cannot give way
+    (lambda: solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1), "tangent"),
+    (lambda: natural_frequencies(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
+    (lambda: solve_release(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
+    (lambda: solve_impulses(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
+    (
+        lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(),
+        f"{UNSTEADY}: printed forces are of static paths alone",
+    ),
+    (lambda: release(step=1.0), "step: got 1.0, expected at most the duration"),
+    (lambda: release(**LONG), WITHIN),
+    (lambda: release(records=0), "records: got 0, expected an integer >= 1"),
+    (lambda: release(given=UNREACHED, start=math.radians(230)), "stopped between load factor"),
+    (lambda: release(given=SPATIAL, start=0.1), "measure: got 'spatial', expected material, or ... leapfrog"),
+    (lambda: release("leapfrog", DAMPED, start=0.1), "integrator: got 'leapfrog', expected energy"),
+    (lambda: release(accuracy=1e-2, step=1e-5), "accuracy: got 0.01, expected no step beside it"),
+    (lambda: release("leapfrog", accuracy=1e-2), "accuracy: got 0.01, expected no step beside it"),
+    *(
+        (partial(release, accuracy=wrong), f"accuracy: got {wrong}, expected a finite number > 0 [rad]")
+        for wrong in (0.0, -1.0, math.nan, math.inf)
+    ),
+    (
+        lambda: solve_motion(pivot(**STILL), start=0.5),
+        "strip_inertia, section_rotary_inertia, body_inertia",
+    ),
+    (lambda: impulses(form="euler"), "form: got 'euler', expected one of printed, stable"),
+    (lambda: impulses(sweeps=30), "sweeps: got 30, expected none of the stable form"),
+    (lambda: impulses(sweeps=0), "sweeps: got 0, expected an integer >= 1"),
+    (lambda: impulses(tolerance=0.0), "tolerance: got 0.0"),
+    (lambda: impulses(step=-1.0), "step: got -1.0"),
+    (lambda: impulses(step=1.0), "step: got 1.0, expected at most the duration"),
+    (lambda: impulses(duration=math.nan), "duration: got nan"),
+    (lambda: impulses(start=math.inf), "start: got inf"),
+    (lambda: impulses(records=0), "records: got 0"),
+    (lambda: impulses(**LONG), WITHIN),
+    (lambda: impulses(body="lid"), "body: got 'lid'"),
+    (lambda: impulse_solver(pivot(**MASSLESS)), "no inertia of strip_1"),
+    (lambda: impulse_solver(pivot(**SIDES | CURLED)), "effects: got 'anticlastic'"),
+    (lambda: solve_impulses(pivot(**ROOTED)), "effects: got 'root_compliance', expected another one for"),
+    (lambda: impulse_solver(pivot()).start_at(np.full(27, np.nan)), "z: got nan, expected finite numbers"),
+    (lambda: impulse_solver(pivot()).start(math.nan), "rotation: got nan"),
+    (lambda: stepped(pose=np.array([0.0, np.nan, 0.0])), "pose: got nan"),
+    (lambda: impulse_solver(pivot(**UNREACHED)).start(math.radians(230)), "stopped between load factor"),
+    (lambda: held(math.nan, 0.0, 0.0), "pose: got"),
+    (lambda: held(0.0, math.inf, 0.0), "pose: got"),
+    (lambda: HeldPivot(pivot()).turn(math.nan), "rotation: got nan"),
+    (lambda: HeldPivot(pivot(stretch="consistent")), "one body on strips"),
+    (lambda: derived(("depth",)), "parameters: got 'depth', expected one of length, "),
+    (lambda: derived(("length", "length")), "['length', 'length'], expected at least one name, each once"),
+    (lambda: derived(()), "parameters: got [], expected at least one name, each once"),
+    (lambda: derived(given=PRINTED), f"{UNSTEADY}: printed forces are of static paths alone"),
+    (lambda: derived(("strip_3.area",)), "parameters: got 'strip_3.area', expected one of length, "),
+    (lambda: derived(given={"length": 0.09}, of=path()), "solution: got 'state 0 with residual"),
+    (lambda: derived(given={"control_points": 7}, of=path()), "unknowns', expected a solution of this pivot"),
+]
+
+
+@pytest.mark.parametrize(("ask", "said"), ASKED, ids=[f"{k}: {row[1]}" for k, row in enumerate(ASKED)])
+def test_what_cannot_be_asked(ask, said):
+    """Requirement: what a solver cannot answer is refused with name, value and expectation."""
+    refused(ask, said)
