@@ -1,7 +1,6 @@
 """The page in a real browser: what it saves as files, opens and keeps."""
 
 import json
-import re
 import time
 
 import pytest
@@ -22,26 +21,6 @@ def give(browser, name, text):
         f"const f = document.getElementById('{name}'); f.files = d.files;"
         f"f.dispatchEvent(new Event('change')); }})({json.dumps(text)})"
     )
-
-
-def test_session_file_is_recorded_and_replayed(page):
-    """Requirement: a session that is recorded in the page is saved as a file, and replayed by it to the
-    states that were recorded; then the page has its own again."""
-    page.key("v")
-    page.wait("document.getElementById('record').classList.contains('on')")
-    for _ in range(4):
-        page.key("ArrowLeft")
-    page.wait("Math.abs(studio.state.pose[2] - 4 * Math.PI / 180) < 1e-9")
-    page.key("v")
-    page.wait("studio.saved?.name === 'session.jsonl'")
-    page.key("0")
-    page.wait("studio.state.pose[2] === 0")
-    give(page, "file", page.ask("studio.saved.text"))
-    page.wait("studio.ring.states.some((s) => s.replay && Math.abs(s.pose[2] - 4 * Math.PI / 180) < 1e-9)")
-    page.wait("!studio.state.replay && studio.state.pose[2] === 0")
-    said = page.ask("document.getElementById('note').textContent")
-    same, count = re.fullmatch(r"The session file has ended: (\d+) of (\d+) states .*\.", said).groups()
-    assert same == count
 
 
 def test_design_is_saved_opened_and_kept(page):

@@ -9,7 +9,6 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
-from studies.interactive.session import Session
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
@@ -209,20 +208,6 @@ def test_lens_is_seen():
     events = watch(made)
     assert rms(errors(watch(made, camera))[0]) < rms(errors(events)[0]) / 3
     assert all("not-flat" in names(event) or event["do"] == "unseen" for event in events)
-
-
-def test_swapped_markers_are_named():
-    """Requirement: markers that were glued the wrong way round are named in the first picture and give no
-    pose."""
-
-    def swapped(k):
-        return [Marker(number=1 - marker.number, pose=marker.pose) for marker in both(k)]
-
-    session = Session()
-    for k, event in enumerate(watch(film(frames=3, markers=swapped))):
-        state = session.feed({**event, "t": k / 25})
-        assert [warning["code"] for warning in state["warnings"]] == ["swapped"]
-        assert state["displacement"] == [0.0, 0.0, 0.0]
 
 
 def test_texture_alone_shows_no_marker():

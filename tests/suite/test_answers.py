@@ -141,27 +141,15 @@ def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
 def test_limit_of_swings_removes_the_error_of_the_mesh():
     """Swings whose rotation is off by h^2 and h^4 have the exact one as limit, and an uncertainty."""
     instants = np.linspace(0.0, 0.05, 401)
+    swing = answer_release(TABLE_1, FeSettings(elements=2), duration=1e-5)
+    arrays = {name: np.ones_like(instants) for name in Motion.arrays()} | {"time": instants}
     levels = []
     for elements in SWING_MESHES:
         h = 1.0 / elements
         rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
-        arrays = {name: np.ones_like(instants) for name in Motion.arrays() if name != "time"}
+        bodies = {"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)}
         levels.append(
-            Motion(
-                design=TABLE_1,
-                model="fe",
-                settings={"elements": elements},
-                status="converged",
-                message="",
-                resolution="",
-                effects=(),
-                time=instants,
-                bodies={"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)},
-                counters={},
-                wall_s=0.0,
-                solve_s=0.0,
-                **arrays,
-            )
+            dataclasses.replace(swing, settings={"elements": elements}, bodies=bodies, effects=(), **arrays)
         )
     limit = limit_of_swings(levels, instants[::4])
     assert limit.swing.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)

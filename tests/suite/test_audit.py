@@ -94,25 +94,6 @@ def test_audit_of_a_mechanism_without_a_drive(command):
     assert "applied_force" in found["cheapest"]["effects"]
 
 
-@pytest.mark.usefixtures("brief")
-def test_audit_reads_well(command):
-    """Without --json: a line a scene, and the cheapest with what it was verified by."""
-    out = command("audit", TABLE_1, "--tolerance", "1e-2", "--control-points", 4).out
-    lines = out.splitlines()
-    assert lines[0] == f"full scene: {', '.join(FULL)}"
-    assert [line.split("  ")[0] for line in lines[3:10]] == [
-        "full scene",
-        "no bending",
-        "inextensible strips",
-        "massless strips",
-        "no body inertia",
-        "no section rotary inertia",
-        "no gravity",
-    ]
-    assert "cheapest within 0.01: bending, " in out
-    assert "run anew: largest change " in lines[-1]
-
-
 def test_audit_of_what_is_not_stable(command, tmp_path):
     """A design that does not stand at rest is exit code 3, and says why."""
     text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")

@@ -42,12 +42,6 @@ def test_template_is_solved_as_it_is(kind, model, command, tmp_path):
     assert isinstance(read_design(path), Problem) == (kind == "pivot")
 
 
-def test_template_is_written_twice(command, tmp_path):
-    """Written over itself the template is there."""
-    path = tmp_path / "my.toml"
-    assert [command("case", "--out", path).code for _ in range(2)] == [0, 0]
-
-
 def test_sides_are_area_and_second_moment(case):
     """A rectangle by its sides has A = b h and I = b h^3 / 12, keeps the sides and hands them on."""
     found = read_design(case((AREA, "width_m = 0.01 "), (MOMENT, "thickness_m = 0.004 ")))

@@ -44,37 +44,6 @@ def test_table_orders_and_counts(short):
     assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", out)[1]) < 1e-6
 
 
-def test_estimates_stand_beside_the_errors(short):
-    """What `solve` takes by itself is told with its errors and estimates, which are no less than half."""
-    lines = short[1].splitlines()
-    place = next(i for i, line in enumerate(lines) if line.startswith("without --control-points"))
-    error, estimate = (
-        [float(v) for v in re.findall(r"\d\.\de-\d+", line)] for line in lines[place + 1 : place + 3]
-    )
-    assert len(error) == len(estimate) == len(QUANTITIES)
-    assert all(e < max(2.0 * by_itself, 1e-9) for e, by_itself in zip(error, estimate, strict=True))
-
-
-def test_count_that_reaches_an_accuracy_in_the_stress(short):
-    """Of six control points the stress is the least accurate, so that it alone asks for more of them."""
-    _, out, folder = short
-    six = pd.read_csv(folder / "control_points.csv").set_index("control_points").loc[6]
-    assert six["error_stress"] > 10.0 * max(six["error_trajectory"], six["error_torque"])
-    path, all_four = re.findall(r"\ncontrol points +(\d+) +(\S+) ", out)
-    assert (path[1], all_four[1]) == ("5", ">")
-
-
-@pytest.mark.slow
-def test_a_mechanism_is_refined_too(command, tmp_path):
-    """A driven mechanism has its errors, with the torque that is none at rest, and orders of the elements."""
-    words = ["converge", "four_bar_of_flexures", "--control-points", "4:5", "--elements", "5:20"]
-    outcome = command(*words, "--out", tmp_path)
-    assert outcome.code == 0
-    rows = [line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)]
-    assert [float(cell) for cell in rows[-1][2:9:2]] == pytest.approx([2.0] * 4, abs=0.05)
-    assert float(rows[1][3]) < 1e-4
-
-
 def test_folder_holds_tables_and_figure(short):
     """The folder holds both tables and the figure, and what was there before."""
     *_, folder = short

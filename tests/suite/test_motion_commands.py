@@ -62,14 +62,6 @@ def test_modes_beyond_those_that_there_are_told(case, command):
     assert "13 of 500 modes" in out
 
 
-def test_table_of_modes(case, command):
-    """The table of modes has a line a mode below its head; held at a rotation, the swing is gone from it."""
-    words = ["modes", case(), "--model", "fe", "--rotation-deg", 30, "--held", "--count", 2]
-    lines = command(*words).out.splitlines()
-    assert len(lines) == 5 + 2 + 1 + 1  # the last but one: errors not estimated
-    assert lines[5].split()[0] == "1" and float(lines[5].split()[1]) > 500.0
-
-
 @pytest.mark.parametrize("verb", ["release", "modes"])
 @pytest.mark.parametrize(
     "model",

@@ -186,18 +186,6 @@ def test_command_writes_a_picture_beside_its_answer(words, kind, tmp_path, capsy
     assert f"{path}: the picture" in said.err
 
 
-@pytest.mark.slow
-def test_compare_draws_what_it_tells(tmp_path, capsys):
-    """The table ends with the ratios of the designs to the first; pictures of paths and modes are drawn."""
-    words = ["compare", PIVOT, "cross_axis_pivot", "--control-points", "6", "--rotation-deg", "10"]
-    both, modes = tmp_path / "both.svg", tmp_path / "modes.svg"
-    assert main([*words, "--plot", str(both), "--plot-modes", str(modes)]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    (line,) = (line.split() for line in lines if line.startswith("torque, end"))
-    assert float(line[-1]) == pytest.approx(float(line[-2]) / float(line[-3]), rel=1e-2)
-    assert both.stat().st_size > 0 < modes.stat().st_size
-
-
 def test_curves_over_rotation_begin_under_the_loads():
     """States at which loads come on before the body turns are no part of a curve over its rotation."""
     assert turning(np.array([0.0, 0.0, 0.0, 0.1, 0.2])) == pytest.approx(

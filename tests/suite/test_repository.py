@@ -103,13 +103,6 @@ def test_what_the_pages_write_stays_out():
     assert done.stdout.split() == WRITTEN
 
 
-def test_a_table_in_parquet_is_no_text(tmp_path):
-    """What is no text, as somebody's table in Parquet or a picture, is left alone instead of failing."""
-    table = tmp_path / "designs.parquet"
-    table.write_bytes(b"PAR1\x15\x04\x80\xff")
-    assert _text(table) == ""
-
-
 #: Tests that read a clock, and why; those of the browser (tests/interactive) live in its time.
 CLOCKS = {
     "tests/bench/test_ratios.py": "`make bench` alone runs them",

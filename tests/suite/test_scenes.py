@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 from spline_model import DEFAULT_EFFECTS, REGISTRY
-from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.keys import EFFECT_KEYS as KEYS
-from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER
 from tests import gates
 
@@ -25,28 +23,6 @@ def answer(command, *words):
     outcome = command(*words, "--json", "-")
     assert (outcome.code, outcome.err) == (0, "")
     return json.loads(outcome.out)
-
-
-@pytest.mark.parametrize("name", MECHANISMS)
-def test_both_models_drive_every_mechanism_alike(name, command):
-    """The four scenes run by the same code, and all bodies of both models end at the same places."""
-    design = named_design(name)
-    assert isinstance(design, Mechanism)
-    ends = {}
-    for model, coarse in COARSE.items():
-        found = answer(command, "solve", FOLDER / f"{name}.toml", "--model", model, *coarse)
-        assert (found["status"], found["load_factor"][-1]) == ("converged", 1.0)
-        assert list(found["bodies"]) == [body.name for body in design.bodies]
-        assert found["effects"] == [each for each in design.effects.names if each not in MOTION_ONLY]
-        assert (found["torque_Nm"][-1] is None) == (design.rotation is None)
-        states = np.array([list(place.values()) for place in found["bodies"].values()])
-        balance = np.array(found["strain_energy_J"]) + found["gravity_energy_J"] - found["work_J"]
-        assert np.abs(balance - balance[0]).max() < 1e-4 * max(found["strain_energy_J"])
-        ends[model] = states[:, :, -1]
-        travel = np.linalg.norm(states[:, :2, -1] - states[:, :2, 0], axis=1).max()
-    # eight elements on a strip are off by some 1e-3 of the travel and of the angles
-    assert np.abs(ends["fe"] - ends["spline"])[:, :2].max() < 5e-3 * travel
-    assert np.abs(ends["fe"] - ends["spline"])[:, 2].max() < 5e-3
 
 
 @pytest.mark.parametrize(
@@ -88,18 +64,6 @@ def test_both_models_have_the_modes_of_every_scene(name, command):
     gates.check("scenes_first_mode", modes_apart(command, name))
     if name == "parallel_strip_guide":
         gates.refuse("scenes_first_mode", partial(modes_apart, command, name))
-
-
-def test_mechanisms_have_tables_to_read(command):
-    """Without --json every body has its columns; the pivot keeps its own table."""
-    lines = command("solve", FOLDER / "four_bar_of_flexures.toml", "--model", "spline").out.splitlines()
-    assert lines[2].replace("|", " ").split() == ["crank", "coupler", "rocker"]
-    assert sum("|" in line for line in lines) == 3 + 21  # names, columns and units, and a row a state
-    assert "estimated error" in lines[-2] and lines[-1].startswith("converged")
-    released = command(
-        "release", FOLDER / "four_bar_of_flexures.toml", "--model", "spline", "--duration", 1e-3
-    )
-    assert "clamp gap" in released.out
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import json
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_static
@@ -74,18 +73,6 @@ def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     (strip,) = design.strips
     modulus = math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
     assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
-
-
-def test_several_models_are_answered_with_their_differences(case, command):
-    """Requirement: --model spline,fe answers both, and says how far the second is from the first."""
-    words = ["solve", case(), "--model", "spline,fe", "--increments", 2, "--rotation-deg", 30]
-    found = json.loads(command(*words, "--json", "-").out)
-    assert [answer["model"] for answer in found["answers"]] == ["spline", "fe"]
-    torque = [np.array(answer["torque_Nm"]) for answer in found["answers"]]
-    expected = np.abs(torque[1] - torque[0]).max() / np.abs(torque[0]).max()
-    assert found["differences"]["fe"]["torque"] == pytest.approx(expected)
-    assert 0.0 < max(found["differences"]["fe"].values()) < 5e-3
-    assert command(*words).out.splitlines()[-1].startswith("fe differs from spline by: path ")
 
 
 def test_what_does_not_differ_from_nothing_is_left_out():

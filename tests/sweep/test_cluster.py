@@ -2,7 +2,6 @@
 
 import importlib.util
 import logging
-import socket
 import subprocess
 import sys
 import tempfile
@@ -67,19 +66,6 @@ def test_without_the_package_one_line_says_what_to_install(tmp_path, capsys, mon
 def test_an_address_that_is_none_is_one_line(address, tmp_path, capsys):
     """Requirement: an address where no scheduler can be is refused before anything is written."""
     assert "where no scheduler answers within 5 s" in refusal(address, tmp_path, capsys)
-
-
-@with_dask
-@pytest.mark.slow
-def test_a_place_that_never_answers_is_given_up(capsys):
-    """Requirement: something that listens and is silent is no scheduler, after a short wait."""
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        with (
-            pytest.raises(BadInput, match=r"within 0\.5 s"),
-            cluster(address, timeout=0.5),
-        ):
-            pass
 
 
 @with_dask
