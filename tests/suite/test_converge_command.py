@@ -1,52 +1,34 @@
 """`python -m studies converge`: errors, orders and the counts that reach an accuracy."""
 
-import io
 import re
-from contextlib import redirect_stdout
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from studies.__main__ import main
 from studies.answers.reference import QUANTITIES
-from studies.cases.problem import FOLDER
 from studies.convergence.sweep import reaching, with_orders
 
 
-@pytest.fixture(scope="module")
-def short(tmp_path_factory):
-    """Run the command on a short path with few refinements; return its code, its output and its folder, in
-    which there was a file before."""
-    folder = tmp_path_factory.mktemp("out")
+def test_table_folder_orders_and_counts(command, case, tmp_path):
+    """The table has a row for every count, order 2 for the elements, and the counts for three accuracies; the
+    folder holds both tables and the figure, and what was there before."""
+    folder = tmp_path / "out"
+    folder.mkdir()
     (folder / "mine.txt").write_text("keep")
-    path, text = folder.parent / "short.toml", (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
-    for old, new in (("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3")):
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text, encoding="utf-8")
-    words = ["converge", str(path), "--control-points", "4:6", "--elements", "5:40", "--out", str(folder)]
-    with redirect_stdout(io.StringIO()) as out:
-        code = main(words)
-    return code, out.getvalue(), folder
-
-
-def test_table_orders_and_counts(short):
-    """The table has a row for every count, order 2 for the elements, and the counts for three accuracies."""
-    code, out, _ = short
-    assert code == 0
-    rows = {int(line.split()[0]): line.split() for line in out.splitlines() if re.match(r" +\d", line)}
+    path = case(("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3"))
+    words = ["converge", path, "--control-points", "4:6", "--elements", "5:40", "--out", folder]
+    outcome = command(*words)
+    assert outcome.code == 0
+    rows = {
+        int(line.split()[0]): line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)
+    }
     assert set(rows) == {4, 5, 6, 10, 20, 40}
     assert [float(cell) for cell in rows[40][2:9:2]] == pytest.approx([2.0] * 4, abs=0.1)
     assert rows[40][9] == "converged"
-    assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", out)
-    assert len(re.findall(r"\nelements +\d+ +\d+ +> 40\n", out)) == 2
-    assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", out)[1]) < 1e-6
-
-
-def test_folder_holds_tables_and_figure(short):
-    """The folder holds both tables and the figure, and what was there before."""
-    *_, folder = short
+    assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", outcome.out)
+    assert len(re.findall(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)) == 2
+    assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", outcome.out)[1]) < 1e-6
     names = {"control_points.csv", "elements.csv", "convergence.png", "convergence.svg", "mine.txt"}
     assert {path.name for path in folder.iterdir()} == names
     assert (folder / "mine.txt").read_text() == "keep"

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from pathlib import Path
 
 import pytest
 
@@ -10,53 +11,22 @@ from studies.cases.design import as_toml
 from tests import gates
 from tests.goldens.answers import document_of
 
-#: 300 x 50 x 3 mm at 60 deg, crossing in the middle, pressed at the body's centre.
-CASE = """
-[[strips]]
-name = "left"
-start_m = [0, 0]
-end_m = [0.15, 0.25980762]
-tip = "body"
-
-[[strips]]
-name = "right"
-start_m = [0.15, 0]
-end_m = [0, 0.25980762]
-tip = "body"
-
-[[bodies]]
-name = "body"
-centre_m = [0.075, 0.25980762]
-mass_kg = 1
-moment_of_inertia_kg_m2 = 0.01
-
-[section]
-area_m2 = 150e-6
-second_moment_m4 = 1.125e-10
-
-[material]
-youngs_modulus_Pa = 206e9
-poisson_ratio = 0.3
-density_kg_m3 = 7850
-
-[drive]
-{drive}
-increments = 8
-
-[scene]
-effects = ["bending", "stretching", "strip_inertia", "body_inertia", "applied_force"]
-
-[effects.applied_force]
-force_N = [0, -20e3]
-"""
+FINDS = Path(__file__).with_name("finds")
+#: The drive of its file, and what stands in its place.
 DRIVES = {"held": "rotation_deg = 0", "turned": "rotation_deg = 0.01", "free": ""}
 SPLINE = ["--control-points", "12"]
+
+
+def pressed(drive):
+    """Return the case file of the pressed pivot under a drive."""
+    text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
+    return text.replace(DRIVES["held"], DRIVES[drive])
 
 
 def asked(command, tmp_path, drive, model, how):
     """First critical load factor and the message, as the command writes them in JSON; what it prints."""
     case = tmp_path / "pressed.toml"
-    case.write_text(CASE.format(drive=DRIVES[drive]))
+    case.write_text(pressed(drive))
     words = ["solve", case, "--model", model, *how]
     document = json.loads(command(*words, "--json", "-").out)
     printed = command(*words)
@@ -88,7 +58,7 @@ def test_both_models_say_where_a_pressed_pivot_gives_way(command, tmp_path, driv
 def test_a_spline_that_stops_says_where_it_buckled(command, tmp_path):
     """Pressed far beyond what it bears, the spline stops and says so, with the force, and what may go on."""
     path = tmp_path / "pressed.toml"
-    path.write_text(CASE.format(drive=DRIVES["turned"]).replace("-20e3", "-1e9"), encoding="utf-8")
+    path.write_text(pressed("turned").replace("-20e3", "-1e9"), encoding="utf-8")
     outcome = command("solve", path)
     assert outcome.code == 3
     assert re.search(r"lost its stability before, first at load factor \S+ \(force \d+ N\)", outcome.err)

@@ -30,19 +30,11 @@ def answer(command, *words):
     [pytest.param(name, marks=[pytest.mark.slow] * (name != "cantilever_with_body")) for name in MECHANISMS],
 )
 def test_both_models_release_every_mechanism_alike(name, command):
-    """After 5 ms all bodies are where the other model has them, and energies balance."""
+    """After 5 ms all bodies are where the other model has them."""
     places = []
     for model, coarse in COARSE.items():
         words = ["--model", model, *coarse, "--duration", 5e-3]
         found = answer(command, "release", FOLDER / f"{name}.toml", *words)
-        parts = {
-            key: np.array(found[f"{key}_J"]) for key in ("kinetic", "strain", "gravity", "work", "dissipated")
-        }
-        balance = parts["kinetic"] + parts["strain"] + parts["gravity"] - parts["work"] + parts["dissipated"]
-        largest = max(np.abs(parts["strain"]).max(), np.abs(parts["work"]).max())
-        assert np.abs(balance - balance[0]).max() < 1e-4 * largest
-        assert (parts["dissipated"][-1] > 0.0) == ("body_damping" in found["effects"])
-        assert (parts["work"][-1] > 0.0) == ("applied_force" in found["effects"])
         places.append([[place[key][-1] for key in ("x_m", "y_m")] for place in found["bodies"].values()])
     assert np.abs(np.subtract(*places)).max() < 1e-4  # m: a thousandth of the size
 
@@ -105,21 +97,6 @@ def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
     assert answer(command, "solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
     assert shifts[0] < 0.0
     assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
-
-
-def test_a_strip_may_have_a_section_of_its_own(tmp_path, command):
-    """A guide with one strip twice as thick needs four and a half times the force for the same way."""
-    text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")
-    own = text.replace('name = "left"', 'name = "left"\narea_m2 = 1e-5\nsecond_moment_m4 = 8.3333333e-13')
-    ways = []
-    for content in (text, own):
-        path = tmp_path / "guide.toml"
-        path.write_text(content.replace("[5, 0]", "[0.1, 0]"), encoding="utf-8")
-        x = answer(command, "solve", path, "--model", "spline", "--effects=-gravity")["bodies"]["platform"][
-            "x_m"
-        ]
-        ways.append(x[-1] - x[0])
-    assert ways[0] / ways[1] == pytest.approx(4.5, rel=1e-3)
 
 
 def test_effects_of_case_files_are_those_of_the_splines():
