@@ -62,25 +62,6 @@ def test_every_motion_has_a_companion(effects):
     assert 0.0 < motion.rotation_error < 0.01
 
 
-@pytest.mark.slow
-def test_elements_estimate_their_error_by_a_coarser_mesh():
-    """The estimate of ten elements is their difference to five over three, near that to a finer mesh."""
-    ten, forty = (
-        release_elements(
-            elements_pivot(**TABLE_ONE, elements=count),
-            start=1.0,
-            duration=0.01,
-            samples=50,
-            check=count == 10,
-        )
-        for count in (10, 40)
-    )
-    exact = np.abs(np.interp(ten.time, forty.time, forty.rotation) - ten.rotation).max()
-    assert ten.rotation_error == pytest.approx(exact, rel=0.5)
-    assert ten.resolution == ""
-    assert math.isnan(forty.rotation_error)
-
-
 def test_explicit_run_of_too_many_steps_is_refused_before_it_starts():
     """A stiffly damped release that needs 5e9 explicit steps names the scheme that needs twenty thousand."""
     damped = {

@@ -15,10 +15,7 @@ from studies.sweep import batch, points
 from studies.sweep.plan import Plan
 from studies.sweep.points import PATH, SHIFT, static_answer, values
 from studies.sweep.sample import Drawer
-from tests import gates
 from tests.sweep.sweeps import GRID, RANDOM, plan
-
-EPS = np.finfo(float).eps
 
 
 def rows(asked: Plan, start=0, stop=None):
@@ -26,52 +23,6 @@ def rows(asked: Plan, start=0, stop=None):
     stop = asked.sample.points if stop is None else stop
     columns = Drawer(asked.sample).rows(start, stop)
     return batch.solve_chunk(asked.task, start, columns).to_pandas()
-
-
-def single(row, **settings):
-    """Return the answer that `solve` gives for a row of the random pivots."""
-    case = named_case("cross_axis_pivot")
-    depth = case.length / row["strip.slenderness"]
-    design = replace(
-        case,
-        crossing_ratio=row["strip.crossing_ratio"],
-        inclination=math.radians(row["strip.inclination_deg"]),
-        area=case.area / case.depth * depth,
-        second_moment_of_area=case.area / case.depth * depth**3 / 12.0,
-        rotation=math.pi / 4,
-    )
-    return answer_static(design, SplineSettings(**{"control_points": 6, **settings}))
-
-
-def error_of_batch(**settings):
-    """Return the largest relative difference of the stored quantities to those of single answers."""
-    found = rows(plan(RANDOM.replace("points = 200", "points = 12") + "[settings]\ncontrol_points = 6"))
-    errors = []
-    for _, row in found.iterrows():
-        answer = single(row, **settings)
-        shift = np.linalg.norm(answer.centre_shift, axis=1)
-        expected = {
-            "torque_Nm": answer.torque[-1],
-            "stiffness_rest_Nm_per_rad": answer.stiffness[0],
-            "stiffness_end_Nm_per_rad": answer.stiffness[-1],
-            "stress_max_Pa": answer.max_stress.max(),
-            "strain_max": answer.max_stress.max() / named_case("cross_axis_pivot").youngs_modulus,
-            "energy_J": answer.strain_energy[-1],
-            "centre_shift_end_m": shift[-1],
-            "centre_shift_max_m": shift.max(),
-        }
-        errors += [abs(row[name] / value - 1.0) for name, value in expected.items()]
-        variation = np.ptp(answer.stiffness) / answer.stiffness[0]
-        errors.append(abs(row["stiffness_variation"] - variation))
-        section = row["width_ratio"] / row["thickness_ratio"]
-        assert row["curvature_ratio"] == pytest.approx(2.0 * row["strain_max"] * section**2)
-        assert settings or row["iterations"] == answer.counters["newton_iterations"]
-    return max(errors)
-
-
-def test_batch_rows_are_those_of_single_answers():
-    """Requirement: quantities from the batch kernel are those of `solve` for the same designs."""
-    gates.hold("sweep_batch", lambda **settings: error_of_batch(**settings) + EPS)
 
 
 #: A pivot whose section is given by its sides. Kernels and single paths begin from other guesses there: how
@@ -90,6 +41,8 @@ quantities = ["torque_Nm", "stiffness_end_Nm_per_rad", "stress_max_Pa", "energy_
     ("text", "within"),
     [
         (GRID, 1e-11),
+        # the shift is a difference of places that are up to a thousand times as large
+        (RANDOM.replace("points = 200", "points = 12") + "[settings]\ncontrol_points = 6", 1e-10),
         (GRID + "drive.rotation_deg = [-40, 20]", 1e-11),
         (GRID + "drive.increments = [3, 5]\nstrip.section_depth_m = [0.002, 0.005]", 1e-11),
         (GRID + "strip.slenderness = [15, 40]\nstrip.length_m = [0.05, 0.1]", 1e-11),
@@ -252,17 +205,28 @@ UNBENT = replace(
 @pytest.mark.parametrize(
     "settings", [SplineSettings(control_points=6), FeSettings(elements=10)], ids=lambda s: s.model
 )
-def test_largest_values_are_those_of_the_whole_path(settings):
-    """Requirement: stress_max_Pa and its kin are the largest of all states, also of a path that relaxes."""
+def test_values_are_those_of_the_answer(settings):
+    """Requirement: quantities are those of `solve`, and stress_max_Pa and its kin the largest of all states,
+    also of a path that relaxes."""
     answer = answer_static(UNBENT, settings)
     status, _, paths = static_answer(UNBENT, settings, both_sides=False)
     assert status == "converged" and paths is not None
     found = {name: float(value[0]) for name, value in values(PATH | SHIFT, paths).items()}
     stress, torque = answer.max_stress, np.abs(answer.torque)
     assert stress.max() > 1.2 * stress[-1] and torque.max() > 1.2 * torque[-1]  # the path does relax
-    assert found["stress_max_Pa"] == pytest.approx(stress.max(), rel=1e-9)
-    assert found["stress_end_Pa"] == pytest.approx(stress[-1], rel=1e-9)
-    assert found["torque_max_Nm"] == pytest.approx(torque.max(), rel=1e-9)
-    assert found["torque_Nm"] == pytest.approx(answer.torque[-1], rel=1e-9)
     shift = np.hypot(*answer.centre_shift.T)
-    assert found["centre_shift_max_m"] == pytest.approx(shift.max(), rel=1e-9)
+    expected = {
+        "torque_Nm": answer.torque[-1],
+        "torque_max_Nm": torque.max(),
+        "stress_end_Pa": stress[-1],
+        "stress_max_Pa": stress.max(),
+        "strain_max": stress.max() / UNBENT.youngs_modulus,
+        "energy_J": answer.strain_energy[-1],
+        "stiffness_rest_Nm_per_rad": answer.stiffness[0],
+        "stiffness_end_Nm_per_rad": answer.stiffness[-1],
+        "stiffness_variation": np.ptp(answer.stiffness) / answer.stiffness[0],
+        "centre_shift_end_m": shift[-1],
+        "centre_shift_max_m": shift.max(),
+        "iterations": answer.counters["newton_iterations"],
+    }
+    assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-9)
