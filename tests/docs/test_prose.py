@@ -45,12 +45,6 @@ def test_blocks_and_sections():
     assert [node.astext() for node in document.findall(docutils.nodes.strong)] == ["Args"]
 
 
-def test_names_of_this_repository_are_links():
-    """A dotted name of a package becomes a reference, which the build resolves or refuses."""
-    assert ":py:obj:`spline_model.pivot.Pivot`" in PROSE.as_rst("as ``spline_model.pivot.Pivot``")
-    assert ":py:obj:" not in PROSE.as_rst("as ``numpy.linalg.solve`` or ``spline_model``")
-
-
 def test_arrays_in_signatures_are_short():
     """An array with its two parameters becomes NDArray, a default that is no code an ellipsis."""
     given = "(a: ~numpy.ndarray[tuple[~typing.Any, ...], ~numpy.dtype[~numpy.float64]] = <factory>)"

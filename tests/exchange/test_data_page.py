@@ -71,24 +71,6 @@ def test_units_are_those_in_the_names():
         assert unit in ({UNITS[max(ends, key=len)]} if ends else plain), name
 
 
-def test_the_line_that_loads_a_table_works(monkeypatch):
-    """The code of the page runs as it is written, from the repository's root."""
-    monkeypatch.chdir(ROOT)
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
-    names: dict[str, pd.DataFrame] = {}
-    exec(code, names)
-    assert {"formulation", "rotation_rad", "torque_Nm"} <= set(names["curves"].columns)
-
-
-def test_the_export_of_the_page_runs(tmp_path, monkeypatch):
-    """The command of the page writes what the page says, and its Parquet loads as it is written."""
-    (words,) = re.findall(r"```sh\npython -m studies (.*?)\n```", PAGE, flags=re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    assert main(words.replace("studies/cases", str(FOLDER)).split()) == 0
-    (line,) = re.findall(r"`(pd\.read_parquet\(.*?\))`", PAGE)
-    assert set(COLUMNS) > set(eval(line, {"pd": pd}).columns)
-
-
 @pytest.mark.parametrize(
     "words",
     [

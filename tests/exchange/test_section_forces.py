@@ -179,14 +179,8 @@ def test_motion_keeps_the_bodies_and_strips_together(settings):
     fields = fields_of(answer_release(design, settings, duration=1e-3, records=4, **step))
     crank = [block.name for block in fields.blocks].index("crank")
     turn, centre = fields.bodies[:, crank, 2], fields.bodies[:, crank, :2]
-    offset = fields.rest_shape[0, -1] - fields.rest_bodies[crank]
-    turned = np.stack(
-        (
-            np.cos(turn) * offset[0] - np.sin(turn) * offset[1],
-            np.sin(turn) * offset[0] + np.cos(turn) * offset[1],
-        ),
-        axis=-1,
-    )
+    offset = np.exp(1j * turn) * complex(*(fields.rest_shape[0, -1] - fields.rest_bodies[crank]))
+    turned = np.stack((offset.real, offset.imag), axis=-1)
     assert fields.shape[:, 0, -1] == pytest.approx(centre + turned, abs=1e-8)
     assert fields.rotation[:, 0, -1] == pytest.approx(turn, abs=1e-8)
 

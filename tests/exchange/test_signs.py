@@ -6,34 +6,18 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.effects import Effects
-from studies.cases.mechanism import Mechanism, Strip
+from studies.cases.design import read_design
 from studies.exchange.formats import tables
+from tests.one_strip import one_strip
 
 LENGTH, PULL, LIFT = 0.1, 0.02, 0.01
-CANTILEVER = Mechanism(
-    strips=(
-        Strip(
-            name="strip",
-            start=(0.0, 0.0),
-            end=(LENGTH, 0.0),
-            tip=None,
-            area=5e-6,
-            second_moment_of_area=1.0416667e-13,
-            youngs_modulus=206e9,
-            poisson_ratio=0.29,
-            density=7800.0,
-        ),
-    ),
-    bodies=(),
-    body=None,
-    rotation=None,
-    increments=2,
-    effects=Effects(
-        names=("bending", "stretching", "tip_force"),
-        tables={"tip_force": {"strip": "strip", "force": (PULL, LIFT)}},
-    ),
-)
+SCENE = f"""
+effects = ["bending", "stretching", "tip_force"]
+
+[effects.tip_force]
+strip = "strip"
+force_N = [{PULL}, {LIFT}]
+"""
 MODELS = [
     SplineSettings(control_points=8),
     FeSettings(elements=20),
@@ -42,9 +26,11 @@ MODELS = [
 
 
 @pytest.mark.parametrize("settings", MODELS, ids=lambda s: s.model)
-def test_signs_of_a_cantilever_that_is_pulled_and_lifted(settings):
+def test_signs_of_a_cantilever_that_is_pulled_and_lifted(settings, tmp_path):
     """Requirement: positive are tension, a force to the left and the moment that lifts the strip."""
-    table = tables(fields_of(answer_static(CANTILEVER, settings)))
+    path = tmp_path / "cantilever.toml"
+    path.write_text(one_strip(SCENE), encoding="utf-8")
+    table = tables(fields_of(answer_static(read_design(path), settings)))
     strips, reactions = (table[name][table[name]["load_factor"] == 1.0] for name in ("strips", "reactions"))
     x, y, at = (strips[name].to_numpy() for name in ("x_m", "y_m", "arc_length_m"))
     moment = LIFT * (x[-1] - x) - PULL * (y[-1] - y)  # about each section, of the force at the tip

@@ -49,16 +49,6 @@ def test_clamps_are_dragged(page, strip, end, way, degrees):
     assert page.ask(DESIGN) == pytest.approx(before)
 
 
-def test_load_is_set_and_seen(page):
-    """Requirement: a load that is typed in newtons acts, and its energy is in the table; its slider's
-    middle is no load."""
-    typed(page, "load, downward in N", "0.05")
-    page.wait("studio.state.values.load === 0.05 && studio.state.pose[1] < studio.state.placing.centre[1]")
-    assert "the load's energy" in page.ask("document.getElementById('numbers').textContent")
-    typed(page, "load, downward, slider", "0")
-    page.wait("studio.state.values.load === 0")
-
-
 def test_scrubbing_shows_the_pictures():
     """Requirement: back in the last minute the picture of that moment is shown under the strips, of the same
     size, for less than 20 kB a picture; a film offers no list of cameras."""

@@ -45,22 +45,35 @@ def test_simulated_time_is_added_up_and_begins_anew_with_a_design():
 
 @pytest.mark.parametrize("solver", ["stable", "energy"])
 @pytest.mark.parametrize(
-    ("name", "value"), [("width", 0.012), ("length", 0.09), ("relaxation_time", 0.0), ("body_mass", 0.1)]
+    "change",
+    [
+        {"do": "parameter", "name": "width", "value": 0.012},
+        {"do": "parameter", "name": "length", "value": 0.09},
+        {"do": "parameter", "name": "relaxation_time", "value": 0.0},
+        {"do": "parameter", "name": "body_mass", "value": 0.1},
+        {"do": "solver", "name": "energy"},
+        {"do": "solver", "name": "printed"},
+    ],
+    ids=lambda change: change["name"],
 )
-def test_a_swing_goes_on_through_a_change_of_the_design(solver, name, value):
-    """Requirement: another design swings on from the pose and with the velocity that the former one had."""
+def test_a_swing_goes_on_through_a_change(solver, change):
+    """Requirement: another design, or the same by another solver, swings on from the pose and with the
+    velocity that the former one had; energies are counted anew."""
     made = session()
     made.feed({"do": "solver", "name": solver, "t": 0.0})
     turned(made, 20)
     made.feed({"do": "release", "t": 1.0})
     for k in range(6):
         before = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
-    after = made.feed({"do": "parameter", "name": name, "value": value, "t": 1.25})
-    assert (after["mode"], codes(after), after["values"][name]) == ("released", [], value)
+    after = made.feed({**change, "t": 1.25})
+    assert (after["mode"], codes(after)) == ("released", [])
+    assert after["values"].get(change["name"]) == change.get("value")
+    assert after["solver"] == (change["name"] if change["do"] == "solver" else solver)
     moved = np.subtract(after["pose"][:2], made.placing.centre) - before["displacement"][:2]
-    assert np.abs(moved).max() < (1e-12 if name != "length" else 0.01)
+    assert np.abs(moved).max() < (1e-12 if change["name"] != "length" else 0.01)
     assert after["pose"][2] == pytest.approx(before["pose"][2], abs=1e-12)
     assert after["velocity"] == pytest.approx(before["velocity"], rel=1e-6)
+    assert after["energy"]["lost"] == pytest.approx(0.0, abs=1e-12)
     assert made.feed({"do": "tick", "t": 1.25 + FRAME})["pose"] != after["pose"]
 
 
@@ -106,21 +119,6 @@ def test_sweeps_are_as_many_as_are_chosen():
     most = 71 * 4  # printed steps of a frame
     assert swung("printed", 1, sweeps=2)["iterations"] <= 2 * most
     assert swung("printed", 1, sweeps=30)["iterations"] > 5 * most
-
-
-def test_solver_is_changed_while_the_body_swings():
-    """Requirement: another solver takes the motion over: pose and velocity stay, energies are counted
-    anew."""
-    made = session()
-    turned(made, 20, 40)
-    made.feed({"do": "release", "t": 1.0})
-    before = made.feed({"do": "tick", "t": 1.0 + FRAME})
-    for name in ("energy", "printed"):
-        after = made.feed({"do": "solver", "name": name, "t": 1.05})
-        assert after["pose"] == pytest.approx(before["pose"], abs=1e-9)
-        assert after["velocity"] == pytest.approx(before["velocity"], rel=1e-6)
-        assert after["energy"]["lost"] == pytest.approx(0.0, abs=1e-12)
-    assert made.feed({"do": "tick", "t": 1.05 + FRAME})["pose"] != after["pose"]
 
 
 def test_time_goes_slower_where_there_is_no_room_for_its_steps():

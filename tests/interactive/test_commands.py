@@ -1,7 +1,6 @@
 """The commands `interactive` and `markers`, and what happens without the extra."""
 
 import io
-import json
 import re
 import signal
 import subprocess
@@ -14,68 +13,18 @@ from PIL import Image
 
 from studies.commands import interactive
 from studies.record.source import ROOT
-
-#: Runs the commands, in words of JSON, where cv2 cannot be imported: exit code and both streams of each.
-WITHOUT = """
-import contextlib, io, json, sys, importlib.util as u
-sys.modules["cv2"], known = None, u.find_spec
-u.find_spec = lambda name, *more: None if name == "cv2" else known(name, *more)
-from studies.__main__ import main
-done = []
-for words in json.loads(sys.argv[1]):
-    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
-        done.append((main(words), out, err))
-print(json.dumps([(code, out.getvalue(), err.getvalue()) for code, out, err in done]))
-"""
-
-
-@pytest.fixture(scope="module")
-def without(tmp_path_factory):
-    """Exit code, output and errors of commands by their first word, in a process without the extra; a folder
-    for results."""
-    folder = tmp_path_factory.mktemp("results")
-    commands = [
-        ["interactive"],
-        ["markers"],
-        ["status", "--results", str(folder)],
-        ["run", "fig07_interactive", "--results", str(folder)],
-    ]
-    words = [sys.executable, "-c", WITHOUT, json.dumps(commands)]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60)
-    outcomes = zip(commands, json.loads(done.stdout), strict=True)
-    return {command[0]: outcome for command, outcome in outcomes} | {"folder": folder}
+from studies.registry import study_of
 
 
 @pytest.mark.parametrize("command", ["interactive", "markers"])
-def test_without_the_extra_it_is_one_line(command, without):
-    """Requirement: a missing package is named in one line with what to do, exit code 2."""
-    code, _, said = without[command]
-    assert code == 2
+def test_without_the_extra_it_is_one_line(command, monkeypatch, refused):
+    """Requirement: a missing package is named in one line with what to do, exit code 2, and the figure of the
+    environment is not computed."""
+    monkeypatch.setitem(sys.modules, "cv2", None)
     # where the extra is not installed at all, its other packages are named as well
-    assert re.fullmatch(
-        rf"studies: {command}: got no opencv-python-headless[\w, ]*, expected the extra: "
-        r"run `make interactive`, or pip install -e '\.\[interactive\]'\n",
-        said,
-    )
-
-
-def test_the_rest_does_not_need_the_extra(without):
-    """Requirement: listing the studies and the state of the results works without it."""
-    code, out, said = without["status"]
-    assert (code, said) == (0, "")
-    assert "paper/fig07_interactive" in out
-
-
-def test_figure_is_left_as_it_is_without_the_extra(without):
-    """Requirement: `run` says what the figure's study lacks, leaves its result alone and goes on."""
-    code, _, said = without["run"]
-    assert code == 0
-    assert re.fullmatch(
-        r"paper/fig07_interactive: left as it is: it needs cv2[\w, ]*: "
-        r"python -m pip install '\.\[interactive\]'\n",
-        said,
-    )
-    assert list(without["folder"].iterdir()) == []
+    said = refused(command, says=f"studies: {command}: got no opencv-python-headless")
+    assert said.endswith(", expected the extra: run `make interactive`, or pip install -e '.[interactive]'\n")
+    assert study_of("paper/fig07_interactive").missing().startswith("it needs cv2")
 
 
 @pytest.mark.slow

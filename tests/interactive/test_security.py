@@ -230,31 +230,6 @@ def test_answers_leave_at_once(server):
     assert {each.proto for each in server._listeners} == {sockets.IPPROTO_TCP}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("rate", [144.0, 240.0])
-def test_poses_of_a_fast_screen_keep_their_session(server, rate):
-    """Requirement: of the poses of a fast screen those that cannot be solved in time are dropped, never the
-    newest: answers come meanwhile, and a key that is pressed then is taken."""
-    count = round(4 * rate)
-    with opened(server) as socket:
-        say(socket, do="drive", by="rotation")
-        answer(socket)
-        begin = time.monotonic()
-        for k in range(count):
-            say(socket, do="pose", pose=[0, 0, 0.5 * k / count], seq=k)
-            if k % 10 == 9:
-                time.sleep(max(0.0, begin + k / rate - time.monotonic()))
-        say(socket, do="pose", pose=[0, 0, 0.5], seq=count)
-        say(socket, do="undo")
-        taken = [0]
-        while (state := answer(socket))["seq"] != count:
-            taken.append(state["seq"])
-        assert state["pose"][2] == pytest.approx(0.5)
-        assert [w["code"] for w in answer(socket)["warnings"]] == ["empty"]
-    assert len(taken) > 2  # how far they are apart is a matter of the machine
-    assert taken == sorted(taken)
-
-
 def test_flood_of_poses_is_thinned(server):
     """Requirement: of poses at once only as many as the rate allows are solved, and the last of them is."""
     with opened(server) as socket:

@@ -2,8 +2,6 @@
 
 import json
 import math
-import time
-from itertools import pairwise
 
 import pytest
 
@@ -12,7 +10,6 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.interactive.mechanics import Mechanics
 from studies.interactive.recording import Recorder, mark, replay
 from studies.interactive.session import Session
 from studies.interactive.web import protocol
@@ -62,27 +59,6 @@ def test_released_body_runs_by_itself(server):
         assert answer(socket)["steps"] == first + 1
 
 
-@pytest.mark.slow
-def test_solver_that_is_too_slow_slows_time(server, monkeypatch):
-    """Requirement: where steps take longer than a frame the server asks for fewer of them, time goes slower,
-    which is said, and the recording holds how many there was room for."""
-    advance = Mechanics.advance
-    monkeypatch.setattr(Mechanics, "advance", lambda self, n: time.sleep(0.02 * n) or advance(self, n))
-    with opened(server) as socket:
-        say(socket, do="pose", pose=[0, 0, 0.6])
-        say(socket, do="record", on=True)
-        say(socket, do="release")
-        states = [answer(socket) for _ in range(20)]
-        assert [w["code"] for w in states[-1]["warnings"]] == ["slowed"]
-        assert (states[-1]["mode"], states[-1]["paused"]) == ("released", False)
-        assert {b["steps"] - a["steps"] for a, b in pairwise(states[-5:])} == {1}
-        say(socket, do="record", on=False)
-        while "lines" not in (recording := answer(socket, "recording")):
-            pass
-    assert all(good for _, good in replay(recording["lines"]))
-    assert sum('"room": 1' in line for line in recording["lines"]) > 5
-
-
 def test_recording_is_sent_and_replays(server):
     """Requirement: what the page records replays to the same states."""
     with opened(server) as socket:
@@ -92,18 +68,11 @@ def test_recording_is_sent_and_replays(server):
             say(socket, do="pose", pose=[0, 0, 0.05 * k], seq=k)
             while answer(socket)["seq"] != k:
                 pass
-        say(socket, do="release")
-        say(socket, do="pause")
-        for _ in range(3):
-            say(socket, do="step")
-        while answer(socket)["steps"] < 3:
-            pass
         say(socket, do="record", on=False)
-        lines = answer(socket, "recording")
-        if lines["on"]:
-            lines = answer(socket, "recording")
-    same = [good for _, good in replay(lines["lines"])]
-    assert len(same) >= 14
+        while "lines" not in (recording := answer(socket, "recording")):
+            pass
+    same = [good for _, good in replay(recording["lines"])]
+    assert len(same) >= 8
     assert all(same)
 
 

@@ -1,6 +1,9 @@
-"""Pictures through the server: films, those of the page, and how long they take."""
+"""Pictures through the server: films, those of the page, how long they take, and ten minutes of them."""
 
+import os
+from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,11 +12,12 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.tracking.films import Video
+from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import counter, film, truth
 from tests.interactive.latency import measured
-from tests.interactive.sockets import answer, closing, frame, opened, say
+from tests.interactive.sockets import answer, closing, emptied, frame, opened, say
 
 
 def test_film_is_tracked_and_sent():
@@ -84,3 +88,36 @@ def test_way_of_a_picture_is_told_in_parts():
     assert (parts[:, :2].sum(axis=1) <= whole).all()
     track, solve, send = np.median(parts, axis=0)
     assert track > max(solve, send)
+
+
+STATM = Path("/proc/self/statm")
+#: Frames of ten minutes, and those after which everything has been allocated once.
+FRAMES, WARM = 10 * 60 * 25, 500
+#: Growth that is allowed [bytes].
+GROWTH = 20e6
+
+
+def resident():
+    """Memory of this process [bytes]."""
+    return int(STATM.read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not STATM.is_file(), reason="needs /proc")
+def test_ten_minutes_of_film_do_not_grow(monkeypatch):
+    """Requirement: ten minutes of film with a release and a catch every four seconds grow by less than 20 MB
+    and leave no socket open."""
+    monkeypatch.setattr(protocol, "RATE", 1e9)
+    monkeypatch.setattr(protocol, "BURST", 1e9)
+    source = replace(film(Optics(width=480, height=360, focal=450.0), frames=40, samples=3), rate=1e6)
+    with Server(Settings(camera="film", source=source)) as hosted:
+        with opened(hosted) as socket:
+            for shown in range(1, FRAMES + 1):
+                assert frame(socket)[0]["sight"]["state"] == "found"
+                say(socket, do="shown")
+                if shown % 100 in (50, 90):
+                    say(socket, do="release" if shown % 100 == 50 else "catch")
+                if shown == WARM:
+                    start = resident()
+            assert resident() - start < GROWTH
+        assert emptied(hosted)

@@ -9,7 +9,6 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
-from studies.interactive.session import Session
 from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
@@ -130,31 +129,25 @@ def test_finger_on_a_corner(radius):
     gates.hold("tracking_finger_shift", lambda **how: rms(finger_errors(radius, **how)[1]))
 
 
-def without(number, frames):
-    """Markers of which one is hidden in some frames."""
-    return lambda k: [m for m in both(k) if m.number != number or k not in frames]
+#: What the wrong frames of a film say -> their markers.
+WRONG = {
+    "lost-0": lambda k: both(k)[1:],
+    "lost-1": lambda k: both(k)[:1],
+    "lost-both": lambda k: [],
+    "duplicate-0": lambda k: [*both(k), Marker(number=0, pose=(0.16, 0.02, 0.4))],
+    "duplicate-1": lambda k: [*both(k), Marker(number=1, pose=(0.16, 0.02, 0.4))],
+    "sizes": lambda k: [both(k)[0], replace(both(k)[1], side=0.97 * SIDE)],
+}
 
 
-@pytest.mark.parametrize("number", [0, 1])
-def test_lost_marker_is_named_at_once(number):
-    """Requirement: a marker that is hidden gives no pose and its name in the first such frame, and comes
-    back."""
-    hidden = range(4, 9)
-    events = watch(film(frames=12, markers=without(number, hidden)))
-    assert [names(events[k]) for k in hidden] == [f"lost-{number}"] * len(hidden)
-    assert [event["do"] for k, event in enumerate(events) if k not in hidden] == ["seen"] * 7
-
-
-@pytest.mark.parametrize("number", [0, 1])
-def test_second_copy_is_refused(number):
-    """Requirement: two copies of a marker give no pose and are named in the first such frame."""
-
-    def markers(k):
-        return [*both(k), *([Marker(number=number, pose=(0.16, 0.02, 0.4))] if k >= 3 else [])]
-
-    events = watch(film(frames=6, markers=markers))
-    assert [names(event) for event in events[3:]] == [f"duplicate-{number}"] * 3
-    assert [event["do"] for event in events[:3]] == ["seen"] * 3
+@pytest.mark.parametrize("said", WRONG)
+def test_wrong_markers_are_named_at_once(said):
+    """Requirement: a marker that is hidden, there twice, or printed 3 % smaller than the other gives no pose
+    and its name in the first such frame, and the pose comes back."""
+    wrong = range(4, 7)
+    events = watch(film(frames=9, markers=lambda k: WRONG[said](k) if k in wrong else both(k)))
+    assert [names(events[k]) for k in wrong] == [said] * len(wrong)
+    assert [event["do"] for k, event in enumerate(events) if k not in wrong] == ["seen"] * 6
 
 
 def test_mirrored_picture_is_named():
@@ -171,15 +164,6 @@ def test_other_ids_are_named():
     others = [Marker(number=7, pose=(0.0, 0.0, 0.0)), Marker(number=9, pose=(0.0, 0.15, 0.0))]
     (event,) = watch(film(frames=1, markers=lambda k: others))
     assert (names(event), event["text"]) == ("other-ids", "7, 9")
-
-
-def test_sizes_that_differ_are_named():
-    """Requirement: a moving marker printed 3 % smaller than the other is named and gives no pose."""
-    first, second = both(5)
-    small = Marker(number=1, pose=second.pose, side=0.97 * SIDE)
-    assert [names(event) for event in watch(film(frames=3, markers=lambda k: [first, small]))] == [
-        "sizes"
-    ] * 3
 
 
 def test_marker_out_of_plane_is_not_shown_as_right():
@@ -209,20 +193,6 @@ def test_lens_is_seen():
     events = watch(made)
     assert rms(errors(watch(made, camera))[0]) < rms(errors(events)[0]) / 3
     assert all("not-flat" in names(event) or event["do"] == "unseen" for event in events)
-
-
-def test_swapped_markers_are_named():
-    """Requirement: markers that were glued the wrong way round are named in the first picture and give no
-    pose."""
-
-    def swapped(k):
-        return [Marker(number=1 - marker.number, pose=marker.pose) for marker in both(k)]
-
-    session = Session()
-    for k, event in enumerate(watch(film(frames=3, markers=swapped))):
-        state = session.feed({**event, "t": k / 25})
-        assert [warning["code"] for warning in state["warnings"]] == ["swapped"]
-        assert state["displacement"] == [0.0, 0.0, 0.0]
 
 
 def test_texture_alone_shows_no_marker():

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from spline_model import solve_impulses
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import (
     extrapolate,
@@ -17,6 +18,7 @@ from studies.answers.metrics import (
     richardson,
     trajectory_error,
 )
+from studies.answers.models import put
 from studies.answers.motion import Motion
 from studies.answers.reference import SWING_MESHES, limit_of_swings
 from studies.answers.response import centre_shift
@@ -63,14 +65,8 @@ def test_a_hinge_at_the_crossing_has_no_centre_shift():
     """Turning about the crossing point shifts nothing; moving as well shifts by that much."""
     rotation = np.linspace(0.0, 2.0, 5)
     crossing = np.array(TABLE_1.crossing_point)
-    arm = np.array([0.01, 0.03])
-    turned = np.stack(
-        (
-            np.cos(rotation) * arm[0] - np.sin(rotation) * arm[1],
-            np.sin(rotation) * arm[0] + np.cos(rotation) * arm[1],
-        ),
-        axis=-1,
-    )
+    arm = np.exp(1j * rotation) * (0.01 + 0.03j)
+    turned = np.stack((arm.real, arm.imag), axis=-1)
     moved = np.outer(rotation, [0.002, -0.001])
     assert centre_shift(crossing, rotation, crossing + turned) == pytest.approx(0.0, abs=1e-16)
     assert centre_shift(crossing, rotation, crossing + turned + moved) == pytest.approx(moved, abs=1e-16)
@@ -141,27 +137,15 @@ def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
 def test_limit_of_swings_removes_the_error_of_the_mesh():
     """Swings whose rotation is off by h^2 and h^4 have the exact one as limit, and an uncertainty."""
     instants = np.linspace(0.0, 0.05, 401)
+    swing = answer_release(TABLE_1, FeSettings(elements=2), duration=1e-5)
+    arrays = {name: np.ones_like(instants) for name in Motion.arrays()} | {"time": instants}
     levels = []
     for elements in SWING_MESHES:
         h = 1.0 / elements
         rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
-        arrays = {name: np.ones_like(instants) for name in Motion.arrays() if name != "time"}
+        bodies = {"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)}
         levels.append(
-            Motion(
-                design=TABLE_1,
-                model="fe",
-                settings={"elements": elements},
-                status="converged",
-                message="",
-                resolution="",
-                effects=(),
-                time=instants,
-                bodies={"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)},
-                counters={},
-                wall_s=0.0,
-                solve_s=0.0,
-                **arrays,
-            )
+            dataclasses.replace(swing, settings={"elements": elements}, bodies=bodies, effects=(), **arrays)
         )
     limit = limit_of_swings(levels, instants[::4])
     assert limit.swing.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
@@ -178,3 +162,20 @@ def test_solve_time_is_a_part_of_the_wall_time(settings):
     assert 0.0 < path.solve_s < path.wall_s
     motion = answer_release(problem, settings, duration=1e-3)
     assert motion.solve_s > 0.0
+
+
+def test_a_motion_by_impulses_is_a_neutral_answer():
+    """A trajectory of impulses becomes the neutral motion of the other integrators."""
+    asked = put(TABLE_1, SplineSettings(control_points=6), moving=True)
+    run = solve_impulses(asked.modelled, start=0.5, duration=0.05)
+    answer = Motion.of(asked, run, wall_s=0.0, solve_s=0.0)
+    assert answer.converged
+    own = {
+        "integrator": "sequential impulses, stable",
+        "step_s": 0.01,
+        "control_points": run.control_points,
+    }
+    assert answer.settings == asked.discretised(None) | own
+    assert answer.rotation[0] == pytest.approx(0.5)
+    assert "of the swing's period at rest" in answer.resolution
+    assert 0.0 < answer.energy_error <= 1.0  # all that the damping of the swing takes

@@ -19,6 +19,7 @@ from studies.cases.problem import FOLDER, named_case
 from studies.effects import audit as module
 from studies.effects import scenes
 from studies.effects.beyond import prices
+from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
 
 TABLE_1 = FOLDER / "cross_axis_pivot.toml"
 FULL = ("bending", "stretching", "strip_inertia", "body_inertia", "section_rotary_inertia", "gravity")
@@ -94,25 +95,6 @@ def test_audit_of_a_mechanism_without_a_drive(command):
     assert "applied_force" in found["cheapest"]["effects"]
 
 
-@pytest.mark.usefixtures("brief")
-def test_audit_reads_well(command):
-    """Without --json: a line a scene, and the cheapest with what it was verified by."""
-    out = command("audit", TABLE_1, "--tolerance", "1e-2", "--control-points", 4).out
-    lines = out.splitlines()
-    assert lines[0] == f"full scene: {', '.join(FULL)}"
-    assert [line.split("  ")[0] for line in lines[3:10]] == [
-        "full scene",
-        "no bending",
-        "inextensible strips",
-        "massless strips",
-        "no body inertia",
-        "no section rotary inertia",
-        "no gravity",
-    ]
-    assert "cheapest within 0.01: bending, " in out
-    assert "run anew: largest change " in lines[-1]
-
-
 def test_audit_of_what_is_not_stable(command, tmp_path):
     """A design that does not stand at rest is exit code 3, and says why."""
     text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")
@@ -171,3 +153,25 @@ def test_what_has_no_price_says_why():
     assert (rows["shear"]["status"], rows["anticlastic"]["status"]) == ("refused", "converged")
     assert "got 'inextensible'" in rows["shear"]["reason"]
     assert math.isnan(rows["shear"]["largest"])
+
+
+WITHIN = dict.fromkeys(CHANGES, 1e-4)
+SIZE = dict.fromkeys(SIZES, 1)
+
+
+def scene(wall_s, *names, **changes):
+    """A scene of the audit with these effects, changes and time."""
+    variant = Variant(dropped=(), effects=Effects(names=names))
+    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, changes=WITHIN | changes)
+
+
+@pytest.mark.parametrize("change", WITHIN)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_every_change_counts(change, sign):
+    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it."""
+    full = scene(2.0, "bending", "stretching", **dict.fromkeys(WITHIN, 0.0))
+    far = scene(1.0, "bending", **{change: sign * 2.0 * TOLERANCE})
+    near = scene(1.0, "bending", **{change: sign * 0.5 * TOLERANCE})
+    assert far.largest == pytest.approx(2.0 * TOLERANCE)
+    assert module._cheapest([full, far], TOLERANCE) is full
+    assert module._cheapest([full, near], TOLERANCE) is near

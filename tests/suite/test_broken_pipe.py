@@ -29,15 +29,7 @@ def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> 
     return done.returncode, done.stderr or ""
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["list"],
-        TABLE,
-        pytest.param([*TABLE, "--json", "-"], marks=pytest.mark.slow),
-    ],
-    ids=["list", "table", "json"],
-)
+@pytest.mark.parametrize("words", [["list"], TABLE], ids=["list", "table"])
 def test_a_reader_that_leaves_ends_the_command_quietly(words):
     """No traceback, nothing on the error stream, and the code that a shell gives for SIGPIPE."""
     assert code_without_a_reader(*words) == (141, "")

@@ -1,83 +1,34 @@
 """`python -m studies converge`: errors, orders and the counts that reach an accuracy."""
 
-import io
 import re
-from contextlib import redirect_stdout
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from studies.__main__ import main
 from studies.answers.reference import QUANTITIES
-from studies.cases.problem import FOLDER
 from studies.convergence.sweep import reaching, with_orders
 
 
-@pytest.fixture(scope="module")
-def short(tmp_path_factory):
-    """Run the command on a short path with few refinements; return its code, its output and its folder, in
-    which there was a file before."""
-    folder = tmp_path_factory.mktemp("out")
+def test_table_folder_orders_and_counts(command, case, tmp_path):
+    """The table has a row for every count, order 2 for the elements, and the counts for three accuracies; the
+    folder holds both tables and the figure, and what was there before."""
+    folder = tmp_path / "out"
+    folder.mkdir()
     (folder / "mine.txt").write_text("keep")
-    path, text = folder.parent / "short.toml", (FOLDER / "cross_axis_pivot.toml").read_text(encoding="utf-8")
-    for old, new in (("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3")):
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text, encoding="utf-8")
-    words = ["converge", str(path), "--control-points", "4:6", "--elements", "5:40", "--out", str(folder)]
-    with redirect_stdout(io.StringIO()) as out:
-        code = main(words)
-    return code, out.getvalue(), folder
-
-
-def test_table_orders_and_counts(short):
-    """The table has a row for every count, order 2 for the elements, and the counts for three accuracies."""
-    code, out, _ = short
-    assert code == 0
-    rows = {int(line.split()[0]): line.split() for line in out.splitlines() if re.match(r" +\d", line)}
+    path = case(("rotation_deg = 90", "rotation_deg = 30"), ("increments = 20", "increments = 3"))
+    words = ["converge", path, "--control-points", "4:6", "--elements", "5:40", "--out", folder]
+    outcome = command(*words)
+    assert outcome.code == 0
+    rows = {
+        int(line.split()[0]): line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)
+    }
     assert set(rows) == {4, 5, 6, 10, 20, 40}
     assert [float(cell) for cell in rows[40][2:9:2]] == pytest.approx([2.0] * 4, abs=0.1)
     assert rows[40][9] == "converged"
-    assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", out)
-    assert len(re.findall(r"\nelements +\d+ +\d+ +> 40\n", out)) == 2
-    assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", out)[1]) < 1e-6
-
-
-def test_estimates_stand_beside_the_errors(short):
-    """What `solve` takes by itself is told with its errors and estimates, which are no less than half."""
-    lines = short[1].splitlines()
-    place = next(i for i, line in enumerate(lines) if line.startswith("without --control-points"))
-    error, estimate = (
-        [float(v) for v in re.findall(r"\d\.\de-\d+", line)] for line in lines[place + 1 : place + 3]
-    )
-    assert len(error) == len(estimate) == len(QUANTITIES)
-    assert all(e < max(2.0 * by_itself, 1e-9) for e, by_itself in zip(error, estimate, strict=True))
-
-
-def test_count_that_reaches_an_accuracy_in_the_stress(short):
-    """Of six control points the stress is the least accurate, so that it alone asks for more of them."""
-    _, out, folder = short
-    six = pd.read_csv(folder / "control_points.csv").set_index("control_points").loc[6]
-    assert six["error_stress"] > 10.0 * max(six["error_trajectory"], six["error_torque"])
-    path, all_four = re.findall(r"\ncontrol points +(\d+) +(\S+) ", out)
-    assert (path[1], all_four[1]) == ("5", ">")
-
-
-@pytest.mark.slow
-def test_a_mechanism_is_refined_too(command, tmp_path):
-    """A driven mechanism has its errors, with the torque that is none at rest, and orders of the elements."""
-    words = ["converge", "four_bar_of_flexures", "--control-points", "4:5", "--elements", "5:20"]
-    outcome = command(*words, "--out", tmp_path)
-    assert outcome.code == 0
-    rows = [line.split() for line in outcome.out.splitlines() if re.match(r" +\d", line)]
-    assert [float(cell) for cell in rows[-1][2:9:2]] == pytest.approx([2.0] * 4, abs=0.05)
-    assert float(rows[1][3]) < 1e-4
-
-
-def test_folder_holds_tables_and_figure(short):
-    """The folder holds both tables and the figure, and what was there before."""
-    *_, folder = short
+    assert re.search(r"trajectory and torque +1e-03 +1e-04 +1e-06\n", outcome.out)
+    assert len(re.findall(r"\nelements +\d+ +\d+ +> 40\n", outcome.out)) == 2
+    assert 0.0 < float(re.search(r"uncertainty: .*, stress (\S+)\n", outcome.out)[1]) < 1e-6
     names = {"control_points.csv", "elements.csv", "convergence.png", "convergence.svg", "mine.txt"}
     assert {path.name for path in folder.iterdir()} == names
     assert (folder / "mine.txt").read_text() == "keep"

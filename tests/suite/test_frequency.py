@@ -77,22 +77,20 @@ def difference_to_the_first_mode(settings, weight, duration, **options):
 
 
 @pytest.mark.parametrize("weight", [True, False])
-def test_cantilever_swings_at_its_first_mode(weight):
+@pytest.mark.parametrize(
+    ("settings", "how"),
+    [
+        (SplineSettings(control_points=6), {"step": 5e-4}),
+        pytest.param(FeSettings(elements=10), {}, marks=pytest.mark.slow),
+    ],
+    ids=["spline", "fe"],
+)
+def test_cantilever_swings_at_its_first_mode(settings, how, weight):
     """A small damped swing, no larger one, has the frequency of its first mode in spite of its ripples."""
-    asked = SplineSettings(control_points=6), weight, 1.0
-    error = partial(difference_to_the_first_mode, *asked, step=5e-4)
+    error = partial(difference_to_the_first_mode, settings, weight, 1.0, **how)
     gates.check("cantilever_swing_frequency", error())
-    if weight:
+    if weight and how:
         gates.refuse("cantilever_swing_frequency", error)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("weight", [True, False])
-def test_elements_of_the_cantilever_swing_at_its_first_mode(weight):
-    """So does the swing by finite elements."""
-    gates.check(
-        "cantilever_swing_frequency", difference_to_the_first_mode(FeSettings(elements=10), weight, 1.0)
-    )
 
 
 def test_part_of_a_swing_has_no_frequency():

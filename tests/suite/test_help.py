@@ -25,7 +25,7 @@ PARSED = {
     "sweep DESIGNS.toml --out designs --scheduler": "needs a cluster; tests/sweep/test_cluster.py has one",
     "calibrate": "needs a camera; tests/interactive gives it a film",
     "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
-    "readme": "rewrites README.md; tests/suite/test_digits.py and others call it on a copy",
+    "readme": "rewrites README.md; tests/suite/test_results.py has what it writes",
 }
 #: What an example is run with beside its own words, so that it writes nowhere but here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}

@@ -12,7 +12,6 @@ from matplotlib.legend import Legend
 from studies.__main__ import main
 from studies.commands import readme
 from studies.errors import BadInput
-from studies.paper import formulations
 from studies.record import style
 from studies.record.digits import as_csv
 from studies.record.source import ROOT
@@ -59,14 +58,6 @@ def test_figure_names_are_unique():
     """No study overwrites the figure of another one."""
     names = [name for study in STUDIES for name in Store().record(study)["figures"]]
     assert len(names) == len(set(names))
-
-
-def test_every_formulation_has_its_look_and_its_meaning():
-    """Each formulation of the paper's figures has a colour of its own and says what it is."""
-    names = {*formulations.SETTINGS, formulations.REFINED}
-    assert names == set(style.LOOKS) == set(formulations.MEANING)
-    colours = [look.colour for look in style.LOOKS.values()]
-    assert len(colours) == len(set(colours))
 
 
 @pytest.mark.parametrize("page", readme.BLOCKS, ids=lambda page: page.name)

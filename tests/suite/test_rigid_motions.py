@@ -7,61 +7,51 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import fe_reference
-import spline_model
-from fe_reference import control as fe_control
-from fe_reference.mechanism import StripDesign as ElementStrip
-from fe_reference.model import Body
-from spline_model import newton as spline_newton
-from spline_model.compile import compile_scene
-from spline_model.mechanism import BodyDesign, StripDesign, compliant_mechanism
-from spline_model.reduced.elements import Elements
-from spline_model.statics import solve_mechanism
-from studies.__main__ import main
+from studies.answers.adapters import answer_static
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.effects import Effects
+from studies.cases.mechanism import Body, Mechanism, Strip
 
 FINDS = Path(__file__).parent / "finds"
 MODELS = ("spline", "fe")
-SECTION = {"width": 0.003, "thickness": 0.0008, "density": 1400.0, "poisson_ratio": 0.0}
+#: Fine enough for modes.
+SIZE = {"spline": ["--control-points", 10], "fe": []}
 SHORT = (0.1, 2e-4, 0.1)
 
 
-def chain(model, lengths=SHORT, moduli=(3.5e9,) * 3, **how):
-    """A chain of three strips and bodies, the last led aside by a twentieth of its length."""
-    x = np.concatenate([[0.0], np.cumsum(lengths)])
-    strip, body, make = {
-        "spline": (StripDesign, BodyDesign, compliant_mechanism),
-        "fe": (ElementStrip, Body, fe_reference.compliant_mechanism),
-    }[model]
-    ends = [("ground", "b1"), ("b1", "b2"), ("b2", "b3")]
+def torque(settings, lengths=SHORT, moduli=(3.5e9,) * 3):
+    """The torque that holds the last of three bodies straight, on strips in a chain, as it is led aside by a
+    twentieth of its length."""
+    x, ends = np.cumsum([0.0, *lengths]), ("ground", "b1", "b2", "b3")
+    area = 0.003 * 0.0008
+    shared = {"area": area, "second_moment_of_area": area * 0.0008**2 / 12.0, "density": 1400.0}
     strips = [
-        strip(
-            name=f"s{i}",
-            start=(x[i], 0.0),
-            end=(x[i + 1], 0.0),
-            root=root,
-            tip=tip,
-            youngs_modulus=moduli[i],
-            **SECTION,
+        Strip(
+            name=f"s{i}", start=(x[i], 0.0), end=(x[i + 1], 0.0), root=ends[i], tip=ends[i + 1],
+            youngs_modulus=moduli[i], poisson_ratio=0.0, **shared,
         )
-        for i, (root, tip) in enumerate(ends)
-    ]
-    bodies = [body(name=f"b{i}", centre=(x[i], 0.0)) for i in (1, 2, 3)]
-    led = {"body": "b3", "displacement": (0.0, -0.05 * x[-1])}
-    effects = ("bending", "stretching", "driven_displacement")
-    return make(strips=strips, bodies=bodies, effects=effects, parameters={"driven_displacement": led}, **how)
-
-
-def torque(model, **design):
-    """The torque that holds the last body of a chain straight: of elements the limit of two meshes."""
-    if model == "spline":
-        mechanism = chain(model, control_points=12, **design)
-        return solve_mechanism(mechanism, body="b3", rotation=0.0, increments=10).torque[-1]
-    coarse, fine = (
-        fe_reference.solve_mechanism(
-            chain(model, elements=n, **design), body="b3", rotation=0.0, increments=10
-        ).torque[-1]
-        for n in (20, 40)
+        for i in range(3)
+    ]  # fmt: skip
+    led = {"driven_displacement": {"body": "b3", "displacement": (0.0, -0.05 * x[-1])}}
+    chain = Mechanism(
+        strips=tuple(strips),
+        bodies=tuple(
+            Body(name=f"b{i}", centre=(x[i], 0.0), mass=0.0, moment_of_inertia=0.0) for i in (1, 2, 3)
+        ),
+        body="b3",
+        rotation=0.0,
+        increments=10,
+        effects=Effects(names=("bending", "stretching", *led), tables=led),
     )
+    return answer_static(chain, settings).torque[-1]
+
+
+SPLINE = SplineSettings(control_points=12)
+
+
+def torque_of_elements(**design):
+    """The same by elements: the limit of two meshes."""
+    coarse, fine = (torque(FeSettings(elements=n), **design) for n in (20, 40))
     return (4.0 * fine - coarse) / 3.0
 
 
@@ -76,157 +66,95 @@ def torque(model, **design):
 )
 def test_lengths_and_stiffnesses_that_differ_by_orders(design):
     """Requirement: both models solve a chain with a short, a stiff or a soft strip, and agree to 1e-3."""
-    assert torque("spline", **design) == pytest.approx(torque("fe", **design), rel=1e-3)
+    assert torque(SPLINE, **design) == pytest.approx(torque_of_elements(**design), rel=1e-3)
 
 
 def test_a_short_strip_between_long_ones_hardly_matters():
     """Requirement: 1e-5 m between strips of 0.1 m is solved and tends to the chain without it."""
-    shorter = [torque("spline", lengths=(0.1, length, 0.1)) for length in (1e-4, 1e-5)]
+    shorter = [torque(SPLINE, lengths=(0.1, length, 0.1)) for length in (1e-4, 1e-5)]
     assert shorter[0] == pytest.approx(shorter[1], rel=2e-3)
 
 
-@pytest.mark.parametrize("moduli", [(3.5e9,) * 3, (3.5e5, 3.5e9, 3.5e9)])
-def test_newton_corrects_a_state_that_is_off_by_a_millionth(moduli):
-    """Requirement: a state off by 1e-6 of a length, in a soft part too, is not taken for equilibrium."""
-    system = compile_scene(chain("spline", moduli=moduli, control_points=6).driven(0.0, "b3"))
-    work = Elements.of(system)
-    exact = spline_newton.solve(work, work.state(system.rest), 0.0).z
-    off = exact.copy()
-    off[1] += 1e-6  # the first body aside, in lengths
-    found = spline_newton.solve(work, off, 0.0)
-    assert not found.reason
-    assert abs(found.z[1] - exact[1]) < 1e-9
-
-    structure = fe_reference.structure.structure_of(chain("fe", moduli=moduli))
-    span = fe_control.spans(structure, body=2, rotations=[0.0], displacement=(0.0, 0.0))[0]
-    start = np.zeros(structure.size)
-    start[structure.body_slice(0).start + 1] = 1e-6 * structure.length
-    outcome = fe_control.equilibrate(span, start, 0.0, fe_reference.path.Counter())
-    assert not outcome.failure
-    assert np.abs(structure.measure * outcome.y).max() < 1e-9
-
-
-def told(arguments, capsys):
-    """Exit code, JSON and the lines of a command."""
-    code = main(arguments)
-    out, err = capsys.readouterr()
-    return code, out, err
+def answer(command, *words):
+    """The JSON of a command that must succeed."""
+    outcome = command(*words, "--json", "-")
+    assert outcome.code == 0
+    return json.loads(outcome.out)
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(
     ("name", "rigid", "first"), [("hub_with_cable", 1, 1.6876), ("free_flight", 3, 28.27)]
 )
-def test_rigid_motions_have_the_frequency_zero(name, rigid, first, model, capsys):
+def test_rigid_motions_have_the_frequency_zero(name, rigid, first, model, command):
     """Requirement: rigid motions are printed as such; the first elastic one agrees between the models."""
-    case = str(FINDS / f"{name}.toml")
-    size = ["--control-points", "10"] if model == "spline" else []
-    code, out, _ = told(["modes", case, "--model", model, "--json", "-", *size], capsys)
-    frequency = json.loads(out)["frequency_Hz"]
-    assert code == 0
+    words = ["modes", FINDS / f"{name}.toml", "--model", model, *SIZE[model]]
+    frequency = answer(command, *words)["frequency_Hz"]
     assert frequency[:rigid] == [0.0] * rigid
     assert frequency[rigid] == pytest.approx(first, rel=1e-3)
-    assert "rigid motions that nothing holds" in told(["modes", case, "--model", model, *size], capsys)[1]
+    out = command(*words).out
+    assert "rigid motions that nothing holds" in out and "unstable" not in out
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_the_slow_mode_of_a_stiff_pendulum(model, capsys):
+def test_the_slow_mode_of_a_stiff_pendulum(model, command):
     """Requirement: sqrt(g / L) / (2 pi) = 0.28555 Hz of a point mass on a stiff bar with modes of 1e7 Hz."""
-    size = ["--control-points", "8"] if model == "spline" else []
-    arguments = ["modes", str(FINDS / "pinned_pendulum.toml"), "--model", model, "--json", "-", *size]
-    code, out, _ = told(arguments, capsys)
-    assert code == 0
+    found = answer(command, "modes", FINDS / "pinned_pendulum.toml", "--model", model, *SIZE[model])
     exact = math.sqrt(9.8 / 3.0443) / (2.0 * math.pi)
-    assert json.loads(out)["frequency_Hz"][0] == pytest.approx(exact, rel=2e-5)
+    assert found["frequency_Hz"][0] == pytest.approx(exact, rel=2e-5)
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("command", ["solve", "compare"])
+@pytest.mark.parametrize("verb", ["solve", "compare"])
 @pytest.mark.parametrize(("name", "body"), [("hub_with_cable", "hub"), ("free_flight", "A")])
-def test_a_load_that_nothing_holds_is_told_in_a_line(name, body, command, model, capsys):
+def test_a_load_that_nothing_holds_is_told_in_a_line(name, body, verb, model, refused):
     """Requirement: no equilibrium, no traceback: the body and the direction in one line, exit code 2."""
-    beside = ["cross_axis_pivot"] if command == "compare" else []
-    code, _, err = told([command, str(FINDS / f"{name}.toml"), *beside, "--model", model], capsys)
-    lines = [line for line in err.splitlines() if line]
-    assert code == 2
-    assert len(lines) == 1
-    assert f"nothing holds body {body}" in lines[0]
+    beside = ["cross_axis_pivot"] if verb == "compare" else []
+    words = [verb, FINDS / f"{name}.toml", *beside, "--model", model]
+    refused(*words, says=f"nothing holds body {body}")
+
+
+#: Masses that move with the bodies of `free_flight`: the strip, an arc of titanium, as the mean of its ends.
+STRIP = 4430.0 * 0.01 * 0.0005 * 0.1027
+MASSES = {"A": 0.02 + 0.5 * STRIP, "B": 0.05 + 0.5 * STRIP}
+
+
+def flown(command, case, model, duration):
+    """The answer to a release of `free_flight`, and how far its centre of mass has moved (2,)."""
+    found = answer(command, "release", case, "--model", model, "--duration", duration, "--no-check")
+    places = {name: np.array([found["bodies"][name][key] for key in ("x_m", "y_m")]) for name in MASSES}
+    moved = sum(mass * (places[name][:, -1] - places[name][:, 0]) for name, mass in MASSES.items())
+    return found, moved / sum(MASSES.values())
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_free_flight_keeps_its_momentum(model, capsys):
+def test_free_flight_keeps_its_momentum(model, command):
     """Requirement: the centre of mass moves by the impulse of the force, (1, 2) N as a triangle of 20 ms."""
-    arguments = ["release", str(FINDS / "free_flight.toml"), "--model", model, "--duration", "0.03"]
-    code, out, _ = told([*arguments, "--no-check", "--json", "-"], capsys)
-    answer = json.loads(out)
-    assert code == 0
-    masses, rest = {"A": 0.02, "B": 0.05}, {"A": (-0.01, 0.003), "B": (0.11, 0.0)}
-    strip = 4430.0 * 0.01 * 0.0005 * 0.1027  # titanium, an arc; it moves about as the mean of its ends
-    total = sum(masses.values()) + strip
-    weight = {name: mass + 0.5 * strip for name, mass in masses.items()}
-    for axis, force in ((0, 1.0), (1, 2.0)):
-        key = ("x_m", "y_m")[axis]
-        moved = sum(weight[name] * (answer["bodies"][name][key][-1] - rest[name][axis]) for name in masses)
-        # int of the velocity: impulse 0.01 F reached at 0.02 s, 0.01 s at full speed after it
-        exact = force * (0.01 * 0.01 + 0.01 * 0.01) / total
-        assert moved / total == pytest.approx(exact, rel=0.03)
+    _, moved = flown(command, FINDS / "free_flight.toml", model, 0.03)
+    # int of the velocity: impulse 0.01 F reached at 0.02 s, 0.01 s at full speed after it
+    exact = np.array([1.0, 2.0]) * (0.01 * 0.01 + 0.01 * 0.01) / sum(MASSES.values())
+    assert moved == pytest.approx(exact, rel=0.03)
 
 
-def test_pendulum_period():
+def test_pendulum_period(command):
     """Requirement: a point mass on a stiff bar from the horizontal swings in 4.1335 s, 1.18034 times 2 pi
     sqrt(L / g) (elliptic integral)."""
-    side = 0.31622776601683794
-    mechanism = compliant_mechanism(
-        strips=[
-            StripDesign(
-                name="bar",
-                start=(0.0, 0.0),
-                end=(0.0, -3.0443),
-                root="pin",
-                tip="mass",
-                width=side,
-                thickness=side,
-                youngs_modulus=1e9,
-                density=1e-2,
-            )
-        ],
-        bodies=[
-            BodyDesign(name="pin", centre=(0, 0)),
-            BodyDesign(name="mass", centre=(0, -3.0443), mass=10.0),
-        ],
-        effects=("bending", "stretching", "strip_inertia", "body_inertia", "gravity", "driven_displacement"),
-        parameters={
-            "gravity": {"acceleration": (0.0, -9.8)},
-            "driven_displacement": {"body": "pin", "displacement": (0, 0), "history": ((0, 1), (1, 1))},
-        },
-        control_points=6,
-    )
-    motion = spline_model.dynamics.solve_motion(
-        mechanism, start=math.pi / 2, body="mass", duration=1.1, step=2e-3, check=False
-    )
-    x = motion.bodies["mass"][:, 0]
+    words = ["release", FINDS / "pinned_pendulum.toml", "--control-points", 6, "--duration", 1.1]
+    found = answer(command, *words, "--step", 2e-3, "--no-check")
+    x, time = np.array(found["bodies"]["mass"]["x_m"]), np.array(found["time_s"])
     at = int(np.flatnonzero((x[:-1] > 0.0) & (x[1:] <= 0.0))[0])
-    quarter = motion.time[at] + (motion.time[at + 1] - motion.time[at]) * x[at] / (x[at] - x[at + 1])
+    quarter = time[at] + (time[at + 1] - time[at]) * x[at] / (x[at] - x[at + 1])
     assert 4.0 * quarter == pytest.approx(4.1335, rel=1e-3)
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_what_nothing_holds_falls(model, tmp_path, capsys):
+def test_what_nothing_holds_falls(model, tmp_path, command):
     """Requirement: two bodies on a strip, held until their release, fall by g t^2 / 2 in the mean."""
     case = tmp_path / "falling.toml"
     text = (FINDS / "free_flight.toml").read_text().split("[scene]")[0]
     case.write_text(text + '[scene]\neffects = ["+gravity"]\n')
-    arguments = ["release", str(case), "--model", model, "--duration", "0.1", "--no-check", "--json", "-"]
-    code, out, _ = told(arguments, capsys)
-    answer = json.loads(out)
-    assert code == 0
-    assert answer["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
-    gained = np.array(answer["kinetic_J"]) + np.array(answer["strain_J"]) + np.array(answer["gravity_J"])
-    assert np.ptp(gained) < 1e-4 * max(answer["kinetic_J"])
-    strip = 4430.0 * 0.01 * 0.0005 * 0.1027
-    masses = {"A": 0.02 + 0.5 * strip, "B": 0.05 + 0.5 * strip}
-    fallen = sum(
-        mass * (answer["bodies"][name]["y_m"][-1] - answer["bodies"][name]["y_m"][0])
-        for name, mass in masses.items()
-    ) / sum(masses.values())
-    assert fallen == pytest.approx(-0.5 * 9.80665 * 0.01, rel=0.01)
+    found, moved = flown(command, case, model, 0.1)
+    assert found["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
+    gained = np.array(found["kinetic_J"]) + np.array(found["strain_J"]) + np.array(found["gravity_J"])
+    assert np.ptp(gained) < 1e-4 * max(found["kinetic_J"])
+    assert moved[1] == pytest.approx(-0.5 * 9.80665 * 0.01, rel=0.01)

@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 from spline_model import DEFAULT_EFFECTS, REGISTRY
-from studies.cases.design import named_design
 from studies.cases.effects import DEFAULT, MOTION_ONLY
 from studies.cases.keys import EFFECT_KEYS as KEYS
-from studies.cases.mechanism import Mechanism
 from studies.cases.problem import FOLDER
 from tests import gates
 
@@ -27,46 +25,16 @@ def answer(command, *words):
     return json.loads(outcome.out)
 
 
-@pytest.mark.parametrize("name", MECHANISMS)
-def test_both_models_drive_every_mechanism_alike(name, command):
-    """The four scenes run by the same code, and all bodies of both models end at the same places."""
-    design = named_design(name)
-    assert isinstance(design, Mechanism)
-    ends = {}
-    for model, coarse in COARSE.items():
-        found = answer(command, "solve", FOLDER / f"{name}.toml", "--model", model, *coarse)
-        assert (found["status"], found["load_factor"][-1]) == ("converged", 1.0)
-        assert list(found["bodies"]) == [body.name for body in design.bodies]
-        assert found["effects"] == [each for each in design.effects.names if each not in MOTION_ONLY]
-        assert (found["torque_Nm"][-1] is None) == (design.rotation is None)
-        states = np.array([list(place.values()) for place in found["bodies"].values()])
-        balance = np.array(found["strain_energy_J"]) + found["gravity_energy_J"] - found["work_J"]
-        assert np.abs(balance - balance[0]).max() < 1e-4 * max(found["strain_energy_J"])
-        ends[model] = states[:, :, -1]
-        travel = np.linalg.norm(states[:, :2, -1] - states[:, :2, 0], axis=1).max()
-    # eight elements on a strip are off by some 1e-3 of the travel and of the angles
-    assert np.abs(ends["fe"] - ends["spline"])[:, :2].max() < 5e-3 * travel
-    assert np.abs(ends["fe"] - ends["spline"])[:, 2].max() < 5e-3
-
-
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.slow] * (name != "cantilever_with_body")) for name in MECHANISMS],
 )
 def test_both_models_release_every_mechanism_alike(name, command):
-    """After 5 ms all bodies are where the other model has them, and energies balance."""
+    """After 5 ms all bodies are where the other model has them."""
     places = []
     for model, coarse in COARSE.items():
         words = ["--model", model, *coarse, "--duration", 5e-3]
         found = answer(command, "release", FOLDER / f"{name}.toml", *words)
-        parts = {
-            key: np.array(found[f"{key}_J"]) for key in ("kinetic", "strain", "gravity", "work", "dissipated")
-        }
-        balance = parts["kinetic"] + parts["strain"] + parts["gravity"] - parts["work"] + parts["dissipated"]
-        largest = max(np.abs(parts["strain"]).max(), np.abs(parts["work"]).max())
-        assert np.abs(balance - balance[0]).max() < 1e-4 * largest
-        assert (parts["dissipated"][-1] > 0.0) == ("body_damping" in found["effects"])
-        assert (parts["work"][-1] > 0.0) == ("applied_force" in found["effects"])
         places.append([[place[key][-1] for key in ("x_m", "y_m")] for place in found["bodies"].values()])
     assert np.abs(np.subtract(*places)).max() < 1e-4  # m: a thousandth of the size
 
@@ -99,18 +67,6 @@ def test_both_models_have_the_modes_of_every_scene(name, command):
     gates.check("scenes_first_mode", modes_apart(command, name))
     if name == "parallel_strip_guide":
         gates.refuse("scenes_first_mode", partial(modes_apart, command, name))
-
-
-def test_mechanisms_have_tables_to_read(command):
-    """Without --json every body has its columns; the pivot keeps its own table."""
-    lines = command("solve", FOLDER / "four_bar_of_flexures.toml", "--model", "spline").out.splitlines()
-    assert lines[2].replace("|", " ").split() == ["crank", "coupler", "rocker"]
-    assert sum("|" in line for line in lines) == 3 + 21  # names, columns and units, and a row a state
-    assert "estimated error" in lines[-2] and lines[-1].startswith("converged")
-    released = command(
-        "release", FOLDER / "four_bar_of_flexures.toml", "--model", "spline", "--duration", 1e-3
-    )
-    assert "clamp gap" in released.out
 
 
 @pytest.mark.parametrize(
@@ -152,21 +108,6 @@ def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
     assert answer(command, "solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
     assert shifts[0] < 0.0
     assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
-
-
-def test_a_strip_may_have_a_section_of_its_own(tmp_path, command):
-    """A guide with one strip twice as thick needs four and a half times the force for the same way."""
-    text = (FOLDER / "parallel_strip_guide.toml").read_text(encoding="utf-8")
-    own = text.replace('name = "left"', 'name = "left"\narea_m2 = 1e-5\nsecond_moment_m4 = 8.3333333e-13')
-    ways = []
-    for content in (text, own):
-        path = tmp_path / "guide.toml"
-        path.write_text(content.replace("[5, 0]", "[0.1, 0]"), encoding="utf-8")
-        x = answer(command, "solve", path, "--model", "spline", "--effects=-gravity")["bodies"]["platform"][
-            "x_m"
-        ]
-        ways.append(x[-1] - x[0])
-    assert ways[0] / ways[1] == pytest.approx(4.5, rel=1e-3)
 
 
 def test_effects_of_case_files_are_those_of_the_splines():

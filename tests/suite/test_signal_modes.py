@@ -60,10 +60,3 @@ def test_a_release_of_two_modes_has_no_single_frequency(model, command):
     assert fast == pytest.approx(319.6, rel=5e-3)
     assert slow == pytest.approx(23.53, rel=1e-2)
     assert answer["modes"][0]["amplitude_rad"] > answer["modes"][1]["amplitude_rad"] > 1e-4
-
-
-def test_a_release_of_one_mode_has_its_frequency(command):
-    """The swing of Table 1 is of one mode, whose frequency is the swing's."""
-    answer = json.loads(command("release", "cross_axis_pivot", "--no-check", "--json", "-").out)
-    [mode] = answer["modes"]
-    assert answer["frequency_Hz"] == pytest.approx(mode["frequency_Hz"], rel=1e-3)

@@ -6,8 +6,6 @@ import re
 
 import pytest
 
-from studies.answers import adapters
-
 
 def test_printed_forces_leave_the_stiffness_of_the_body_out(case, command):
     """A path of the paper's printed forces has torques, no stiffness of the body, and a line about that."""
@@ -49,44 +47,6 @@ def test_file_holds_what_the_stream_would(case, command, tmp_path):
     assert streamed.keys() == written.keys()
     assert {**streamed, "wall_s": None} == {**written, "wall_s": None}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["answer.json", "case.toml"]
-
-
-def test_table_is_short_and_readable(case, command):
-    """Without --json the path is a table with units that fits a terminal."""
-    outcome = command("solve", case(), "--model", "fe", "--rotation-deg", 45, "--increments", 3)
-    lines = outcome.out.splitlines()
-    assert outcome.code == 0
-    assert len(lines) == 4 + 4 + 3 + 4 + 1 + 4 + 1 + 1  # the last but one: errors not estimated
-    assert lines[1] == "effects: bending, stretching"
-    assert "N m/rad" in lines[3]
-    assert lines[7].split()[0] == lines[14].split()[0] == "45.000"
-    assert lines[15].startswith("largest stress 6357.5 MPa, of strip_1 at its root, at 45 deg")
-    assert all(line.startswith("beyond the model: ") for line in lines[16:-2])
-    assert max(map(len, lines[:15])) <= 90
-
-
-@pytest.mark.parametrize(
-    ("words", "asked"),
-    [
-        (["solve", "--rotation-deg", 5, "--increments", 1], [(1, 0)]),
-        (["solve", "--rotation-deg", 5, "--increments", 1, "--repeat", 3], [(3, 1)]),
-        (["release", "--elements", 4, "--duration", 0.005, "--repeat", 3], [(3, 1)]),
-    ],
-    ids=lambda words: " ".join(map(str, words[-2:])),
-)
-def test_repeats_are_timed_after_a_warm_up(words, asked, case, command, monkeypatch):
-    """`--repeat R` takes the median of R whole calls after one that is not counted."""
-    made = []
-    genuine = adapters.measure
-
-    def counted(work, *, repeat, warm_up, **part):
-        made.append((repeat, warm_up, genuine(work, repeat=repeat, warm_up=warm_up, **part)))
-        return made[-1][2]
-
-    monkeypatch.setattr(adapters, "measure", counted)
-    answer = json.loads(command(words[0], case(), "--model", "fe", *words[1:], "--json", "-").out)
-    assert [each[:2] for each in made] == asked
-    assert answer["wall_s"] == made[0][2].median
 
 
 def test_not_converged_keeps_the_path_so_far(case, command):

