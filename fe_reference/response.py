@@ -166,8 +166,8 @@ def body_stiffness(
         held[structure.turns[model.body_index(driven)]] = True
     led = model.effects.find(DrivenDisplacement)
     if led is not None and led.body is not None:  # without a name it is of the body that is asked for
-        other = structure.body_slice(model.body_index(led.body))
-        held[other.start : other.start + 2] = True
+        other = structure.body_slice(model.body_index(led.body)).start
+        held[other : other + 2] |= [moved is not None for moved in led.displacement]
     prescribed, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     prescribed[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)

@@ -143,7 +143,7 @@ class StaticSolution(Answer):
         stations (P,): reference arc length of the nodes over the first strip's length, 0 at its root [1].
         shape, axial_force, shear_force, bending_moment: as in `section_forces.StripFields`.
         states (S, size): reduced coordinates, for `section_forces`, of the finest mesh: that of `model`.
-        driven: name of the body whose turn is led or watched; None without one.
+        driven: name of the body whose turn is led or watched; None without one. led: whether it is led.
         effects: names of the effects of the scene.
         counters: increments, halvings, newton_iterations, evaluations, factorisations, and
             settling_increments: of the way to the first state. history: residual norms of the increments,
@@ -176,6 +176,7 @@ class StaticSolution(Answer):
     states: Array
     model: Model
     driven: str | None
+    led: bool
     effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
@@ -197,7 +198,8 @@ class StaticSolution(Answer):
 
         body: its name; None: the driven one, or the only one.
         """
-        return body_stiffness(self.model, self.states, body or self.driven, driven=self.driven)
+        led = self.driven if self.led else None
+        return body_stiffness(self.model, self.states, body or self.driven, driven=led)
 
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units: the columns of a frame."""

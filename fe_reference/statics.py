@@ -218,7 +218,8 @@ def _solved(
     clock.stop("solve")
     for state in () if starts else path.states:
         require_balance(structure, path.control.props, state.balance.residual, acting)
-    return _packed(path, controls, steps, clock, None if which is None else model.body_names[which])
+    name = None if which is None else model.body_names[which]
+    return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)
 
 
 def _displacement(
@@ -234,7 +235,7 @@ def _displacement(
 
 
 def _packed(
-    path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch, driven: str | None
+    path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch, *, driven: str | None, led: bool
 ) -> StaticSolution:
     """Gather the states of a path into arrays."""
     total = steps * len(controls)
@@ -265,6 +266,7 @@ def _packed(
         states=y,
         model=model,
         driven=driven,
+        led=led,
         effects=model.effects.names,
         counters={name: path.counters[name] for name in (*COUNTERS, "settling_increments")},
         history=(*(state.norms for state in states[1:]), *path.failures),

@@ -2,6 +2,7 @@
 
     python -m tests.mutate              try all of them, or those that are named
     python -m tests.mutate --page       write their table into docs/independence.md
+    python -m tests.mutate --random 60 --seed 1     try as many at lines that chance chooses (random_slips.py)
 
 A slip is a table of ``slips.toml``: one wrong sign, factor, weight or missing term, and the test that must
 fail with it. All happens in a copy of the code, which is not compiled: that would take longer than the tests.
@@ -17,6 +18,8 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests import random_slips
 
 ROOT = Path(__file__).resolve().parent.parent
 LIST, PAGE = ROOT / "tests" / "slips.toml", ROOT / "docs" / "independence.md"
@@ -108,7 +111,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.mutate", description=str(__doc__).split("\n")[0])
     parser.add_argument("names", nargs="*", help="of the slips to try; all without any")
     parser.add_argument("--page", action="store_true", help="write the table of the page, try nothing")
+    parser.add_argument("--random", type=int, default=0, metavar="COUNT", help="try so many random slips")
+    parser.add_argument("--seed", type=int, default=1, help="of the random slips")
     given = parser.parse_args(arguments)
+    if given.random:
+        return int(random_slips.score(given.random, given.seed) < random_slips.WANTED)
     if given.page:
         PAGE.write_text(page_with(PAGE.read_text()))
         return 0

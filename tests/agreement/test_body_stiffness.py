@@ -1,6 +1,7 @@
 """The 3 x 3 stiffness of a body: both models agree, and it is what is known of it in closed form."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -10,6 +11,7 @@ import fe_reference
 import spline_model
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
+from studies.cases.effects import DEFAULT, Effects
 from tests import gates
 from tests.agreement.loaded import LOADS, design, solution
 from tests.table_one import TABLE_ONE
@@ -38,6 +40,15 @@ def test_body_stiffness_agrees(effect):
 def test_body_stiffness_of_a_linkage_agrees(body):
     """Requirement: so they do for the driven body of a linkage, and for another one while that is held."""
     gates.check("body_stiffness", apart(named_design("four_bar_of_flexures"), body))
+
+
+@pytest.mark.parametrize("body", ["coupler", "rocker"])
+def test_body_stiffness_beside_a_led_body_agrees(body):
+    """Requirement: a centre that is led one way holds the others that way alone, and no turn that is free."""
+    asked = named_design("four_bar_of_flexures")
+    led = {"driven_displacement": {"displacement": (2e-3, None), "body": "rocker"}}
+    effects = Effects(names=(*DEFAULT, *led), tables=led)
+    gates.check("body_stiffness", apart(replace(asked, rotation=None, increments=3, effects=effects), body))
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,16 @@ def test_strips_of_a_pressed_pivot_buckle_where_euler_says() -> None:
     hold("fe_pressed_pivot", error)
 
 
+def test_a_bifurcation_is_where_it_is_for_any_increments() -> None:
+    """It is placed by the eigenvalue that vanishes there, not by the increment that passes it."""
+    paths = [
+        solve_statics(pressed(elements=8), rotation=0.0, increments=k, check=False).critical_points
+        for k in (3, 4)
+    ]
+    assert [point.kind for point in paths[0]] == ["limit point", "bifurcation"]
+    assert paths[0][1].load_factor == pytest.approx(paths[1][1].load_factor, rel=1e-9)
+
+
 def test_a_pressed_pivot_says_what_buckles() -> None:
     """A free pivot tips first and its strips buckle later."""
     answer = solve_mechanism(pressed(elements=8), increments=4, check=False)
@@ -85,6 +95,7 @@ def test_a_pressed_pivot_that_turns_stops_where_it_buckles() -> None:
     straight = solve_statics(pressed(elements=8), rotation=0.0, increments=4).critical_points[1].load_factor
     (limit,) = (point for point in answer.critical_points if point.kind == "turning point")
     assert 0.99 * straight < limit.load_factor < straight
+    assert limit.inertia == 1
     assert re.search(
         r"turning point: the strips buckle at 1\d\.\d+ kN, rotation 0\.009\d+ deg, ", answer.message
     )

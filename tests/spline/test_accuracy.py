@@ -1,14 +1,18 @@
 """Accuracy on request: control points until the estimated error is below it."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 from spline_model import (
+    BodyDesign,
     ConvergenceError,
     Status,
+    StripDesign,
+    compliant_mechanism,
     cross_axis_pivot,
     solve_mechanism,
     solve_statics,
@@ -106,6 +110,57 @@ def test_any_mechanism_has_an_estimate(how):
     plain = solve_mechanism(made.with_control_points(16), increments=6, **how)
     for name, place in plain.bodies.items():
         assert np.abs(solution.bodies[name][-1] - place[-1]).max() < 1e-4
+
+
+#: Section of a strip with a body at its tip, and a pull along it, a little aside.
+BAR = {"area": 5e-5, "second_moment_of_area": 1.0416667e-10, "youngs_modulus": 2e9, "density": 1200.0}
+ALONG = {"applied_force": {"force": (30.0, 0.3)}}
+
+
+def fibre_stress(path):
+    """Largest stress of the rectangle that A and I imply, in every state [Pa]."""
+    modulus = math.sqrt(BAR["area"] * BAR["second_moment_of_area"] / 3.0)
+    return (np.abs(path.axial_force) / BAR["area"] + np.abs(path.bending_moment) / modulus).max(axis=2)
+
+
+def turn(path):
+    """Rotation of the tip in every state [rad]."""
+    return path.bodies["tip"][:, 2]
+
+
+#: By part of an estimate loads under which its error is that of one quantity alone, that quantity, and what
+#: it is held against.
+ALONE = {
+    "trajectory": (ALONG, turn, turn),
+    "section_forces": (
+        {"applied_force": {"force": (1.0, 0.0)}, "applied_moment": {"moment": 1.5}},
+        lambda path: path.shear_force,
+        lambda path: path.axial_force,
+    ),
+    "stress": (ALONG, fibre_stress, fibre_stress),
+}
+
+
+@pytest.mark.parametrize("part", ALONE)
+def test_an_estimate_is_that_of_its_largest_part(part):
+    """Requirement: turns, shear forces and stresses count in the estimate where they alone are far off."""
+    loads, quantity, unit = ALONE[part]
+    strip = StripDesign(name="bar", start=(0.0, 0.0), end=(0.1, 0.0), tip="tip", **BAR)
+    bar = compliant_mechanism(
+        strips=[strip],
+        bodies=[BodyDesign(name="tip", centre=(0.1, 0.0))],
+        effects=("bending", "stretching", *loads),
+        parameters=loads,
+        control_points=4,
+    )
+    solution = solve_mechanism(bar, increments=4, accuracy=0.9)
+    assert solution.estimate.trials == (4,)
+    four, seven = (
+        replace(solve_mechanism(bar.with_control_points(n), increments=4), balanced=True) for n in (4, 7)
+    )
+    error = np.abs(quantity(four) - quantity(seven)).max() / np.abs(unit(seven)).max()
+    assert error > 1e-4
+    assert getattr(solution.estimate, part) == pytest.approx(error, rel=1e-6)
 
 
 @pytest.mark.parametrize("settings", [{}, {"method": "multipliers"}], ids=["condensed", "multipliers"])

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import cross_axis_pivot, solve_release, swinging_slide_stiffness
+from spline_model import cross_axis_pivot, solve_motion, solve_release, swinging_slide_stiffness
 from tests.table_one import TABLE_ONE
 
 EFFECTS = ("bending", "stretching", "body_inertia")
@@ -18,10 +18,20 @@ SLENDER = TABLE_ONE | {
 LONG_STEP = 1.75e-3
 
 
-def massless(design=TABLE_ONE, control_points=6, effects=EFFECTS):
+def massless(design=TABLE_ONE, control_points=6, effects=EFFECTS, **more):
     """A pivot whose strips have no inertia."""
-    slide = swinging_slide_stiffness(control_points)
-    return cross_axis_pivot(**design, control_points=control_points, slide_stiffness=slide, effects=effects)
+    more |= {"control_points": control_points, "slide_stiffness": swinging_slide_stiffness(control_points)}
+    return cross_axis_pivot(**design, effects=effects, **more)
+
+
+def pushed(step):
+    """A damped pivot under a moment that grows all the time."""
+    given = {
+        "body_damping": {"translation": 2.0, "rotation": 0.1},
+        "applied_moment": {"moment": 50.0, "history": ((0.0, 0.0), (4e-3, 1.0))},
+    }
+    pivot = massless(effects=(*EFFECTS, *given), parameters=given)
+    return solve_motion(pivot, duration=4e-3, step=step, records=1)
 
 
 @cache
@@ -49,6 +59,17 @@ def test_massless_strips_take_steps_of_a_microsecond():
     coarse, fine, finest = np.abs(np.diff(ends))
     assert math.log2(coarse / fine) > 1.85
     assert math.log2(fine / finest) > 1.85
+
+
+def test_massless_strips_keep_the_books_of_dampers_and_loads():
+    """Requirement: what a load does and dampers take is the change of energy, and errors fall as h^2."""
+    coarse, fine, finest = (pushed(step) for step in (2e-4, 1e-4, 1e-5))
+    for run in (coarse, fine):
+        stored = np.ptp(run.kinetic_energy + run.strain_energy)
+        assert 0.05 * stored < run.dissipated[-1] < run.work[-1]
+        assert stored + run.dissipated[-1] == pytest.approx(run.work[-1], rel=1e-9)
+    off, less = (abs(run.rotation[-1] - finest.rotation[-1]) for run in (coarse, fine))
+    assert math.log2(off / less) == pytest.approx(2.0, abs=0.1)
 
 
 def snapped(control_points, step):

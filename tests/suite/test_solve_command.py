@@ -34,6 +34,14 @@ def test_settings_of_the_answer_are_those_asked_for(case, command, form):
     assert answer["settings"] == {"axial_modes": None} | asked
 
 
+def test_stiffness_over_that_of_the_rotation(command):
+    """At rest a straight strip has A L^2 / I along and 12 across, over EI/L of the turn of its end."""
+    words = ["solve", "cantilever_with_body", "--effects=bending,stretching", "--increments", 1]
+    answer = json.loads(command(*words, "--json", "-").out)
+    assert answer["off_axis_ratio_x"][0] == pytest.approx(5e-6 * 0.1**2 / 1.0416667e-13, rel=1e-6)
+    assert answer["off_axis_ratio_y"][0] == pytest.approx(12.0, rel=1e-6)
+
+
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
     """`--json FILE` writes the same object as `--json -`, time aside, says so below the table, and leaves no
     other file."""

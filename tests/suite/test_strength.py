@@ -32,6 +32,18 @@ def test_the_range_ends_where_the_stress_is_that_of_yield():
     assert there.max_stress[-1] == pytest.approx(YIELD, rel=1e-6)
 
 
+def test_every_strip_has_its_own_yield_strength():
+    """Requirement: each strip is held against its own strength, and the first to yield counts."""
+    design = replace(named_design("four_bar_of_flexures"), increments=4)
+    limits = [400e6, 300e6, 200e6, 100e6]
+    strips = tuple(replace(s, yield_strength=y) for s, y in zip(design.strips, limits, strict=True))
+    design = replace(design, strips=strips)
+    found = strength(answer_static(design, SIX))
+    there = answer_static(replace(design, rotation=found.yields.rotation), SIX)
+    assert (there.extreme_fibre_stress[-1].max(axis=1) / limits).max() == pytest.approx(1.0, rel=1e-6)
+    assert found.yield_strength == next(s.yield_strength for s in strips if s.name == found.strip)
+
+
 def test_a_design_that_bears_its_path_has_no_end_of_range():
     """Requirement: below the yield strength all along there is a safety above one and no such angle."""
     design = yielding(1e12)
