@@ -34,8 +34,8 @@ FEWEST, COARSEST = 4, 10
 #: Ratio of two differences over that of errors of second order, from which on they are of that order, and the
 #: inverse of that up to which they are.
 OF_ORDER = 0.75
-#: What errors are more than coarser companions of that order tell: fast motions are lost to all of them. On
-#: random releases the estimate was down to 0.41 of the error without it.
+#: What errors are more than coarser companions tell: fast motions are lost to all of them. On random releases
+#: the estimate was down to 0.41 of the error without it.
 SHARED = 1.5
 
 
@@ -112,7 +112,7 @@ def _errors(apart: list[Array], ratios: list[float]) -> Array:
     first, second = (np.abs(each).max(axis=0) for each in apart)
     # too little growth: out of phase in all of them; too much: errors of the first companion cancel
     most = np.where(second > growth / OF_ORDER * first, np.abs(apart[1]), most)
-    return np.asarray(np.where(second < OF_ORDER * growth * first, 1.0, SHARED * part) * most)
+    return np.asarray(SHARED * np.where(second < OF_ORDER * growth * first, 1.0, part) * most)
 
 
 def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:
