@@ -101,7 +101,7 @@ class Samples:
     books: Array = field(default_factory=lambda: np.zeros(2))
     content: Array = field(default_factory=lambda: np.zeros(2))
     still: bool = False
-    _stake: float = 0.0
+    stake: float = 0.0
 
     @property
     def floor(self) -> float:
@@ -128,9 +128,9 @@ class Samples:
         kinetic = self.kinetic(scheme, at.y, at.v)
         energy = np.array([kinetic, acting.strain, acting.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
-        self._stake = max(self._stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
+        self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
         start, now = (_conserved(each) for each in (self.energy[0] if self.energy else energy, energy))
-        at_stake = max(self._stake, abs(work), abs(acting.gravity), self.floor)
+        at_stake = max(self.stake, abs(work), abs(acting.gravity), self.floor)
         if not np.isfinite(now) or now - start > self.home.blow_up * at_stake:
             self.unstable = True
             self.message = (
@@ -148,12 +148,12 @@ class Samples:
     def drift(self) -> float:
         """Return the largest error of the balance of energies, over the energy at stake at the end [1]."""
         balance = np.array(self.energy) @ [*ENERGIES.values()]
-        at_stake = max(self._stake, self.floor)
+        at_stake = max(self.stake, self.floor)
         return float(np.abs(balance - balance[0]).max()) / at_stake if at_stake > 0.0 else 0.0
 
     def lost(self) -> float:
         """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
-        at_stake = max(self._stake, self.floor)
+        at_stake = max(self.stake, self.floor)
         gone = _conserved(self.energy[0]) - _conserved(self.energy[-1])
         return gone / at_stake if at_stake > 0.0 else 0.0
 

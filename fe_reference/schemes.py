@@ -170,15 +170,25 @@ class Implicit(Scheme):
         return now
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:
-        """Return the instant after h [s], in halved steps where needed; None if those fail too."""
+        """Return the instant after h [s], in halved steps where needed; None if those fail too.
+
+        A step that gains energy has found another solution of its equations, far from the motion.
+        """
         after = self._single(now, h, samples)
-        if after is not None:
+        if after is not None and (depth == HALVINGS or not self._gains(now, after, h, samples)):
             return after
         samples.counters["halvings"] += 1
         if depth == HALVINGS:
             return None
         middle = self.step(now, 0.5 * h, samples, depth + 1)
         return None if middle is None else self.step(middle, 0.5 * h, samples, depth + 1)
+
+    def _gains(self, now: Instant, after: Instant, h: float, samples: Samples) -> bool:
+        """Return whether a step of h [s] has gained energy, by more than stops a motion."""
+        before, since = (0.5 * float(self.mass @ at.v**2) + at.acting.strain for at in (now, after))
+        work, lost = 0.5 * h * np.sum([self._powers(at) for at in (now, after)], axis=0)
+        gain = since - before + after.acting.gravity - now.acting.gravity - work + lost
+        return not gain <= GAIN * max(samples.stake, samples.floor, before, abs(work))
 
     def _single(self, now: Instant, h: float, samples: Samples) -> Instant | None:
         """Return the instant after one step of h [s], or None if the iteration does not converge."""

@@ -145,13 +145,14 @@ def test_implicit_step_without_solution_ends_the_run() -> None:
 
 
 def test_an_implicit_step_that_is_too_long_is_told() -> None:
-    """A step of 1 ms on a swing whose strips follow within it gains energy: stopped, with what to do."""
+    """A step of 1 ms on a swing whose strips follow within it: halved where it gains energy, and told."""
     settings = {"start": 1.0, "duration": 0.02, "integrator": "generalised-alpha", "check": False}
-    motion = solve_release(pivot(elements=10), **settings, step=1e-3, raise_on_failure=False)
-    assert motion.status is Status.UNSTABLE
-    assert "the energy grew" in motion.message
+    motion = solve_release(pivot(elements=10), **settings, step=1e-3)
+    assert motion.counters["halvings"] > 0
+    assert motion.energy_error < 0.01
     assert "steps in a mean period" in motion.resolution
     sound = solve_release(pivot(elements=10), **settings, step=1e-4)
+    assert motion.rotation[-1] == pytest.approx(sound.rotation[-1], abs=0.05)
     assert sound.resolution == ""
     assert list(sound.columns())[:4] == ["time_s", "x_m", "y_m", "rotation_rad"]
 
