@@ -1,8 +1,10 @@
 """What the tests of the machinery share: the Table 1 case and the command line in this process."""
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -49,5 +51,17 @@ def command(capsys: pytest.CaptureFixture[str]) -> Callable[..., Outcome]:
         code = main([str(word) for word in words])
         captured = capsys.readouterr()
         return Outcome(code, captured.out, captured.err)
+
+    return run
+
+
+@pytest.fixture
+def answered(command: Callable[..., Outcome]) -> Callable[..., dict[str, Any]]:
+    """Return the JSON of a command that must succeed without a word on the error stream."""
+
+    def run(*words: object) -> dict[str, Any]:
+        outcome = command(*words, "--json", "-")
+        assert (outcome.code, outcome.err) == (0, "")
+        return json.loads(outcome.out)
 
     return run

@@ -1,31 +1,26 @@
-"""Critical loads by the command, one verdict in table, JSON and exit code; and what is not resolved."""
+"""Critical loads, one verdict in table, JSON and exit code; what is not resolved, and where a path ends."""
 
 import json
+import math
+import re
 from pathlib import Path
 
 import pytest
 
-from studies.__main__ import main
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.design import read_design
+from studies.cases.design import as_toml, read_design
+from tests import gates
+from tests.goldens.answers import document_of
 
 FINDS = Path(__file__).parent / "finds"
 #: Right value: shooting on a stretchable Kirchhoff rod [N].
 SHALLOW_ARCH = 6.281928
 
 
-def asked(capsys, name, *words):
-    """Return exit code, JSON and error stream of the command."""
-    code = main(["critical-load", str(FINDS / f"{name}.toml"), "--json", "-", *words])
-    out, err = capsys.readouterr()
-    return code, json.loads(out), err
-
-
-def test_a_limit_point_is_a_critical_load(capsys):
+def test_a_limit_point_is_a_critical_load(answered):
     """Requirement: the snap-through of a shallow arch is a critical load, exit 0, in both models."""
-    code, found, err = asked(capsys, "shallow_arch", "--model", "spline,fe")
-    assert (code, err) == (0, "")
+    found = answered("critical-load", FINDS / "shallow_arch.toml", "--model", "spline,fe")
     for answer in found["answers"]:
         assert (answer["kind"], answer["status"]) == ("limit point", "converged")
         assert answer["critical_load_N"] == pytest.approx(SHALLOW_ARCH, rel=1e-6)
@@ -33,19 +28,18 @@ def test_a_limit_point_is_a_critical_load(capsys):
 
 
 @pytest.mark.parametrize(("name", "share"), [("heavy_payload", 0.4521), ("heavy_pivot", 0.4490)])
-def test_stability_at_zero_force_is_checked_first(name, share, capsys):
+def test_stability_at_zero_force_is_checked_first(name, share, answered):
     """Requirement: a design that its own weight tips over bears no force, with the share of the weight."""
-    code, found, err = asked(capsys, name, "--model", "spline,fe")
-    assert (code, err) == (0, "")
+    found = answered("critical-load", FINDS / f"{name}.toml", "--model", "spline,fe")
     for answer in found["answers"]:
         assert (answer["kind"], answer["critical_load_N"]) == ("unstable at zero force", 0.0)
         assert answer["weight_share"] == pytest.approx(share, rel=1e-3)
 
 
-def test_the_former_name_prints_the_new_one(capsys):
+def test_the_former_name_prints_the_new_one(command):
     """Requirement: `capacity` still works and prints the new name on the error stream."""
-    assert main(["capacity", str(FINDS / "heavy_pivot.toml")]) == 0
-    assert capsys.readouterr().err == "studies: capacity is now called critical-load\n"
+    outcome = command("capacity", FINDS / "heavy_pivot.toml")
+    assert (outcome.code, outcome.err) == (0, "studies: capacity is now called critical-load\n")
 
 
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])
@@ -71,3 +65,76 @@ def test_few_elements_are_not_physics():
     answer = answer_static(read_design(FINDS / "shallow_arch.toml"), FeSettings(elements=4))
     assert answer.message.startswith("not resolved with 4 elements")
     assert answer.critical_points == ()
+
+
+#: The drive of its file, and what stands in its place.
+DRIVES = {"held": "rotation_deg = 0", "turned": "rotation_deg = 0.01", "free": ""}
+SPLINE = ["--control-points", "12"]
+
+
+def pressed(drive):
+    """Return the case file of the pressed pivot under a drive."""
+    text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
+    return text.replace(DRIVES["held"], DRIVES[drive])
+
+
+def asked(command, tmp_path, drive, model, how):
+    """First critical load factor and the message, as the command writes them in JSON; what it prints."""
+    case = tmp_path / "pressed.toml"
+    case.write_text(pressed(drive))
+    words = ["solve", case, "--model", model, *how]
+    document = json.loads(command(*words, "--json", "-").out)
+    printed = command(*words)
+    return document["critical_points"][0]["load_factor"], document["message"], printed.out + printed.err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drive", DRIVES)
+def test_both_models_say_where_a_pressed_pivot_gives_way(command, tmp_path, drive):
+    """Held at 0 and 0.01 deg and free, both find one first critical load, name it and what buckles later."""
+
+    def said(model, how):
+        load, message, printed = asked(command, tmp_path, drive, model, how)
+        assert "buckle" in message  # later, and named with its load
+        assert re.search(rf"(limit point|bifurcation): load factor {load:.6g}", printed)
+        return load
+
+    spline = said("spline", SPLINE)
+
+    def error(elements=40):
+        return abs(spline / said("fe", ["--elements", elements]) - 1.0)
+
+    gates.check("pressed_pivot", error())
+    if drive == "free":
+        gates.refuse("pressed_pivot", error)
+
+
+@pytest.mark.slow
+def test_a_spline_that_stops_says_where_it_buckled(command, tmp_path):
+    """Pressed far beyond what it bears, the spline stops and says so, with the force, and what may go on."""
+    path = tmp_path / "pressed.toml"
+    path.write_text(pressed("turned").replace("-20e3", "-1e9"), encoding="utf-8")
+    outcome = command("solve", path)
+    assert outcome.code == 3
+    assert re.search(r"lost its stability before, first at load factor \S+ \(force \d+ N\)", outcome.err)
+    assert "--model fe may go further" in outcome.err
+
+
+def test_what_a_converged_path_passed_is_told(command, tmp_path):
+    """A path that reached its end says what it passed, in the table and in JSON, with the load factor."""
+    path, column = tmp_path / "column.toml", document_of("column")
+    column["effects"]["applied_force"]["force_N"] = [-4, 0]
+    path.write_text(as_toml(column), encoding="utf-8")
+    words = ["solve", path, "--model", "spline"]
+    answer = json.loads(command(*words, "--json", "-").out)
+    outcome = command(*words)
+    assert (outcome.code, outcome.err, answer["status"]) == (0, "", "converged")
+    assert answer["message"]
+    assert answer["message"] in outcome.out
+    (point,) = answer["critical_points"]
+    euler = (math.pi / 2) ** 2  # one end free, EI and L one
+    assert point["kind"] == "bifurcation"
+    assert point["force_N"] == pytest.approx(euler, rel=1e-3)
+    assert point["rotation_rad"] is None
+    assert point["load_factor"] == pytest.approx(euler / 4.0, rel=1e-3)
+    assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out

@@ -25,16 +25,8 @@ CALLS = {
     "spline pivot": (pivot_of, spline_model, TABLE_ONE | {"control_points": 6, "gauss_points": 9}),
     "fe pivot": (pivot_of, fe_reference, TABLE_ONE | {"elements": 2}),
     "spline statics": (spline_model.solve_statics, SPLINE, {"rotation": 0.1, "increments": 1}),
-    "spline mechanism": (
-        spline_model.solve_mechanism,
-        SPLINE,
-        {"rotation": 0.1, "increments": 1},
-    ),
-    "spline release": (
-        spline_model.solve_release,
-        SPLINE,
-        {"start": 0.1, "duration": 1e-4, "step": 1e-4},
-    ),
+    "spline mechanism": (spline_model.solve_mechanism, SPLINE, {"rotation": 0.1, "increments": 1}),
+    "spline release": (spline_model.solve_release, SPLINE, {"start": 0.1, "duration": 1e-4, "step": 1e-4}),
     "spline modes": (spline_model.natural_frequencies, SPLINE, {"rotation": 0.1, "count": 1}),
     "fe statics": (fe_reference.solve_statics, ELEMENTS, {"rotation": 0.1, "increments": 1}),
     "fe mechanism": (fe_reference.solve_mechanism, ELEMENTS, {"rotation": 0.1, "increments": 1}),

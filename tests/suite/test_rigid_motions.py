@@ -1,6 +1,5 @@
 """Mechanisms that move freely, and parts of one whose sizes differ by orders, in both models."""
 
-import json
 import math
 from pathlib import Path
 
@@ -75,21 +74,14 @@ def test_a_short_strip_between_long_ones_hardly_matters():
     assert shorter[0] == pytest.approx(shorter[1], rel=2e-3)
 
 
-def answer(command, *words):
-    """The JSON of a command that must succeed."""
-    outcome = command(*words, "--json", "-")
-    assert outcome.code == 0
-    return json.loads(outcome.out)
-
-
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize(
     ("name", "rigid", "first"), [("hub_with_cable", 1, 1.6876), ("free_flight", 3, 28.27)]
 )
-def test_rigid_motions_have_the_frequency_zero(name, rigid, first, model, command):
+def test_rigid_motions_have_the_frequency_zero(name, rigid, first, model, command, answered):
     """Requirement: rigid motions are printed as such; the first elastic one agrees between the models."""
     words = ["modes", FINDS / f"{name}.toml", "--model", model, *SIZE[model]]
-    frequency = answer(command, *words)["frequency_Hz"]
+    frequency = answered(*words)["frequency_Hz"]
     assert frequency[:rigid] == [0.0] * rigid
     assert frequency[rigid] == pytest.approx(first, rel=1e-3)
     out = command(*words).out
@@ -97,9 +89,9 @@ def test_rigid_motions_have_the_frequency_zero(name, rigid, first, model, comman
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_the_slow_mode_of_a_stiff_pendulum(model, command):
+def test_the_slow_mode_of_a_stiff_pendulum(model, answered):
     """Requirement: sqrt(g / L) / (2 pi) = 0.28555 Hz of a point mass on a stiff bar with modes of 1e7 Hz."""
-    found = answer(command, "modes", FINDS / "pinned_pendulum.toml", "--model", model, *SIZE[model])
+    found = answered("modes", FINDS / "pinned_pendulum.toml", "--model", model, *SIZE[model])
     exact = math.sqrt(9.8 / 3.0443) / (2.0 * math.pi)
     assert found["frequency_Hz"][0] == pytest.approx(exact, rel=2e-5)
 
@@ -119,28 +111,28 @@ STRIP = 4430.0 * 0.01 * 0.0005 * 0.1027
 MASSES = {"A": 0.02 + 0.5 * STRIP, "B": 0.05 + 0.5 * STRIP}
 
 
-def flown(command, case, model, duration):
+def flown(answered, case, model, duration):
     """The answer to a release of `free_flight`, and how far its centre of mass has moved (2,)."""
-    found = answer(command, "release", case, "--model", model, "--duration", duration, "--no-check")
+    found = answered("release", case, "--model", model, "--duration", duration, "--no-check")
     places = {name: np.array([found["bodies"][name][key] for key in ("x_m", "y_m")]) for name in MASSES}
     moved = sum(mass * (places[name][:, -1] - places[name][:, 0]) for name, mass in MASSES.items())
     return found, moved / sum(MASSES.values())
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_free_flight_keeps_its_momentum(model, command):
+def test_free_flight_keeps_its_momentum(model, answered):
     """Requirement: the centre of mass moves by the impulse of the force, (1, 2) N as a triangle of 20 ms."""
-    _, moved = flown(command, FINDS / "free_flight.toml", model, 0.03)
+    _, moved = flown(answered, FINDS / "free_flight.toml", model, 0.03)
     # int of the velocity: impulse 0.01 F reached at 0.02 s, 0.01 s at full speed after it
     exact = np.array([1.0, 2.0]) * (0.01 * 0.01 + 0.01 * 0.01) / sum(MASSES.values())
     assert moved == pytest.approx(exact, rel=0.03)
 
 
-def test_pendulum_period(command):
+def test_pendulum_period(answered):
     """Requirement: a point mass on a stiff bar from the horizontal swings in 4.1335 s, 1.18034 times 2 pi
     sqrt(L / g) (elliptic integral)."""
     words = ["release", FINDS / "pinned_pendulum.toml", "--control-points", 6, "--duration", 1.1]
-    found = answer(command, *words, "--step", 2e-3, "--no-check")
+    found = answered(*words, "--step", 2e-3, "--no-check")
     x, time = np.array(found["bodies"]["mass"]["x_m"]), np.array(found["time_s"])
     at = int(np.flatnonzero((x[:-1] > 0.0) & (x[1:] <= 0.0))[0])
     quarter = time[at] + (time[at + 1] - time[at]) * x[at] / (x[at] - x[at + 1])
@@ -148,12 +140,12 @@ def test_pendulum_period(command):
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_what_nothing_holds_falls(model, tmp_path, command):
+def test_what_nothing_holds_falls(model, tmp_path, answered):
     """Requirement: two bodies on a strip, held until their release, fall by g t^2 / 2 in the mean."""
     case = tmp_path / "falling.toml"
     text = (FINDS / "free_flight.toml").read_text().split("[scene]")[0]
     case.write_text(text + '[scene]\neffects = ["+gravity"]\n')
-    found, moved = flown(command, case, model, 0.1)
+    found, moved = flown(answered, case, model, 0.1)
     assert found["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
     gained = np.array(found["kinetic_J"]) + np.array(found["strain_J"]) + np.array(found["gravity_J"])
     assert np.ptp(gained) < 1e-4 * max(found["kinetic_J"])

@@ -1,6 +1,5 @@
 """Scenes of effects and mechanisms: what a case file and `--effects` say is what is assembled."""
 
-import json
 from functools import partial
 
 import numpy as np
@@ -18,32 +17,25 @@ SCENES = ("cross_axis_pivot", *MECHANISMS)
 COARSE = {"spline": [], "fe": ["--elements", 8]}
 
 
-def answer(command, *words):
-    """The JSON of a command that must succeed."""
-    outcome = command(*words, "--json", "-")
-    assert (outcome.code, outcome.err) == (0, "")
-    return json.loads(outcome.out)
-
-
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=[pytest.mark.slow] * (name != "cantilever_with_body")) for name in MECHANISMS],
 )
-def test_both_models_release_every_mechanism_alike(name, command):
+def test_both_models_release_every_mechanism_alike(name, answered):
     """After 5 ms all bodies are where the other model has them."""
     places = []
     for model, coarse in COARSE.items():
         words = ["--model", model, *coarse, "--duration", 5e-3]
-        found = answer(command, "release", FOLDER / f"{name}.toml", *words)
+        found = answered("release", FOLDER / f"{name}.toml", *words)
         places.append([[place[key][-1] for key in ("x_m", "y_m")] for place in found["bodies"].values()])
     assert np.abs(np.subtract(*places)).max() < 1e-4  # m: a thousandth of the size
 
 
-def modes_apart(command, name, elements=8):
+def modes_apart(answered, name, elements=8):
     """Relative difference of the first frequencies of both models."""
     words = {"spline": [], "fe": ["--elements", elements]}
     one, other = (
-        answer(command, "modes", FOLDER / f"{name}.toml", "--model", model, *coarse, "--count", 1)
+        answered("modes", FOLDER / f"{name}.toml", "--model", model, *coarse, "--count", 1)
         for model, coarse in words.items()
     )
     assert one["effects"] == other["effects"]
@@ -62,11 +54,11 @@ def test_shipped_cases_take_the_effects_of_their_sides(name, command):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_both_models_have_the_modes_of_every_scene(name, command):
+def test_both_models_have_the_modes_of_every_scene(name, answered):
     """The first frequency about the state under weight and loads in full is that of the other model."""
-    gates.check("scenes_first_mode", modes_apart(command, name))
+    gates.check("scenes_first_mode", modes_apart(answered, name))
     if name == "parallel_strip_guide":
-        gates.refuse("scenes_first_mode", partial(modes_apart, command, name))
+        gates.refuse("scenes_first_mode", partial(modes_apart, answered, name))
 
 
 @pytest.mark.parametrize(
@@ -78,34 +70,34 @@ def test_both_models_have_the_modes_of_every_scene(name, command):
         ("bending,stretching,body_inertia", ["bending", "stretching", "body_inertia"]),
     ],
 )
-def test_effects_are_changed_on_the_command_line(change, names, case, command):
+def test_effects_are_changed_on_the_command_line(change, names, case, answered):
     """Signed names change the scene's list, names alone are all; what was assembled is reported."""
     words = ["--model", "spline", f"--effects={change}"]
     if "strip_inertia" in names:
-        moving = answer(command, "release", case(), *words, "--rotation-deg", 20, "--duration", 1e-4)
+        moving = answered("release", case(), *words, "--rotation-deg", 20, "--duration", 1e-4)
         assert moving["effects"] == names
         assert ("gravity_J" in moving) == ("gravity" in names)
-    assert answer(command, "modes", case(), *words, "--count", 1)["effects"] == names
-    driven = answer(command, "solve", case(), *words, "--rotation-deg", 10, "--increments", 2)
+    assert answered("modes", case(), *words, "--count", 1)["effects"] == names
+    driven = answered("solve", case(), *words, "--rotation-deg", 10, "--increments", 2)
     assert driven["effects"] == [name for name in names if name not in MOTION_ONLY]
 
 
 @pytest.mark.parametrize("model", ["spline", "fe"])
-def test_tables_of_effects_are_there_for_the_command_line(model, case, command):
+def test_tables_of_effects_are_there_for_the_command_line(model, case, answered):
     """A table gives the parameters of an effect that --effects adds; without it weight is the earth's. A
     scene in the case gives the same, and a table that --effects takes out stays behind."""
     end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
     words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
-    bare = answer(command, "solve", case(), *words)
+    bare = answered("solve", case(), *words)
     assert bare["effects"] == ["bending", "stretching"]
     shifts = []
     for changes in ((), (end,)):
-        loaded = answer(command, "solve", case(*changes), *words, "--effects=+gravity")
+        loaded = answered("solve", case(*changes), *words, "--effects=+gravity")
         shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
     named = case((end[0], end[1].replace("[eff", '[scene]\neffects = ["+gravity"]\n[eff')))
-    heavy = answer(command, "solve", named, *words)
+    heavy = answered("solve", named, *words)
     assert heavy["com_y_m"] == loaded["com_y_m"]
-    assert answer(command, "solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
+    assert answered("solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
     assert shifts[0] < 0.0
     assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
 
