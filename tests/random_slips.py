@@ -34,7 +34,7 @@ NOT_ASKED = ("bench", "docs", "interactive", "report", "suite/test_results.py", 
 #: Of pytest: only the names of what fails, and an end of what takes minutes, as some solvers do with a slip.
 OPTIONS = (
     *("-q", "-rfE", "--tb=no", "-m", "not slow", "-p", "no:cacheprovider", "-p", "no:xdist"),
-    *("-o", "faulthandler_timeout=300", "-o", "faulthandler_exit_on_timeout=true"),
+    *("-o", "faulthandler_timeout=900", "-o", "faulthandler_exit_on_timeout=true"),
 )
 #: Part that quick tests are to notice.
 WANTED = 0.9
