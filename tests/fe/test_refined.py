@@ -8,11 +8,9 @@ import pytest
 from fe_reference import (
     ELEMENTS,
     ConvergenceError,
-    InvalidParameter,
     natural_frequencies,
     solve_loads,
     solve_mechanism,
-    solve_motion,
     solve_release,
     solve_statics,
 )
@@ -88,15 +86,6 @@ def test_a_motion_has_a_limit() -> None:
     assert coarse.estimate.errors["rotation"] == coarse.rotation_error
     assert np.abs(coarse.rotation - fine.rotation).max() < coarse.estimate.errors["rotation"]
     assert coarse.shape.shape == (9, 2, 4, 2)
-
-
-def test_what_an_accuracy_does_not_go_with_is_refused() -> None:
-    """An accuracy goes with no step and no other integrator; one line says so."""
-    for options in ({"step": 1e-6}, {"integrator": "generalised-alpha"}):
-        with pytest.raises(
-            InvalidParameter, match=r"got 0.1, expected no step beside it, and the integrator"
-        ):
-            solve_motion(pivot(), start=0.1, duration=1e-3, accuracy=0.1, **options)
 
 
 def test_an_accuracy_out_of_reach_is_told() -> None:

@@ -1,49 +1,237 @@
-"""Bad parameters and failed solves are refused in words, with evidence."""
+"""What the elements refuse, in one line: models and requests that make no sense; and failed solves."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 
 from fe_reference import (
+    DEFAULT_EFFECTS,
     FREE,
     Body,
+    BodyDesign,
     ConvergenceError,
-    InvalidParameter,
     Model,
     Section,
     Status,
     Strip,
+    StripDesign,
+    compliant_mechanism,
     cross_axis_pivot,
+    natural_frequencies,
+    plate_factors,
     solve_loads,
+    solve_mechanism,
+    solve_motion,
+    solve_release,
     solve_statics,
 )
 from tests.fe.cases import SECTION, TABLE_1, cantilever, flat_strip, pivot
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "message"),
-    [
-        (
-            "poisson_ratio",
-            0.5,
-            "poisson_ratio: got 0.5, expected a number between -1 and 0.5, both excluded [1]",
-        ),
-        ("centre_offset", (0.0,), "centre_offset: got (0.0,), expected two finite numbers [m]"),
-        ("centre_offset", np.array(0.1), "centre_offset: got array(0.1), expected two finite numbers [m]"),
-    ],
-)
-def test_bad_parameter_is_one_clear_line(name: str, value: Any, message: str) -> None:
-    """A bad parameter is refused with its name, the value, what is expected and the unit."""
-    with pytest.raises(InvalidParameter) as refusal:
-        pivot(**{name: value})
-    assert str(refusal.value) == message
-    assert refusal.value.name == name
-
+from tests.fe.scenes import SECTION as SIDELESS
+from tests.fe.scenes import WIDE, four_bar, free_cantilever, guide
+from tests.refusals import refused, scene
 
 SIDES = {"width": 0.01, "thickness": 0.005}
 BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
+STILL, LIGHT = scene(("bending", "stretching")), scene(("bending", "stretching", "body_inertia"))
+ROTARY = scene(("bending", "stretching", "section_rotary_inertia"))
+TWICE = ((0.0, 1.0), (0.0, 2.0))
+more = partial(scene, DEFAULT_EFFECTS)
+
+#: What the pivot of Table 1 is given beside or in place of its own, and what is said of it.
+PIVOTS: list[tuple[dict[str, Any], str]] = [
+    (
+        {"poisson_ratio": 0.5},
+        "poisson_ratio: got 0.5, expected a number between -1 and 0.5, both excluded [1]",
+    ),
+    ({"centre_offset": (0.0,)}, "centre_offset: got (0.0,), expected two finite numbers [m]"),
+    ({"centre_offset": np.array(0.1)}, "centre_offset: got array(0.1), expected two finite numbers [m]"),
+    (
+        scene((*DEFAULT_EFFECTS, "magnetism")),
+        "effects: got 'magnetism', expected one of bending, stretching,",
+    ),
+    (scene(("bending", "inextensible")), "effects: got 'inextensible', expected one of bending, stretching,"),
+    (scene(("bending", "strip_inertia")), "effects: got ('bending', 'strip_inertia'), expected bending and"),
+    (scene((*DEFAULT_EFFECTS, "bending")), "effects: got ('bending', 'stretching', 'strip_inertia',"),
+    (ROTARY, "effects: got ... 'section_rotary_inertia'), expected strip_inertia beside"),
+    (
+        {"parameters": {"gravity": {}}},
+        "parameters: got 'gravity', expected one of the named effects bending,",
+    ),
+    (
+        {"parameters": {"bending": {"rate": 1.0}}},
+        "bending: got 'rate', expected one of no parameters [name]",
+    ),
+    (more(gravity={}), "gravity: got {}, expected a value of acceleration [name]"),
+    (more(gravity={"acceleration": 9.81}), "acceleration: got 9.81, expected two finite numbers [m/s^2]"),
+    (
+        more(gravity={"acceleration": (0.0, np.nan)}),
+        "acceleration: got nan, expected a finite number [m/s^2]",
+    ),
+    (more(gravity={"speed": 1.0}), "gravity: got 'speed', expected one of acceleration [name]"),
+    (
+        more(strip_damping={"relaxation_time": -1.0}),
+        "relaxation_time: got -1.0, expected a number not below 0",
+    ),
+    (more(strip_drag={"rate": -1.0}), "rate: got -1.0, expected a number not below 0 [1/s]"),
+    (more(body_damping={"rotation": -1.0}), "rotation: got -1.0, expected a number not below 0 [N m s]"),
+    (
+        more(applied_force={"force": (1.0, 0.0), "body": "car"}),
+        "body: got 'car', expected one of body [name]",
+    ),
+    (more(applied_moment={"moment": 1.0, "body": "car"}), "body: got 'car', expected one of body [name]"),
+    (
+        more(applied_moment={"moment": 1.0, "history": TWICE}),
+        "history: got ((0.0, 1.0), (0.0, 2.0)), expected pairs of ascending instants [s]",
+    ),
+    (
+        more(tip_force={"strip": "strip_1", "force": (1.0, 0.0)}),
+        "tip_force: got 'strip_1', expected a strip whose",
+    ),
+    (
+        more(tip_force={"strip": "rope", "force": (1.0, 0.0)}),
+        "strip: got 'rope', expected one of strip_1, strip_2",
+    ),
+]
+
+
+def sided(strips: dict[str, Any] = WIDE, **parameters: Any) -> Model:
+    """Return the guide of strips that have sides, with effects of them."""
+    return guide(parameters, section=strips)
+
+
+def bare(**given: Any) -> Model:
+    """Return the pivot without a section but what is given."""
+    return cross_axis_pivot(**BARE, **given)
+
+
+def hung(*, bodies: tuple[str, ...] = ("plate",), strips: int = 1) -> Model:
+    """Return strips of one name between ground and a plate."""
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="plate", **SIDELESS)
+    made = [BodyDesign(name=name, centre=(0.1, 0.0)) for name in bodies]
+    return compliant_mechanism(strips=[strip] * strips, bodies=made)
+
+
+def release(given: Any = None, **options: Any) -> object:
+    """Release the pivot, given other effects as well."""
+    return solve_release(pivot(**given or {}), **{"start": 0.5, "duration": 1e-4} | options)
+
+
+def unheld() -> Model:
+    """Return a strip that nothing holds."""
+    free = cantilever(elements=2)
+    return replace(free, strips=(replace(free.strips[0], root=FREE),))
+
+
+ALPHA = "generalised-alpha"
+INERTIA = "expected strip_inertia or body_inertia for a motion"
+NEEDED = "expected strips with width and thickness"
+#: A call, and what is said of it.
+ASKED: list[tuple[Callable[[], object], str]] = [
+    (lambda: bare(width=0.01), "thickness: got None, expected a finite number [m]"),
+    (lambda: bare(width=-1.0, thickness=1.0), "width: got -1.0, expected a number above 0 [m]"),
+    (
+        lambda: bare(**SIDES, second_moment_of_area=1.05e-10),
+        "second_moment_of_area: got 1.05e-10, expected 1.04167e-10, that of width and thickness [m^4]",
+    ),
+    (
+        lambda: bare(area=5e-5),
+        "second_moment_of_area: got 'nothing', expected it, or width and thickness of a",
+    ),
+    (bare, "area: got 'nothing', expected it, or width and thickness of a rectangle [m]"),
+    (lambda: guide({"clamped_width": {}}), f"clamped_width: got 'left', {NEEDED}"),
+    (lambda: guide({"anticlastic": {}}), f"anticlastic: got 'left', {NEEDED}"),
+    (
+        lambda: guide({"root_compliance": {"root": "monolithic"}}),
+        f"root_compliance: got 'left', {NEEDED} [name]",
+    ),
+    (
+        lambda: free_cantilever(section=WIDE, parameters={"clamped_width": {}}),
+        "clamped_width: got 'strip', expected strips clamped at both ends [name]",
+    ),
+    (
+        lambda: four_bar({"anticlastic": {}}, rise=0.003, section=WIDE),
+        "anticlastic: got 'a', expected straight strips [name]",
+    ),
+    (
+        lambda: sided(anticlastic={}, pre_strain={"curvature": 1.0}),
+        "anticlastic: got 'natural curvature', expected strips that are straight when free of stress",
+    ),
+    (
+        lambda: sided(root_compliance={"root": -1.0}),
+        "root: got -1.0, expected a number not below 0 [thicknesses]",
+    ),
+    (
+        lambda: solve_loads(sided(WIDE | {"width": 10.0}, clamped_width={})),
+        "clamped_width: got 100.0, expected a width over length up to 30 [1]",
+    ),
+    *(
+        (partial(plate_factors, *each), "ratio")
+        for each in ((0.0, 0.3), (np.nan, 0.3), (0.5, -0.1), (0.5, 0.6))
+    ),
+    (lambda: hung(bodies=("car",)), "tip: got 'plate', expected one of ground, car"),
+    (lambda: hung(bodies=("ground",)), "bodies: got 'ground', expected another name"),
+    (lambda: hung(strips=2), "strips: got ... expected names that differ"),
+    (lambda: Strip(section=SECTION, nodes=np.zeros((3, 2))), "coincident neighbours"),
+    (lambda: Strip(section=SECTION, nodes=np.zeros(3)), "finite positions"),
+    (lambda: Body(centre=np.array([np.nan, 0.0])), "centre: got nan, expected a finite number"),
+    (lambda: Section(**SIDELESS | {"density": 0.0}), "above 0"),
+    (
+        lambda: Model(strips=tuple(map(flat_strip, (2, 3))), bodies=(Body(centre=np.zeros(2)),)),
+        "same number of nodes",
+    ),
+    (lambda: solve_loads(cantilever(elements=2), force=(1.0, 2.0, 3.0)), "force: got ... two components [N]"),
+    (lambda: solve_loads(unheld(), moment=1.0), "nothing holds body body against turning"),
+    (
+        lambda: solve_mechanism(four_bar(), rotation=0.1),
+        "body: got None, expected one of crank, coupler, rocker",
+    ),
+    (lambda: solve_mechanism(free_cantilever(), rotation=0.1), "body: got None, expected one of no bodies"),
+    (
+        lambda: free_cantilever(parameters={"driven_displacement": {"displacement": (0.0, 0.0)}}),
+        "driven_displacement: got 'no bodies'",
+    ),
+    (
+        lambda: solve_mechanism(
+            guide({"driven_displacement": {"displacement": (1e-3, 0.0)}}), displacement=(1e-3, 0.0)
+        ),
+        "expected none beside the effect driven_displacement",
+    ),
+    (
+        lambda: solve_motion(guide(), start=0.1, settled=False, duration=1e-3),
+        "settled: got False, expected True for a start at a held",
+    ),
+    (
+        lambda: natural_frequencies(guide(), rotation=None, held=True),
+        "held: got True, expected a driven rotation to hold",
+    ),
+    (
+        lambda: solve_motion(free_cantilever(root=None), settled=False, duration=1e-3, integrator=ALPHA),
+        "step: got None, expected a step: the model can move freely",
+    ),
+    (lambda: natural_frequencies(pivot(**STILL)), INERTIA),
+    (lambda: release(STILL), INERTIA),
+    (lambda: release(LIGHT), "expected generalised-alpha where strips or bodies have no"),
+    (lambda: release(most_steps=0), "most_steps: got 0, expected an integer of at least 1 [1]"),
+    (lambda: release(samples=0), "samples: got 0, expected an integer of at least 1 [1]"),
+    (lambda: release(duration=1e6), "duration: got 1000000.0, expected at most 2e+07 steps of"),
+    (lambda: release(duration=1.0, samples=10**7), "samples: got "),
+    (lambda: release(integrator=ALPHA, spectral_radius=1.5), "spectral_radius: got 1.5, expected"),
+    *(
+        (partial(release, accuracy=0.1, **how), "got 0.1, expected no step beside it, and the integrator")
+        for how in ({"step": 1e-6}, {"integrator": ALPHA})
+    ),
+]
+ASKED += [(partial(pivot, **given), said) for given, said in PIVOTS]
+
+
+@pytest.mark.parametrize(("ask", "said"), ASKED, ids=[f"{k}: {row[1]}" for k, row in enumerate(ASKED)])
+def test_what_makes_no_sense_is_refused(ask: Callable[[], object], said: str) -> None:
+    """Bad designs, effects and requests are refused by name with the value, what is expected and the unit."""
+    refused(ask, said)
 
 
 def test_sides_make_the_section() -> None:
@@ -52,51 +240,6 @@ def test_sides_make_the_section() -> None:
     assert (section.area, section.second_moment_of_area) == (0.01 * 0.005, 0.01 * 0.005**3 / 12.0)
     rounded = cross_axis_pivot(**TABLE_1, **SIDES).strips[0].section
     assert rounded.flexural_rigidity == cross_axis_pivot(**TABLE_1).strips[0].section.flexural_rigidity
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"width": 0.01}, "thickness: got None, expected a finite number [m]"),
-        ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a number above 0 [m]"),
-        (
-            SIDES | {"second_moment_of_area": 1.05e-10},
-            "second_moment_of_area: got 1.05e-10, expected 1.04167e-10, that of width and thickness [m^4]",
-        ),
-        ({"area": 5e-5}, "second_moment_of_area: got 'nothing', expected it, or width and thickness of a"),
-        ({}, "area: got 'nothing', expected it, or width and thickness of a rectangle [m]"),
-    ],
-)
-def test_sides_that_make_no_section_are_refused(given: dict[str, Any], message: str) -> None:
-    """One side alone, none, or a section that contradicts its sides is refused in one line."""
-    with pytest.raises(InvalidParameter) as refusal:
-        cross_axis_pivot(**BARE, **given)
-    assert str(refusal.value).startswith(message)
-
-
-def test_bad_load_and_geometry_are_refused() -> None:
-    """Loads of the wrong shape, folded meshes and unequal strips are refused."""
-    with pytest.raises(InvalidParameter, match=r"force: got .*, expected two components \[N\]"):
-        solve_loads(cantilever(elements=2), force=(1.0, 2.0, 3.0))
-    with pytest.raises(InvalidParameter, match="coincident neighbours"):
-        Strip(section=SECTION, nodes=np.zeros((3, 2)))
-    with pytest.raises(InvalidParameter, match="finite positions"):
-        Strip(section=SECTION, nodes=np.zeros(3))
-    with pytest.raises(InvalidParameter, match="centre: got nan, expected a finite number"):
-        Body(centre=np.array([np.nan, 0.0]))
-    with pytest.raises(InvalidParameter, match="above 0"):
-        Section(area=1.0, second_moment_of_area=1.0, youngs_modulus=1.0, poisson_ratio=0.3, density=0.0)
-    strips = tuple(map(flat_strip, (2, 3)))
-    with pytest.raises(InvalidParameter, match="same number of nodes"):
-        Model(strips=strips, bodies=(Body(centre=np.zeros(2)),))
-
-
-def test_model_without_clamps_is_refused() -> None:
-    """A model that nothing holds has no static solution."""
-    free = cantilever(elements=2)
-    strip = replace(free.strips[0], root=FREE)
-    with pytest.raises(InvalidParameter, match="nothing holds body body against turning"):
-        solve_loads(replace(free, strips=(strip,)), moment=1.0)
 
 
 def test_rest_is_a_path_too() -> None:
