@@ -1,5 +1,6 @@
 """Mechanisms that move freely, and parts of one whose sizes differ by orders, in both models."""
 
+import json
 import math
 from pathlib import Path
 
@@ -72,6 +73,40 @@ def test_a_short_strip_between_long_ones_hardly_matters():
     """Requirement: 1e-5 m between strips of 0.1 m is solved and tends to the chain without it."""
     shorter = [torque(SPLINE, lengths=(0.1, length, 0.1)) for length in (1e-4, 1e-5)]
     assert shorter[0] == pytest.approx(shorter[1], rel=2e-3)
+
+
+SIZES = {"spline": ("--control-points", "20"), "fe": ("--elements", "10")}
+
+
+def test_modes_of_lengths_stiffnesses_and_masses_far_apart(command):
+    """Requirement: 1e4 between them leaves both models' modes within 2e-3 (1e-3 of either is round-off)."""
+    case = str(FINDS / "sizes_apart.toml")
+    found = [
+        json.loads(command("modes", case, "--model", model, *size, "--json", "-").out)["frequency_Hz"]
+        for model, size in SIZES.items()
+    ]
+    assert found[0][:4] == pytest.approx(found[1][:4], rel=2e-3)
+    refused = command("modes", case, "--model", "fe", "--elements", "20")
+    assert refused.code == 2
+    assert len(refused.err.splitlines()) == 1
+    assert "round-off decides a frequency" in refused.err
+
+
+def test_a_motion_of_lengths_stiffnesses_and_masses_far_apart(command):
+    """Requirement: the led body has travelled alike in both models, though light nodes start in round-off."""
+    case = str(FINDS / "sizes_apart.toml")
+    sizes = {
+        "spline": ("--control-points", "11"),
+        "fe": ("--elements", "20", "--integrator", "generalised-alpha"),
+    }
+    travelled = []
+    for model, size in sizes.items():
+        words = ["release", case, "--model", model, *size, "--step", "2e-4", "--duration", "0.1"]
+        outcome = command(*words, "--no-check", "--json", "-")
+        y = json.loads(outcome.out)["bodies"]["last"]["y_m"]
+        assert outcome.code == 0
+        travelled.append(y[-1] - y[0])
+    assert travelled[0] == pytest.approx(travelled[1], rel=0.02)
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -43,12 +43,11 @@ def modes_apart(answered, name, elements=8):
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.toml")))
-def test_shipped_cases_take_the_effects_of_their_sides(name, command):
+def test_shipped_cases_take_the_effects_of_their_sides(name, answered):
     """Every case that comes with the suite names its sides: both models take what asks for them, alike."""
     words = ("solve", name, "--effects=+clamped_width,+anticlastic,+root_compliance", "--increments", 2)
     spline, fe = (
-        answer(command, *words, "--model", model, *coarse)["strain_energy_J"][-1]
-        for model, coarse in COARSE.items()
+        answered(*words, "--model", model, *coarse)["strain_energy_J"][-1] for model, coarse in COARSE.items()
     )
     assert fe == pytest.approx(spline, rel=5e-3)  # eight elements leave 2e-3 of Table 1's at 90 degrees
 
