@@ -15,7 +15,7 @@ from tests.fe.cases import (
     rotated,
     rotation_matrix,
 )
-from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, four_bar, free_cantilever, guide
+from tests.fe.scenes import APART, GUIDE, LINK, PARAMETERS, WIDE, four_bar, free_cantilever, guide
 from tests.gates import hold
 
 SOFT = {
@@ -67,6 +67,17 @@ def test_natural_curvature_gives_a_stress_free_arc(element: str) -> None:
     answer = solve_mechanism(free_cantilever(parameters=given, element=element))
     assert abs(answer.strain_energy).max() < 1e-12 * EI * curvature * angle
     assert answer.counters["settling_increments"] == 20
+
+
+@pytest.mark.parametrize("element", QUICK_ELEMENTS)
+def test_roots_do_not_turn_where_there_is_no_stress(element: str) -> None:
+    """On the arc of its natural curvature a strip has no moment that would turn its clamp."""
+    given: dict[str, Any] = {"pre_strain": {"curvature": 3.0}}
+    stiff, soft = (
+        solve_mechanism(free_cantilever(parameters=given | roots, element=element, section=WIDE)).shape[-1, 0]
+        for roots in ({}, {"root_compliance": {"root": 3.0}})
+    )
+    assert np.abs(soft - stiff).max() < 1e-12 * GUIDE
 
 
 def test_parallel_strip_guide() -> None:
