@@ -181,8 +181,8 @@ EFFECTS: dict[str, str] = {
     "applied_moment": "a moment on a body",
     "tip_force": "a force on the free end of a strip, in fixed directions",
     "driven_displacement": "leads the centre of mass of a body from where it is at rest, in x, y or both",
-    "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides); alone up to 4.5 % "
-    "too soft",
+    "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides); alone up to "
+    "4.5 % too soft",
     "anticlastic": "sections that flatten as wide strips bend, which stiffens them (of known sides); with "
     "clamped_width up to 1.2 % too stiff",
     "root_compliance": "clamped ends that turn, as in a body of the strips' material (of known sides)",
