@@ -10,7 +10,7 @@ from .effects import PreStrain
 from .errors import InvalidParameter
 from .law import FORCES
 from .mesh import nodal_shares
-from .model import Model
+from .model import Model, require_model
 from .structure import Structure, structure_of
 
 
@@ -75,6 +75,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     Raises:
         InvalidParameter: states of another structure, such as another number of elements.
     """
+    require_model(model)
     structure, y = structure_of(model), np.asarray(states)
     if y.ndim != 2 or y.shape[1] != structure.size:
         expected = f"(S, {structure.size}), of this model with its number of elements"

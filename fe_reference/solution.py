@@ -6,6 +6,8 @@ from enum import StrEnum
 from time import perf_counter
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 from .arrays import Array, Indices
 from .errors import ConvergenceError, InvalidParameter
 from .model import Model
@@ -76,6 +78,13 @@ class Answer:
     bodies: Mapping[str, Array]
     history: tuple[tuple[float, ...], ...]
     estimate: "ErrorEstimate | None"
+
+    def __post_init__(self) -> None:
+        """Make all arrays read only."""
+        for value in vars(self).values():
+            for array in value.values() if isinstance(value, Mapping) else (value,):
+                if isinstance(array, np.ndarray):
+                    array.flags.writeable = False
 
     @property
     def reached(self) -> float:

@@ -181,7 +181,8 @@ class StripDesign:
                 "poisson_ratio", self.poisson_ratio, "a number above -1 and at most 0.5 [1]"
             )
         if not abs(self.rise) < self.chord / 2:
-            raise InvalidParameter("rise", self.rise, f"less than half the chord, {self.chord / 2:g} [m]")
+            expected = f"less than half the chord, {self.chord / 2:g}, or two strips with a massless body [m]"
+            raise InvalidParameter(f"rise of {self.name}", self.rise, expected)
 
     def _take_sides(self) -> None:
         """Area and second moment from width and thickness, compared with them where they are given."""

@@ -13,7 +13,7 @@ from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
 from spline_model.errors import InvalidParameter
-from spline_model.mechanism import Mechanism
+from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.scene import Scene
 from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
@@ -55,6 +55,7 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     Shear force and reactions are those of balance with the clamps: exact but for the solver's
     residual. N and M follow from the strains and show the error of too few control points.
     """
+    require_mechanism(mechanism)
     return _static_fields(mechanism, mechanism.scene, states)
 
 
@@ -72,6 +73,7 @@ def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
     at a free one but for that error. Axial forces are those of the shape, as some integrators
     keep none; of inextensible strips those that the states hold.
     """
+    require_mechanism(mechanism)
     system = compile_scene(mechanism.released())
     known = _with_axial_forces(system, _known(system, states))
     return _fields(mechanism, system, known, moving=True)

@@ -12,11 +12,12 @@ from spline_model.basis import AxialModes, SplineBasis, all_modes
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
+from spline_model.read_only import read_only
 from spline_model.scene import Strip
 
 Array = NDArray[np.float64]
 
-STATIONS = np.linspace(0.0, 1.0, 61)
+STATIONS = read_only(np.linspace(0.0, 1.0, 61))
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 ENDS = ("start", "end")
 
@@ -36,6 +37,9 @@ class Sections:
     axial_force: Array
     bending_moment: Array
     shear_force: Array
+
+    def __post_init__(self) -> None:
+        read_only(vars(self))
 
 
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:

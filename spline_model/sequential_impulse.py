@@ -175,6 +175,7 @@ def impulse_solver(
 
     Raises InvalidParameter.
     """
+    require_mechanism(pivot)
     mechanism = pivot.in_motion()
     mechanism.released()
     scene = mechanism.scene

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from spline_model.read_only import kept, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +83,7 @@ class Later:
     make: Callable[[], Array]
     last: tuple[Any, Array] | None = None
 
-    @cached_property
+    @kept
     def array(self) -> Array:
         """It."""
         return self.make()
@@ -151,9 +153,15 @@ def joined(parts: Sequence[Later]) -> Array:
 
 
 class Tabulated:
-    """An answer with a ``status`` whose ``columns`` make a table and, their last row, its line."""
+    """An answer with a ``status`` whose ``columns`` make a table and, their last row, its line.
+
+    Its arrays are read only.
+    """
 
     status: Status
+
+    def __post_init__(self) -> None:
+        read_only(vars(self))
 
     def columns(self) -> dict[str, Array]:
         """What is one number in every row, by names with units."""

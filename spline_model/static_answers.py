@@ -16,6 +16,7 @@ from spline_model.effects import DrivenRotation
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
+from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import whole_tangents
 from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
@@ -103,13 +104,13 @@ class StaticSolution(Tabulated, Path):
         """The body whose rotation is driven, if there is one."""
         return next((drive.body for drive in self.system.scene.of(DrivenRotation)), None)
 
-    @cached_property
+    @kept
     def bodies(self) -> dict[str, Array]:
         """x, y, theta (S, 3) of the bodies by name [m, m, rad]."""
         names = [body.name for body in self.system.scene.bodies]
         return {name: self.poses[:, 3 * i : 3 * i + 3] for i, name in enumerate(names)}
 
-    @cached_property
+    @kept
     def torque(self) -> Array:
         """lambda_13 of the driven rotation (S,) [N m], nan without one."""
         turns = self.system.drives.turns.tolist()
@@ -130,7 +131,7 @@ class StaticSolution(Tabulated, Path):
         """Of the strips (S,) [J], zero: they are rigid in shear."""
         return np.zeros(len(self.work))
 
-    @cached_property
+    @kept
     def gravity_energy(self) -> Array:
         """Potential of the dead weight against the state at rest (S,) [J]; zero without gravity."""
         system, weight = self.system, self.system.weight
@@ -148,7 +149,7 @@ class StaticSolution(Tabulated, Path):
         """Centre of the driven body, or of the only one (S, 2) [m]."""
         return self._watched[:, :2]
 
-    @cached_property
+    @kept
     def clamp_reactions(self) -> Array:
         """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
         names = [strip.name for strip in self.system.scene.strips]
@@ -198,7 +199,7 @@ class StaticSolution(Tabulated, Path):
         body = body or self._watched_name
         return self.own_stiffness if body == self.asked else self._stiffness_of(body)
 
-    @cached_property
+    @kept
     def own_stiffness(self) -> Array:
         """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
         without one, and for printed forces."""

@@ -20,6 +20,7 @@ from spline_model.errors import (
     require_choice,
     require_count,
     require_finite,
+    require_kind,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
@@ -169,6 +170,7 @@ def solve_loads(
     points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
     bifurcation.
     """
+    require_kind("scene", scene, Scene, "a Scene, such as the scene of a mechanism")
     require_count("increments", increments, 1)
     require_choice("control", control, CONTROLS)
     if not math.isfinite(end):

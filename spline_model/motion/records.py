@@ -15,6 +15,7 @@ from spline_model.compile import System
 from spline_model.effects import Clamp
 from spline_model.motion.start import Motion
 from spline_model.newton import Laps
+from spline_model.read_only import kept
 from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
 from spline_model.tables import YIELDING
 
@@ -46,7 +47,7 @@ class Whole:
         """Every so many of the records, from the first on."""
         return Whole(self.motion, self.make, every * self.every)
 
-    @cached_property
+    @kept
     def both(self) -> tuple[Array, Array]:
         """z (R, N) and v (R, Q)."""
         z, v = self.make()
@@ -60,7 +61,7 @@ class Whole:
         ends = np.array([system.layout.strip(name).stop for name in free], dtype=int)
         return self.both[0][::every, ends[:, None] + np.array([-2, -1])] if free else np.zeros((1, 0, 2))
 
-    @cached_property
+    @kept
     def gaps(self) -> Array:
         """Largest constraint residual [m] and its rate [m/s] at each record, (R, 2)."""
         z, v = self.both

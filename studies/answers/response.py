@@ -85,6 +85,12 @@ class Answered:
         }
 
 
+def read_only(array: Array) -> Array:
+    """Return the array, no longer to be written."""
+    array.flags.writeable = False
+    return array
+
+
 @dataclass(frozen=True, kw_only=True)
 class Solved(Answered):
     """What every path and motion says beside that.
@@ -104,6 +110,13 @@ class Solved(Answered):
     wall_s: float = 0.0
     solve_s: float = 0.0
     bodies: dict[str, Array]
+
+    def __post_init__(self) -> None:
+        """Make all arrays read only."""
+        for value in vars(self).values():
+            for array in value.values() if isinstance(value, dict) else (value,):
+                if isinstance(array, np.ndarray):
+                    read_only(array)
 
     @property
     def rotation(self) -> Array:
@@ -188,7 +201,7 @@ class Response(Solved):
     @cached_property
     def extreme_fibre_stress(self) -> Array:
         """(S, G, P) largest magnitude over the section's depth [Pa]."""
-        return stress_of(self.design.strips, self.axial_force, self.bending_moment)
+        return read_only(stress_of(self.design.strips, self.axial_force, self.bending_moment))
 
     @property
     def max_stress(self) -> Array:
@@ -200,8 +213,8 @@ class Response(Solved):
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
         [N/m, N, N m/rad]; found when it is first asked for; nan with the paper's printed forces."""
         if self.settings.get("measure") == "printed":
-            return np.full((len(self.load_factor), 3, 3), np.nan)
-        return np.asarray(self.solution.body_stiffness(self.body))
+            return read_only(np.full((len(self.load_factor), 3, 3), np.nan))
+        return read_only(np.asarray(self.solution.body_stiffness(self.body)))
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **seconds: float) -> "Response":

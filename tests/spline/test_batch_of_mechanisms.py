@@ -31,7 +31,7 @@ def rebuilt(given: Mechanism, i: int) -> Mechanism:
     for strip in given.design.strips:
         width = strip.area / np.sqrt(12.0 * strip.second_moment_of_area / strip.area)
         h = VALUES["thickness"][i]
-        new = replace(strip, area=width * h, second_moment_of_area=width * h**3 / 12.0)
+        new = replace(strip, thickness=h, area=width * h, second_moment_of_area=width * h**3 / 12.0)
         if strip.name == "rocker_ground":
             new = replace(new, youngs_modulus=VALUES["rocker_ground.youngs_modulus"][i])
         if strip.name == "crank_coupler":

@@ -2,12 +2,16 @@
 
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fe_reference
 import spline_model
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.problem import named_case
 from tests.table_one import TABLE_ONE
 
 REFUSALS = (spline_model.InvalidParameter, fe_reference.InvalidParameter)
@@ -146,6 +150,33 @@ def _of(package):
     yield lambda each: package.solve_release(each, start=0.1, duration=1e-4)
     yield lambda each: package.solve_motion(each, start=0.1, duration=1e-4)
     yield lambda each: package.natural_frequencies(each)
+    if package is spline_model:
+        yield lambda each: package.impulse_solver(each)
+        yield lambda each: package.static_fields(each, np.zeros((1, 1)))
+        yield lambda each: package.moving_fields(each, np.zeros((1, 1)))
+    else:
+        yield lambda each: package.strip_fields(each, np.zeros((1, 1)))
+
+
+def _arrays(answer):
+    """Name and array of all that an answer holds or makes, but for what it makes anew each time."""
+    for name in (each for each in dir(answer) if not each.startswith("_")):
+        value = getattr(answer, name, None)
+        for array in value.values() if isinstance(value, dict) else (value,):
+            if isinstance(array, np.ndarray) and getattr(answer, name) is value:
+                yield name, array
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(), FeSettings(elements=4)], ids=["spline", "fe"])
+def test_answers_are_read_only(settings):
+    """No array of a path or a motion can be overwritten, of a model's own answer or of the studies'."""
+    design = replace(named_case(), rotation=0.1, increments=2)
+    path = answer_static(design, settings)
+    motion = answer_release(design, settings, start=0.1, duration=1e-4)
+    for answer in (path, path.solution, motion, motion.solution):
+        found = dict(_arrays(answer))
+        assert len(found) > 8
+        assert [name for name, array in found.items() if array.flags.writeable] == []
 
 
 @pytest.mark.parametrize("other", [3, None, "pivot", {}, "the other model's"], ids=str)
