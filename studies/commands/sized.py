@@ -5,8 +5,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-import numpy as np
-
 from spline_model.accuracy import DEFAULT
 from studies.answers.adapters import answer_static
 from studies.answers.reference import NoReference
@@ -101,7 +99,7 @@ def question(task: Sizing) -> tuple[str, str]:
     loads = [name for name in names if name not in PLAIN]
     taken = [name.replace("_", " ") for name in OF_SIDES if name in names]
     degrees = "" if rotation is None else f" over {_range(task, math.degrees(rotation))} deg"
-    wanted = f"{task.stiffness:.6g} N m/rad{', which is negative,' * (task.stiffness < 0.0)}"
+    wanted = f"{task.stiffness:.6g} N m/rad"
     if task.held == "travel":
         wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
     return (
@@ -192,15 +190,11 @@ def _gain(times: float) -> str:
 
 
 def _remarks(found: Optimum) -> Iterator[str]:
-    """Yield what is to be said of the optimum, as `solve` does of its answer, and where it snaps."""
+    """Yield what is to be said of the optimum, as `solve` does of its answer."""
     path = found.path
     yield from (f"beyond the model: {each}" for each in validity(path).outside)
     if path.message:
         yield path.message
-    least = float(np.fmin.reduce(path.stiffness))
-    if least < 0.0:
-        where = math.degrees(path.rotation[int(np.nanargmin(path.stiffness))])
-        yield f"the stiffness is negative at {where:.4g} deg, {least:.4g} N m/rad: there it snaps unless held"
 
 
 def _dimensioned(task: Sizing, found: Outcome) -> Iterator[str]:

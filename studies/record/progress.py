@@ -32,7 +32,7 @@ def watched(items: Sequence[Item], progress: Progress) -> Iterator[Item]:
 
 
 class Bar:
-    """A progress callable `bar(done, total)` that draws on a terminal once work has lasted two seconds."""
+    """A progress callable `bar(done, total)` that draws on a terminal, once work has lasted two seconds."""
 
     def __init__(self, label: str) -> None:
         self._label = label
@@ -41,8 +41,8 @@ class Bar:
     def __call__(self, done: int, total: int) -> None:
         """Show that `done` of `total` parts are done."""
         if self._bar is None:
-            how: dict[str, Any] = {"delay": DELAY, "leave": False, "dynamic_ncols": True, "disable": None}
-            self._bar = tqdm(total=total, desc=self._label, **how)  # None: where it is no terminal
+            how: Any = {"delay": DELAY, "leave": False, "dynamic_ncols": True, "disable": None}
+            self._bar = tqdm(total=total, desc=self._label, **how)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
 

@@ -1,6 +1,7 @@
 """The command that sizes a pivot: its answer, its refusals, and what it says where nothing fits."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +14,7 @@ from studies.design.evaluate import answers
 from tests import gates
 from tests.exchange.test_data_page import described
 
+FINDS = Path(__file__).parent.parent / "suite" / "finds"
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 QUICK = ("--objective", "centre-shift", "--rotation-deg", "45", "--aspect", "0.5", "--starts", "1")
 
@@ -54,6 +56,27 @@ def test_no_design_meets_the_constraints(capsys):
     assert "times less" not in out
 
 
+def test_a_case_without_an_answer_says_why(capsys):
+    """A case that tips over under its weight before the body turns ends with code 3 and one line."""
+    assert main(["size", str(FINDS / "heavy_pivot.toml"), *QUICK[:2]]) == 3
+    told = capsys.readouterr().err
+    assert "the case itself has no answer over the range: limit point at 44.9" in told
+    assert told.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_every_start_has_a_row_and_an_end_in_words(capsys):
+    """Eight starts are eight rows, those whose path ends early among them; a negative rotation is a range."""
+    words = ("--objective", "centre-shift", "--rotation-deg", "-179", "--starts", "8")
+    assert main(["size", "spring_steel_pivot", *words]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("least centre shift over +-179 deg")
+    rows = out.splitlines()[-8:]
+    assert [int(row.split()[0]) for row in rows] == list(range(8))
+    assert all(row.endswith(("the least", "an optimum, not the least")) for row in rows)
+    assert "beyond the model: b/L 1: clamps over the whole width" in out
+
+
 GUIDE, LINKAGE = "parallel_strip_guide", ("four_bar_of_flexures", "--objective", "stress")
 
 
@@ -64,6 +87,22 @@ GUIDE, LINKAGE = "parallel_strip_guide", ("four_bar_of_flexures", "--objective",
         (
             [CASE, *QUICK, "--width-mm", "20:5"],
             "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",
+        ),
+        (
+            [CASE, *QUICK, "--length-mm", "40", "--width-mm", "30"],
+            "--width-mm: got at least 30, expected no more than 20, --aspect times the length, which is",
+        ),
+        (
+            [CASE, *QUICK, "--thickness-mm", "6"],
+            "--thickness-mm: got at least 6, expected no more than 4.998, the case's thickness to the length",
+        ),
+        (
+            ["living_hinge", "--objective", "stress", "--free", "section.thickness_m=1e-9:1"],
+            "--free: section.thickness_m at its bound of 1: ",
+        ),
+        (
+            ["living_hinge", "--objective", "stiffness-variation", "--free", "section.width_m"],
+            "expected what is not zero already: its stiffness does not vary",
         ),
         ([CASE, *QUICK, "--crossing-ratio", "0.5:1.5"], "LOW:HIGH with 0 < LOW <= HIGH < 1"),
         ([CASE, *QUICK, "--safety-factor", "2"], "--safety-factor: got 2 without a yield strength, expected"),

@@ -141,8 +141,8 @@ def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_pa
 
 
 def test_size_answers_case_and_optimum_to_the_accuracy(pivot, command, tmp_path):
-    """Requirement: of the same design `size` has stiffness, stress and shift within 1e-4, as of the design
-    that it finds, with errors and the remarks of `solve`."""
+    """Requirement: of the same design `size` has stiffness, stress and shift within 1e-4, as of its optimum,
+    with errors and the remarks of `solve`."""
     held = ("--objective", "centre-shift", "--starts", 1, "--crossing-ratio", 0.8, "--inclination-deg", 65)
     sized = tmp_path / "sized.toml"
     found = json.loads(command("size", pivot, *held, "--out", sized, "--json", "-").out)
