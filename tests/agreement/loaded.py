@@ -60,6 +60,11 @@ class State:
     path: np.ndarray
 
 
+def angle(rotation: float | None) -> str:
+    """Return the name of a rotation among the tests."""
+    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
+
+
 def scene(*loads: str, **parameters: dict[str, Any]) -> Effects:
     """Return the usual effects and these loads, with parameters changed by name of the load."""
     tables = {name: LOADS[name] | parameters.get(name, {}) for name in loads}

@@ -9,7 +9,7 @@ import pytest
 from studies.answers.settings import FeSettings, SplineSettings
 from tests import gates
 from tests.agreement import loaded
-from tests.agreement.loaded import LOADS, ROTATION, differences, elements, extrapolated, spline
+from tests.agreement.loaded import LOADS, ROTATION, angle, differences, elements, extrapolated, spline
 
 HELD = (ROTATION, -ROTATION, 0.0)
 EFFECTS = pytest.mark.parametrize("effect", LOADS)
@@ -19,11 +19,6 @@ MODELS = pytest.mark.parametrize(
 #: The loads whose errors a gate is about: a body that is led is stiff, and its errors are larger.
 STIFF = "driven_displacement"
 QUANTITIES = ("torque", "stiffness", "path", "moments", "axial", "energy")
-
-
-def angle(rotation):
-    """Name of a rotation among the tests."""
-    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
 
 
 def apart(effect, rotation, control_points=10):

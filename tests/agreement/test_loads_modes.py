@@ -1,6 +1,6 @@
 """Natural modes about loaded states, at rotations of either sign, at none and without a drive."""
 
-from functools import cache, partial
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -11,14 +11,9 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from tests import gates
 from tests.agreement import loaded
-from tests.agreement.loaded import LOADS, ROTATION
+from tests.agreement.loaded import LOADS, ROTATION, angle
 
 LED = "driven_displacement"
-
-
-def angle(rotation):
-    """Name of a rotation among the tests."""
-    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
 
 
 def frequencies(asked: Design, settings: Settings, count: int = 3) -> np.ndarray:
@@ -61,21 +56,6 @@ def test_modes_about_loaded_states_agree(effect, rotation):
     gates.check(gate, error())
     if effect in ("applied_force", LED) and rotation == -ROTATION:
         gates.refuse(gate, error)
-
-
-@cache
-def bare(rotation):
-    """Frequencies of the pivot without loads, by the elements."""
-    return frequencies(loaded.pivot(loaded.scene(), rotation), FeSettings(elements=10))
-
-
-@pytest.mark.parametrize("effect", ["applied_force", LED])
-def test_modes_are_those_about_the_loaded_state(effect):
-    """Requirement: a force and a led body change the first frequency of the spline, by 1 % and more."""
-    found = frequencies(loaded.design(effect, ROTATION), SplineSettings(control_points=8))
-    unled = loaded.pivot(loaded.scene(effect, **{effect: {"displacement": (0.0, 0.0)}}), ROTATION)
-    none = bare(ROTATION) if effect != LED else frequencies(unled, FeSettings(elements=10))
-    assert abs(found[0] / none[0] - 1.0) > 0.01
 
 
 @pytest.mark.slow

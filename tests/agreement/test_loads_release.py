@@ -14,7 +14,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from tests import gates
 from tests.agreement import loaded
-from tests.agreement.loaded import LOADS, ROTATION
+from tests.agreement.loaded import LOADS, ROTATION, angle
 
 DURATION, RECORDS = 0.01, 200
 INSTANTS = np.linspace(0.0, DURATION, 21)
@@ -41,11 +41,6 @@ QUICK = [
     ("gravity", "constant", -ROTATION),
     (LED, "constant", -ROTATION),
 ]
-
-
-def angle(rotation):
-    """Name of a rotation among the tests."""
-    return "free" if rotation is None else f"{np.degrees(rotation):+.0f}deg"
 
 
 def asked(effect: str, history: str, rotation: float | None) -> Design:

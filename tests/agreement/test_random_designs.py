@@ -17,6 +17,8 @@ MESHES = 40, 80
 STRESSED, FINER = 50, (80, 160)
 #: Length [m], area [m^2] and modulus [Pa] of all strips; I follows from the slenderness L / sqrt(I / A).
 LENGTH, AREA, MODULUS = 0.1, 1e-5, 206e9
+#: What is judged of a path of elements: torque and place of the body.
+OF = (lambda path: path.torque), (lambda path: path.bodies["body"][:, :2])
 CRITICAL = "limit point", "bifurcation", "turning point"
 
 
@@ -68,7 +70,7 @@ def judged(numbers, **settings):
             )
             for count in MESHES
         ]
-        torque, place = ((4.0 * b - a) / 3.0 for a, b in (map(of, fine) for of in (_torque, _place)))
+        torque, place = ((4.0 * b - a) / 3.0 for a, b in (map(of, fine) for of in OF))
         travel = np.linalg.norm(place - place[0], axis=1).max()
         worst = max(
             worst,
@@ -76,14 +78,6 @@ def judged(numbers, **settings):
             float(np.abs(answer.torque - torque).max() / np.abs(torque).max()),
         )
     return worst, refused
-
-
-def _torque(solution):
-    return solution.torque
-
-
-def _place(solution):
-    return solution.bodies["body"][:, :2]
 
 
 @pytest.mark.slow

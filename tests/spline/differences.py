@@ -83,10 +83,11 @@ def by_differences(
         for quantity in QUANTITIES:
             change = getattr(up, quantity).value - getattr(down, quantity).value
             rows[quantity].append(change / (2.0 * step))
-    return {quantity: _limit(row) for quantity, row in rows.items()}
+    return {quantity: limit(row) for quantity, row in rows.items()}
 
 
-def _limit(row: list[np.ndarray]) -> np.ndarray:
+def limit(row: list[np.ndarray]) -> np.ndarray:
+    """The limit of differences whose steps are halved."""
     for order in range(1, len(row)):
         row = [(4**order * fine - coarse) / (4**order - 1) for coarse, fine in pairwise(row)]
     return row[0]

@@ -100,7 +100,11 @@ def test_default_answer_is_right():
     gates.hold("spline_accuracy_request", lambda **grid: largest_error(solved(**grid)) / 1e-4)
 
 
-@pytest.mark.parametrize("how", [{"rotation": 0.3}, {}, {"control": "arc-length"}], ids=str)
+@pytest.mark.parametrize(
+    "how",
+    [{"rotation": 0.3}, {"rotation": -0.5, "order": "together"}, {}, {"control": "arc-length"}],
+    ids=str,
+)
 def test_any_mechanism_has_an_estimate(how):
     """Requirement: a mechanism is answered to the default accuracy, driven, under loads and by arc length."""
     load = {"applied_force": {"force": (2000.0, 1000.0)}}

@@ -15,6 +15,7 @@ from spline_model import (
     swinging_slide_stiffness,
 )
 from tests import gates
+from tests.agreement.test_dynamics import swing_frequency
 from tests.table_one import TABLE_ONE
 
 
@@ -90,23 +91,12 @@ def test_order_two_in_time():
     gates.hold("spline_swing_in_time", time_error)
 
 
-def crossing_frequency(time, value):
-    """Frequency from the first to the last zero crossing, by inverse cubic interpolation [Hz]."""
-    at = np.flatnonzero(value[1:] * value[:-1] < 0)
-    zeros = []
-    for i in at[(at > 1) & (at < len(value) - 3)]:
-        near = slice(i - 1, i + 3)
-        fit = np.polynomial.Polynomial.fit(value[near], time[near], 3)
-        zeros.append(fit(0.0))
-    return (len(zeros) - 1) / (2 * (zeros[-1] - zeros[0]))
-
-
 def small_swing(start=1e-3, step=2e-5):
     """Relative difference of a small swing's frequency and the first linear mode."""
     pivot = cross_axis_pivot(**TABLE_ONE, slide_stiffness=swinging_slide_stiffness(6))
     trajectory = solve_release(pivot, start=start, duration=0.1, step=step)
     mode = natural_frequencies(pivot, count=1).frequency[0]
-    return abs(crossing_frequency(trajectory.time, trajectory.rotation) / mode - 1)
+    return abs(swing_frequency(trajectory.time, trajectory.rotation) / mode - 1)
 
 
 def test_small_swing_has_the_linear_frequency():

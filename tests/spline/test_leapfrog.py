@@ -69,15 +69,6 @@ def test_clamps_hold_by_construction():
     assert run.velocity_residual.max() < 1e-12
 
 
-def test_motion_goes_on_where_it_stopped():
-    """Requirement: two halves one after the other are one run, to the centripetal terms' extrapolation."""
-    whole = swing(1e-6, duration=0.002)
-    first = swing(1e-6, duration=0.001)
-    rest = solve_release(pivot(), duration=0.001, step=1e-6, records=100, integrator="leapfrog", after=first)
-    assert rest.time[-1] == pytest.approx(whole.time[-1])
-    assert abs(rest.rotation[-1] - whole.rotation[-1]) < 1e-7
-
-
 def test_default_step_is_stable_and_a_long_one_says_so():
     """Requirement: the step from the highest frequency works; a step above the limit ends with a reason."""
     run = solve_release(pivot(), duration=0.002, integrator="leapfrog")

@@ -7,8 +7,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import cross_axis_pivot, solve_motion, solve_release, swinging_slide_stiffness
-from tests.table_one import TABLE_ONE
+from spline_model import (
+    cross_axis_pivot,
+    natural_frequencies,
+    solve_motion,
+    solve_release,
+    swinging_slide_stiffness,
+)
+from tests import gates
+from tests.table_one import SIX, TABLE_ONE
 
 EFFECTS = ("bending", "stretching", "body_inertia")
 SLENDER = TABLE_ONE | {
@@ -99,3 +106,15 @@ def test_strips_with_inertia_go_through_it():
     run = solve_release(pivot, start=math.pi / 2, duration=0.1, step=LONG_STEP / 16, check=False)
     assert not run.message
     assert run.rotation[-1] < 0.0
+
+
+def test_massless_strips_leave_the_body_alone_dynamic():
+    """Requirement: without strip inertia three degrees of freedom are dynamic, and energy is kept."""
+    massive = natural_frequencies(cross_axis_pivot(**SIX), count=1).frequency[0]
+    modes = natural_frequencies(massless(), count=10)
+    assert len(modes.frequency) == 3
+    assert 0 < modes.frequency[0] / massive - 1 < 0.02  # the strips weigh a third of the body
+    run = solve_release(massless(), start=1.2, duration=0.01)
+    assert run.settings["integrator"] == "quasi-static strips"
+    energy = run.kinetic_energy + run.strain_energy
+    gates.check("spline_motion_balance", np.abs(energy / energy[0] - 1).max())

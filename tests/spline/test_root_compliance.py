@@ -36,18 +36,6 @@ def rooted(root="monolithic", **changed):
     return cross_axis_pivot(**SIX | SIDES | given | changed)
 
 
-def test_roots_lengthen_a_strip_in_pure_bending():
-    """A pivot that crosses in the middle has K(0) = 2 EI / (L + 2 c t): roots and strip in series."""
-
-    def error(root=0.416):
-        pivot = rooted()
-        found = solve_statics(pivot, rotation=0.01, increments=1).stiffness[0]
-        longer = TABLE_ONE["length"] + 2.0 * root * SIDES["thickness"]
-        return abs(found * longer / (2.0 * pivot.flexural_rigidity) - 1.0)
-
-    gates.hold("spline_roots", error)
-
-
 def test_roots_turn_by_their_moment_at_any_angle():
     """In a roll-up the tip turns by that of the strip and c t / EI times the moment at each end."""
     strip = StripDesign(
