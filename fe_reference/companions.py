@@ -2,8 +2,10 @@
 
 Errors of elements and of steps go with their squares. Where a mesh can be made coarser twice, companions have
 a fraction of the elements and longer steps in proportion, and cost little. Their differences show whether the
-errors are those of that order: then a part of the difference is the error, else all of it. A mesh of few
-elements, or one whose companions fail, has one of twice as many and half the step.
+errors are those of that order: then a part of the difference is the error, else all of it. Elements make a
+motion too fast and implicit steps too slow; one more companion, of fewer elements alone, tells one from the
+other, lest they cancel. A mesh of few elements, or one whose companions fail, has one of twice as many and
+half the step.
 """
 
 import math
@@ -85,8 +87,7 @@ def _compared(
         found.append(moves(level.model, other, 1))
     ratios = [level.ratio for level in levels]
     turns, places = (
-        _errors([mine[: samples + 1] - its for mine, its in pairwise(each)], ratios)
-        for each in zip(*found, strict=True)
+        _errors([mine[: samples + 1] for mine in each], ratios) for each in zip(*found, strict=True)
     )
     places = np.linalg.norm(places, axis=2)
     remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]
@@ -98,20 +99,23 @@ def _compared(
     )
 
 
-def _errors(apart: list[Array], ratios: list[float]) -> Array:
-    """Return the error of every coordinate (T, ...), of the differences to one or two companions in turn.
+def _errors(found: list[Array], ratios: list[float]) -> Array:
+    """Return the error of every coordinate (T, ...), of the motion and its companions.
 
     Args:
-        apart: of the motion to the first companion, of this one to the second. ratios: of their steps and
-            elements to those of the motion.
+        found: the motion, one or two companions, and perhaps one of the first's elements and the motion's
+            steps. ratios: of the companions' elements to those of the motion.
     """
+    apart = [mine - its for mine, its in pairwise(found[:3])]
     part, most = 1.0 / abs(ratios[0] ** 2 - 1.0), np.abs(apart[0])
     if len(apart) == 1:
         return np.asarray(part * most)
+    if len(found) > 3:
+        most = np.abs(found[0] - found[3]) + np.abs(found[3] - found[1])
     growth = part * (ratios[1] ** 2 - ratios[0] ** 2)
     first, second = (np.abs(each).max(axis=0) for each in apart)
     # too little growth: out of phase in all of them; too much: errors of the first companion cancel
-    most = np.where(second > growth / OF_ORDER * first, np.abs(apart[1]), most)
+    most = np.where(second > growth / OF_ORDER * first, np.maximum(np.abs(apart[1]), most), most)
     return np.asarray(SHARED * np.where(second < OF_ORDER * growth * first, 1.0, part) * most)
 
 
@@ -123,13 +127,19 @@ def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Arr
 
 
 def _coarse(model: Model, motion: Trajectory) -> list[_Level]:
-    """Return two coarser companions, the finer one first; none of a mesh of few elements."""
+    """Return two coarser companions, the finer one first, and one of an implicit motion's own step.
+
+    There are none of a mesh of few elements.
+    """
     elements = len(model.strips[0].nodes) - 1
     every = [k for k in range(2, COARSEST + 1) if elements % k == 0 and elements // k >= FEWEST]
     if len(every) < 2:
         return []
     first, second = every[0], next((k for k in every if k >= 2 * every[0]), every[1])
-    return [_level(model, _coarser(model, k), float(k), motion) for k in (first, second)]
+    levels = [_level(model, _coarser(model, k), float(k), motion) for k in (first, second)]
+    if "critical_step_s" not in motion.settings:
+        levels.append(replace(levels[0], longest=levels[0].longest / first))
+    return levels
 
 
 def _coarser(model: Model, every: int) -> Model:

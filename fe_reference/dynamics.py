@@ -114,8 +114,8 @@ def solve_motion(
             lumped.
         check: whether companions of other elements and steps say how far the motion is uncertain:
             `rotation_error`, `displacement_error`, and in `resolution` where that is much. They cost about
-            a third of the motion, or eight of it with less than sixteen elements; none is made with an
-            accuracy.
+            a third of the motion, an implicit one nearly as much as itself, or eight of it with few
+            elements; none is made with an accuracy.
         raise_on_failure: whether a motion that ends early raises, or is returned with its status.
         asked: duration [s], and what else a `Run` knows.
 
