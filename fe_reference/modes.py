@@ -21,6 +21,8 @@ from .structure import Structure, structure_of
 
 #: Stiffness of a rigid motion over the sum of the terms that cancel in it.
 ROUND_OFF = 1e-14
+#: Part of a squared frequency by which the energy of its mode may differ; beyond it round-off decides it.
+BLURRED = 0.01
 #: First shift of squared frequencies where the stiffness is not positive definite, in parts of their mean.
 SHIFT = 1e-9
 
@@ -166,9 +168,15 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
         order = np.argsort(values)
         values, vectors = values[order], vectors[:, order]
     rigid = np.argsort(np.abs(values))[: len(loose_coordinates(structure, np.flatnonzero(~free)))]
-    shapes = vectors[:, rigid]
-    least = ROUND_OFF * np.einsum("im,im->m", np.abs(shapes), abs(stiffness) @ np.abs(shapes))
-    values[rigid[np.abs(np.einsum("im,im->m", shapes, stiffness @ shapes)) <= least]] = 0.0
+    energies = np.einsum("im,im->m", vectors, stiffness @ vectors)
+    least = ROUND_OFF * np.einsum("im,im->m", np.abs(vectors), abs(stiffness) @ np.abs(vectors))
+    values[rigid[np.abs(energies[rigid]) <= least[rigid]]] = 0.0
+    if (np.abs(energies - values) > BLURRED * np.abs(values))[values != 0.0].any():
+        raise InvalidParameter(
+            "elements",
+            structure.stations - 1,
+            "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",
+        )
     full = np.zeros((len(values), structure.size))
     full[:, kept] = vectors.T
     full *= np.sign(full[np.arange(len(full)), np.abs(full).argmax(axis=1)])[:, None]

@@ -66,10 +66,14 @@ class Scheme:
 
     def balanced(self, at: Instant) -> bool:
         """Return whether the forces on what is not led are none but round-off."""
+        return bool(self.unloaded(at)[~self.held].all())
+
+    def unloaded(self, at: Instant) -> Flags:
+        """Return where the forces are none but round-off (size,)."""
         least = BALANCED * self.structure.scale + self.structure.round_off(
             self.structure.evaluate(at.y).tangent
         )
-        return bool((np.abs(at.acting.force) <= least)[~self.held].all())
+        return np.asarray(np.abs(at.acting.force) <= least)
 
     def remarks(self, samples: "Samples", step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""

@@ -22,8 +22,8 @@ ch. 6.
 with am = (2 r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af)^2 / 4 and spectral radius r
 at infinite frequency: second order, and high frequencies that the step does not resolve are damped if r < 1.
 Energy is not conserved exactly in large motion; it is recorded, the work of loads and dampers by the
-trapezoidal rule over the steps, and a motion that gains energy is stopped. What the step leaves unresolved is
-remarked on. About the common centres of mass M is diagonal and constant.
+trapezoidal rule over the steps; a step that gains energy is halved, and a motion that still does is stopped.
+What the step leaves unresolved is remarked on. About the common centres of mass M is diagonal and constant.
 
 Strips without inertia are legal: their rows hold no mass and become (1 - af) f_{n+1} + af f_n = 0, so that
 the strips stay in equilibrium with the bodies if they start there, and else reach it as (-r)^n.
@@ -150,9 +150,13 @@ class Implicit(Scheme):
         self._factor: tuple[float, Factors] | None = None
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
-        """Return an instant as any scheme does, without the factors of what was held before."""
+        """Return an instant as any scheme does, without the factors of what was held before.
+
+        Round-off of forces does not accelerate: light nodes of a short strip would be strip lengths away.
+        """
         self._factor = None
-        return super().start(time, y, v, held)
+        now = super().start(time, y, v, held)
+        return replace(now, a=np.where(self.unloaded(now), 0.0, now.a))
 
     def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant | None:
         """Return the instant after a piece of steps, or None where one has no solution."""

@@ -313,7 +313,13 @@ def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Arr
 
 
 def _without_massless(free: Array, stiffness: Array, mass: Array) -> Array:
-    """The free directions with mass, each with the static answer of those that have none."""
+    """The free directions with mass, each with the static answer of those that have none.
+
+    Each is weighed by its own mass, so that a light strip beside heavy bodies does not pass for massless.
+    """
+    own = free.T @ mass @ free
+    heavy = np.diag(own) > MASSLESS**2 * np.diag(own).max()
+    free = free / np.sqrt(np.where(heavy, np.diag(own), 1.0))
     weights, directions = eigh(free.T @ mass @ free)
     massless = weights < MASSLESS * weights[-1]
     if not massless.any():
