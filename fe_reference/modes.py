@@ -21,7 +21,7 @@ from .structure import Structure, structure_of
 
 #: Stiffness of a rigid motion over the sum of the terms that cancel in it.
 ROUND_OFF = 1e-14
-#: Part of a squared frequency that round-off may change: what energies of its mode say of it differs then.
+#: Part of a squared frequency by which the energy of its mode may differ; beyond it round-off decides it.
 BLURRED = 0.01
 #: First shift of squared frequencies where the stiffness is not positive definite, in parts of their mean.
 SHIFT = 1e-9
