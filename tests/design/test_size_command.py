@@ -162,6 +162,8 @@ def test_a_mechanism_is_sized_by_numbers_of_its_file(tmp_path, capsys):
     assert answer.stiffness[-best.increments - 1] == pytest.approx(case["stiffness_Nm_per_rad"], rel=1e-6)
 
 
+SIDES = "width_m = 0.01000320153681966\nthickness_m = 0.0049983997439180475"
+MOMENTS = "area_m2 = 5e-5\nsecond_moment_m4 = 1.041e-10\nsection_depth_m = 0.005"
 LED = """effects = ["+driven_displacement"]
 [effects.driven_displacement]
 displacement_m = [0, 0]
@@ -171,7 +173,7 @@ displacement_m = [0, 0]
 @pytest.mark.parametrize(
     ("begin", "instead", "message"),
     [
-        ("[strip]", "[strip]\nsection_depth_m = 0.005", "strip.section_depth_m: got 0.005, expected none"),
+        (SIDES, MOMENTS, "strip.section_depth_m: got 0.005, expected none"),
         ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body that is free to shift"),
         (
             "[drive]",

@@ -15,6 +15,7 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
+from studies.cases.section import of_moments
 from tests import gates
 
 pytestmark = pytest.mark.slow
@@ -26,8 +27,7 @@ PIVOT = replace(
     named_case("cross_axis_pivot"),
     length=LENGTH,
     inclination=INCLINATION,
-    area=1e-5,
-    second_moment_of_area=1e-14,
+    **of_moments(1e-5, 1e-14),
     rotation=0.0,
     increments=2,
 )

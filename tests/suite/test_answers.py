@@ -24,6 +24,7 @@ from studies.answers.reference import SWING_MESHES, limit_of_swings
 from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
+from studies.cases.section import of_moments
 from tests import gates
 
 TABLE_1 = named_case("cross_axis_pivot")
@@ -82,7 +83,8 @@ def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
         [bend + stretch, bend + stretch, bend]
     )
     assert TABLE_1.depth == pytest.approx(5e-3, rel=1e-3)
-    assert dataclasses.replace(TABLE_1, section_depth=0.004).depth == 0.004
+    rod = of_moments(TABLE_1.area, TABLE_1.second_moment_of_area)
+    assert dataclasses.replace(TABLE_1, section_depth=0.004, **rod).depth == 0.004
 
 
 def test_largest_stress_is_that_of_all_strips_and_sections():

@@ -19,7 +19,7 @@ DECLARED = [
     *(key for each in (PIVOT, MECHANISM, EFFECT_KEYS) for keys in each.values() for key in keys),
     *OWN,
 ]
-AREA, MOMENT = "width_m = 0.01000320153681966 ", "thickness_m = 0.0049983997439180475 "
+AREA, MOMENT = "width_m = 0.01000320153681966", "thickness_m = 0.0049983997439180475"
 
 
 def test_every_key_says_what_it_is():
