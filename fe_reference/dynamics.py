@@ -15,7 +15,7 @@ from .errors import Checked, InvalidParameter, choice, count, finite, optional, 
 from .freedom import loose_coordinates
 from .loads import DrivenRotation, drive_spans
 from .mass import about_mass_centre, carried_over
-from .model import Model, require_model
+from .model import GROUND, Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, course
 from .refined import limit_of
@@ -231,7 +231,10 @@ def _first_frequency(model: Model) -> float:
     kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
     bare = replace(model, effects=Effects.read(kept, {}))
     rigid = len(loose_coordinates(structure_of(bare), ()))
-    found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
+    clamped = any(GROUND in (strip.root, strip.tip) for strip in model.strips)
+    found = np.zeros(0)  # of free strips without bodies
+    if clamped or model.bodies:
+        found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
     if not (found > 0.0).any():
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
     return float(found[found > 0.0][0])

@@ -171,7 +171,9 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
     energies = np.einsum("im,im->m", vectors, stiffness @ vectors)
     least = ROUND_OFF * np.einsum("im,im->m", np.abs(vectors), abs(stiffness) @ np.abs(vectors))
     values[rigid[np.abs(energies[rigid]) <= least[rigid]]] = 0.0
-    if (np.abs(energies - values) > BLURRED * np.abs(values))[values != 0.0].any():
+    blurred = np.abs(energies - values) > BLURRED * np.abs(values)
+    blurred[rigid] = False  # what nothing resists has round-off alone
+    if blurred.any():
         raise InvalidParameter(
             "elements",
             structure.stations - 1,

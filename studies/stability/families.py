@@ -44,7 +44,9 @@ def _rotated() -> Iterator[Question]:
         yield of_path(f"{degrees} deg in {count}", degrees, count, design, finer=FAR)
 
 
-ROTATION = study(Part(at=_rotated, ask=answers_of))
+ROTATION = study(
+    Part(at=_rotated, ask=answers_of),
+)
 """Rotation to a half turn and beyond, in any number of increments."""
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
@@ -162,7 +164,9 @@ def _thicker(strip: Strip, factor: float) -> Strip:
     return replace(strip, **thicker)
 
 
-GEOMETRY = study(Part(at=lambda: chain(_grid(), _others()), ask=answers_of))
+GEOMETRY = study(
+    Part(at=lambda: chain(_grid(), _others()), ask=answers_of),
+)
 """Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
 
 COUNTS = (4, 5, 6, 8, 10)
@@ -193,7 +197,9 @@ def _discretised() -> Iterator[Question]:
     yield Question(place={"case": TABLE_1}, design=design, tries=tuple(tries))
 
 
-AXIAL_MODES = study(Part(at=_discretised, ask=answers_of))
+AXIAL_MODES = study(
+    Part(at=_discretised, ask=answers_of),
+)
 """Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
 
 #: Columns of swings. The paper's measure is for the leapfrog alone.
@@ -253,7 +259,10 @@ def _orders() -> pd.DataFrame:
     return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
 
 
-STEP_SIZE = study(Part(at=_steps, ask=answers_of), Part(ask=lambda: {"order": _orders()}))
+STEP_SIZE = study(
+    Part(at=_steps, ask=answers_of),
+    Part(ask=lambda: {"order": _orders()}),
+)
 """Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.

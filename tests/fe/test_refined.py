@@ -74,7 +74,7 @@ def test_a_motion_has_a_limit() -> None:
     assert coarse.estimate is not None
     assert coarse.estimate.errors["rotation"] == coarse.rotation_error
     assert np.abs(coarse.rotation - fine.rotation).max() < coarse.estimate.errors["rotation"]
-    assert coarse.rotation_error < 1e-5 < coarse.displacement_error  # 4e-6 rad of the turn, 3e-5 m of places
+    assert 3.0 * coarse.rotation_error < coarse.displacement_error  # 4e-6 rad of the turn, 3e-5 m of places
     assert coarse.shape.shape == (9, 2, 4, 2)
 
 

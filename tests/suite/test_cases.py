@@ -94,7 +94,7 @@ def test_materials_say_what_was_found_again():
 OWN_SECTIONS = {
     'name = "left"': 'name = "left"\narea_m2 = 1e-5\nsecond_moment_m4 = 1e-12\nmaterial = "peek"',
     'name = "right"': 'name = "right"\nthickness_m = 0.002',
-    "area_m2 = 5e-6\nsecond_moment_m4 = 1.0416667e-13": "width_m = 0.01\nthickness_m = 0.001",
+    "thickness_m = 0.0005": "thickness_m = 0.001",
     "youngs_modulus_Pa = 206e9\npoisson_ratio = 0.29": 'name = "titanium_6al_4v"',
     "density_kg_m3 = 7800": "density_kg_m3 = 1000",
 }
