@@ -205,13 +205,15 @@ def loaded(ratio: float, inclination: float, direction: str) -> Answer:
 def _at_crossing(ratio: float, inclination: float) -> Problem:
     """Return a slender pivot whose body is held and loaded at its point where the strips cross."""
     case, angle = named_case(CASE), np.radians(inclination)
-    thickness = case.length / SLENDER
+    width, thickness = WIDTH * case.length, case.length / SLENDER
     return replace(
         case,
+        width=width,
+        thickness=thickness,
         crossing_ratio=ratio,
         inclination=angle,
         centre_offset=(0.0, -(1.0 - ratio) * case.length * float(np.sin(angle))),
-        **of_sides(WIDTH * case.length, thickness),
+        **of_sides(width, thickness),
     )
 
 
