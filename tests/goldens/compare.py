@@ -32,6 +32,7 @@ TOLERANCES = (
     Tolerance(
         "*rotation_error_rad", 2.0, 1e-8, "difference of two motions whose fast modes are not resolved"
     ),
+    Tolerance("*displacement_error_m", 2.0, 1e-8, "as above"),
     Tolerance("*relative_error", 2e-2, 1e-8, "difference of two answers, or their extrapolation"),
     Tolerance("*estimate.*", 2e-2, 1e-8, "difference of two answers"),
     Tolerance("*differences.*", 2e-2, 1e-8, "difference of two answers"),
