@@ -203,7 +203,7 @@ def _figure(tables: Tables) -> Figure:
         _panel(tables, "paths", PATH_JUDGED, path, "Static path to 90° in 20 increments"),
         _panel(tables, "swings", SWING_JUDGED, swing, "Free swing of 0.05 s from 90°", *doubts),
     ]
-    return sheet(9.5, 4.2, [panels], legend=6)
+    return sheet(9.5, 4.4, [panels], legend=3)
 
 
 def _panel(tables: Tables, name: str, judged: Sequence[str], y: Axis, title: str, *marks: Level) -> Panel:

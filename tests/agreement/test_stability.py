@@ -69,7 +69,8 @@ def test_first_instability_of_the_pivot_agrees():
 
     def error(control_points=20, gauss_points=40):
         pivot = cross_axis_pivot(**TABLE_ONE, control_points=control_points, gauss_points=gauss_points)
-        return abs(first(solve_statics(pivot, **path)) - reference)
+        # more points than 20 are lost to round-off, so that none confirm the limit: the elements do
+        return abs(first(solve_statics(pivot, **path, check=False)) - reference)
 
     hold("first_instability", error)
 
