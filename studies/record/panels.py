@@ -13,11 +13,14 @@ from typing import Any, Protocol
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.ticker import LogLocator
 
 from studies.record.style import Look, page
 
 #: Beyond this a logarithmic axis has no marks within its decades: hundreds that say nothing.
 CROWDED = 1e4
+#: Within this it has a number at 1, 2 and 5 of every decade.
+FEW = 2e2
 
 
 @dataclass(frozen=True)
@@ -68,8 +71,13 @@ class Axis:
             last = len(self.names) - 0.4
             panel.set(**{f"{name}lim": (last, -0.6) if name == "y" else (-0.6, last)})
         low, high = getattr(panel, f"get_{name}lim")()
+        along = getattr(panel, f"{name}axis")
         if self.log and high > CROWDED * low:
-            getattr(panel, f"{name}axis").minorticks_off()
+            along.minorticks_off()
+        elif self.log and not ticks and high < FEW * low:
+            along.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            along.set_major_formatter("{x:g}")
+            along.minorticks_off()
 
 
 #: Axes that many figures have.
