@@ -1,9 +1,10 @@
 """Accuracy: as many control points as a wanted accuracy takes, with an error estimate.
 
-An answer is estimated by what changes when each strip gets a few control points more. With
-Bezier strips the error falls by a factor of 3 to 50 a point, in steps that are not even, so that after
-three more it is small against the one that is estimated; with cubic B-splines of twice the
-spans it falls about sixteenfold. Trial paths are compared by state.
+An answer is estimated by what changes when each strip, or each of its segments, gets a few control points
+more. The error falls by a factor of 3 to 50 a point, in steps that are not even, so that after
+three more it is small against the one that is estimated. Where more points do not help, as in boundary layers
+under tension or where a strip rolls up, it is cut into twice as many segments. Trial paths are compared by
+state.
 """
 
 from __future__ import annotations
@@ -29,10 +30,11 @@ from spline_model.confirmed import (
     parameters,
     turned,
 )
-from spline_model.design import Design, Discretisation, StripDesign
+from spline_model.design import Design, StripDesign
+from spline_model.discretisation import Discretisation
 from spline_model.errors import InvalidParameter, Unsettled, require_positive
 from spline_model.path import Progress
-from spline_model.solution import ErrorEstimate, Status, largest
+from spline_model.solution import ErrorEstimate, Status, largest, named
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -40,12 +42,16 @@ Found = TypeVar("Found")
 
 DEFAULT = 1e-4
 """Relative error of the answer to a design that leaves its control points open."""
-FIRST, FIRST_SPANS = 8, 19
-"""Control points of the first trial of such a design, and of the first with cubic B-splines."""
+FIRST = 8
+"""Control points of the first trial of such a design, and of each segment of one that is cut."""
 DOUBTFUL = 0.03
 """Error of such an answer that is a failure; above DEFAULT its resolution tells it."""
-MOST = {"bezier": 20, "bspline": 67}
-"""Control points at which the search ends: round-off of a Bezier strip, 64 spans of a B-spline."""
+MOST = 20
+"""Control points of a segment at which the search ends, by round-off."""
+MOST_CUT = 11
+"""Control points from which on a strip is cut rather than raised where no trial has an answer."""
+MOST_SEGMENTS = 16
+"""Segments of a strip at which the search ends."""
 FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""
 GAINS = (2.0, 12.0)
@@ -63,32 +69,28 @@ SAME_END = 1e-3
 
 @dataclass(kw_only=True)
 class Search(Generic[Found]):
-    """Which numbers of control points a design tries, and the best of them: every answer is chosen by this.
+    """Which discretisations a design tries, and the best of them: every answer is chosen by this.
 
     accuracy: wanted error [1]; grid: discretisation of the design, whose number of control points, or FIRST,
-    is the first trial. points: of the next trial, or of the last one when it has ``ended``; trials: that were
-    made. error: the least estimated one [1], inf where no trial had an answer, with that many control_points;
-    found: its answer.
+    is the first trial; most_segments: into how many a strip may be cut. at: the next trial, or the last one
+    when it has ``ended``; trials: those that were made. error: the least estimated one [1], inf where no
+    trial had an answer, of the one that was ``best``; found: its answer.
     """
 
     accuracy: float
     grid: Discretisation
+    most_segments: int = MOST_SEGMENTS
     error: float = math.inf
     found: Found | None = None
     ended: bool = False
-    trials: tuple[int, ...] = ()
-    points: int = field(init=False)
-    control_points: int = field(init=False)
+    trials: tuple[Grid, ...] = ()
+    at: Grid = field(init=False)
+    best: Grid = field(init=False)
     levels: list[tuple[int, float]] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
         own = self.grid.control_points
-        self.points = self.control_points = FIRST if own is None else own
-
-    @property
-    def finer(self) -> int:
-        """The control points that a trial is checked against: a few more, or twice the spans."""
-        return finer(self.grid.basis, self.points)[1]
+        self.at = self.best = self.grid.segments, FIRST if own is None else own
 
     @property
     def message(self) -> str:
@@ -96,34 +98,47 @@ class Search(Generic[Found]):
         if self.error <= self.accuracy:
             return ""
         return (
-            f"accuracy {self.accuracy:.3g} is not reached with up to {self.trials[-1]} control points: the "
-            f"least estimated error is {self.error:.2g}, with {self.control_points}; ask for no less"
+            f"accuracy {self.accuracy:.3g} is not reached with up to {named(*self.trials[-1])}: the "
+            f"least estimated error is {self.error:.2g}, with {named(*self.best)}; ask for no less"
         )
+
+    @property
+    def tried(self) -> tuple[int, ...]:
+        """Control points of a strip in each trial, those that two segments share counted once."""
+        return tuple(segments * (points - 1) + 1 for segments, points in self.trials)
 
     def judge(self, error: float | None, found: Found | None = None) -> bool:
         """Take the estimated error of a trial, None of one without an answer; whether it is the best so far.
 
-        Sets the points of the next trial, unless the accuracy is reached or there are no more.
+        Sets the next trial, unless the accuracy is reached or there are no more.
         """
-        self.trials, better = (*self.trials, self.points), False
+        self.trials, better = (*self.trials, self.at), False
         if error is not None:
-            self.levels.append((self.points, error))
+            self.levels.append((self.at[1], error))
             if better := error < self.error:
-                self.error, self.found, self.control_points = error, found, self.points
-        most = max(MOST[self.grid.basis], self.trials[0])
-        self.ended = self.error <= self.accuracy or self.points == most
-        if not self.ended:
-            following = self.finer if self.grid.basis == "bspline" else self._expected()
-            self.points = min(following, most)
+                self.error, self.found, self.best = error, found, self.at
+        self.ended = self.error <= self.accuracy or not self._go_on()
         return better
+
+    def _go_on(self) -> bool:
+        """Set the next trial: more control points, or twice the segments where those do not help."""
+        (segments, points), most = self.at, max(MOST, self.trials[0][1])
+        expected, may_cut = self._expected(), 2 * segments <= self.most_segments
+        far = expected > most if self.levels else points >= MOST_CUT
+        if points < most and not (far and may_cut):
+            self.at = segments, min(expected, most)
+        elif may_cut:
+            self.at, self.levels = (2 * segments, FIRST), []
+        return self.at != self.trials[-1]
 
     def _expected(self) -> int:
         """The count at which the accuracy is expected, from the errors known so far.
 
         The one that an estimate was made with is solved already: a count a little below costs more than it.
         """
-        if not self.levels or self.levels[-1][0] != self.points:
-            return self.points + MORE
+        points = self.at[1]
+        if not self.levels or self.levels[-1][0] != points:
+            return points + MORE
         (n, error), gain = self.levels[-1], FIRST_GAIN
         if len(self.levels) > 1:
             before, larger = self.levels[-2]
@@ -149,16 +164,17 @@ def wanted(accuracy: float | None, design: Design) -> float | None:
 def search(
     grid: Discretisation,
     accuracy: float,
-    attempt: Callable[[int, int], tuple[float, Found] | None],
+    attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
+    most_segments: int = MOST_SEGMENTS,
 ) -> Search[Found]:
     """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy``.
 
-    attempt: solves with two numbers of control points and returns the estimated error of the first, and its
-    answer, or None where they do not have one.
+    attempt: solves with two discretisations and returns the estimated error of the first, and its
+    answer, or None where they do not have one; most_segments: into how many a strip may be cut.
     """
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most_segments)
     while not outcome.ended:
-        tried = attempt(outcome.points, outcome.finer)
+        tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))
     return outcome
 
@@ -180,7 +196,7 @@ def answered(
     """
     chosen, grid = wanted(accuracy, design), design.discretisation
     if chosen is None:
-        own = (grid.basis, grid.points)
+        own = (grid.segments, grid.points)
         if not check:
             return solve(own, progress, False)
         return confirmed(Trials(lambda trial: solve(trial, progress if trial == own else None, False)), own)
@@ -198,21 +214,16 @@ def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: fl
     An accuracy that is not reached is the status
     NOT_CONVERGED of the best answer, or only where its error is not below ``least``: the answer's resolution
     tells it else. A path that stops at the same thing with any number is compared up to there and returned
-    with its reason. Where no two numbers lead to the same end, cubic B-splines are tried as well, whose
-    control points are as many as a strip needs anywhere; where they do not either, it is not resolved.
+    with its reason. Where no two numbers lead to the same end, it is not resolved.
     """
-    asked = design.discretisation
-    for basis, first in ((asked.basis, asked.control_points), ("bspline", FIRST_SPANS)):
-        grid = replace(asked, basis=basis, control_points=first)
-        attempt = partial(_attempt, design, trials, basis)
-        outcome = search(grid, accuracy, attempt)
-        if outcome.found is not None or asked.basis == "bspline" or asked.stretch == "consistent":
-            break
+    outcome = search(design.discretisation, accuracy, partial(_attempt, design, trials))
     if outcome.found is None:
-        return confirmed(trials, (basis, outcome.trials[-1]))
+        return confirmed(trials, outcome.trials[-1])
     answer, errors = outcome.found
-    points, tried = outcome.control_points, outcome.trials
-    estimate = ErrorEstimate(accuracy=accuracy, **errors, control_points=points, trials=tried)
+    segments, points = outcome.best
+    estimate = ErrorEstimate(
+        accuracy=accuracy, **errors, segments=segments, control_points=points, trials=outcome.tried
+    )
     # the stiffness of a body may pass through zero: by itself it is no failure that was not asked about
     judged = (error for name, error in errors.items() if least is None or name != "body_stiffness")
     failed = largest(judged) > max(accuracy, least or 0.0)
@@ -222,10 +233,10 @@ def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: fl
 
 
 def _attempt(
-    design: Design, trials: Trials, basis: str, fewer: int, more: int
+    design: Design, trials: Trials, fewer: Grid, more: Grid
 ) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
     """The largest error of an answer, itself with all errors; None where a finer one does not end alike."""
-    coarse, fine = trials.outcome((basis, fewer)), trials.outcome((basis, more))
+    coarse, fine = trials.outcome(fewer), trials.outcome(more)
     if not ends_alike(coarse, fine):
         return None
     if isinstance(coarse, Unsettled):

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
-from spline_model.design import swinging_slide_stiffness
+from spline_model.discretisation import swinging_slide_stiffness
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from spline_model.accuracy import Search, relative, wanted
 from spline_model.batch_paths import Batch, Many
-from spline_model.design import Described, Discretisation
+from spline_model.confirmed import finer
+from spline_model.discretisation import Described, Discretisation, require_uncut
 from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.errors import InvalidParameter, require_choice, require_count
@@ -57,6 +58,7 @@ def solve_many(
     require_count("increments", increments, 1)
     require_choice("order", order, ORDERS)
     base, given = _given(designs, values, Discretisation(**described), np.size(rotation))
+    require_uncut(base.design.discretisation, "batches")
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
     many = Many(
@@ -82,7 +84,7 @@ def _chosen(many: Many, accuracy: float) -> Batch:
     """Answers with the control points that each design takes."""
     count, design = len(many.turned), many.base.design
     searches: list[Search[None]] = [
-        Search(accuracy=accuracy, grid=design.discretisation) for _ in range(count)
+        Search(accuracy=accuracy, grid=design.discretisation, most_segments=1) for _ in range(count)
     ]
     answers: dict[int, tuple[Batch, NDArray[np.bool_]]] = {}
     best = many.empty(0, accuracy)
@@ -94,9 +96,9 @@ def _chosen(many: Many, accuracy: float) -> Batch:
         return batch
 
     while open_ones := [row for row, each in enumerate(searches) if not each.ended]:
-        points = min(searches[row].points for row in open_ones)
-        rows = np.array([row for row in open_ones if searches[row].points == points])
-        coarse, fine = answer(points, rows), answer(searches[rows[0]].finer, rows)
+        grid = min(searches[row].at for row in open_ones)
+        rows = np.array([row for row in open_ones if searches[row].at == grid])
+        coarse, fine = (answer(points, rows) for _, points in (grid, finer(*grid)))
         errors = _distances(many, coarse, fine, rows)
         worst = np.fmax.reduce(list(errors.values()))
         alike = (coarse.states[rows] == fine.states[rows]) & ~np.isnan(worst)

@@ -22,7 +22,7 @@ from spline_model.reduced.model import Reduced, reduced
 from spline_model.reduced.numbers import LEAST_COMPLIANCE
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
-from spline_model.solution import remark
+from spline_model.solution import named, remark
 
 Array = NDArray[np.float64]
 
@@ -94,9 +94,9 @@ class Batch:
         if self.resolved[row]:
             return ""
         errors = {name: float(each[row]) for name, each in self.errors.items()}
-        points = int(self.control_points[row])
-        return remark(errors, float(self.accuracy or 0.0), points) or (
-            f"accuracy not estimated: {points} control points and more have no common path"
+        grid = named(1, int(self.control_points[row]))
+        return remark(errors, float(self.accuracy or 0.0), grid) or (
+            f"accuracy not estimated: {grid} and more have no common path"
         )
 
 
@@ -168,7 +168,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     scene = mechanism.driven(1.0, body)
     model = reduced(compile_scene(steady(scene) if first and has_loads(scene) else scene))
     if model is None:
-        raise InvalidParameter("discretisation", "printed forces or long splines", "what the elements know")
+        raise InvalidParameter("discretisation", "printed forces", "what the elements know")
     return model
 
 

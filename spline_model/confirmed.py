@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import Unsettled
-from spline_model.solution import CriticalPoint, Status
+from spline_model.solution import CriticalPoint, Status, named
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
-Grid = tuple[str, int]
-"""Basis and number of control points."""
+Grid = tuple[int, int]
+"""Segments of a strip and control points of each."""
 
 MORE = 3
-"""Control points that a Bezier strip gets more for the estimate. With two more the estimated error of
+"""Control points that a segment gets more for the estimate. With two more the estimated error of
 the torque was 0.3 to 3.7 times the true one on 1800 paths, with three 0.7 to 1.3 times."""
 SAME_PLACE = 0.05
 """Relative difference of loads or rotations up to which two critical points are the same one."""
@@ -36,12 +36,10 @@ TURN = 1e-2
 """Rotation up to which critical points are held against it, not against their own [rad]."""
 LEAST = 1e-6
 """Smallest relative difference that is printed."""
-SPANS = 35
-"""Control points of the cubic B-spline that is proposed where Bezier strips do not resolve a path."""
 
 
 class Trials:
-    """Answers by basis and number of control points, each solved once."""
+    """Answers by discretisation, each solved once."""
 
     def __init__(self, solve: Callable[[Grid], StaticSolution]) -> None:
         self.solve = solve
@@ -57,9 +55,9 @@ class Trials:
         return self.known[grid]
 
 
-def finer(basis: str, points: int) -> Grid:
-    """What a discretisation is checked against: a few more control points, or twice the spans."""
-    return basis, points + MORE if basis == "bezier" else 2 * points - 3
+def finer(segments: int, points: int) -> Grid:
+    """What a discretisation is checked against: a few more control points in each segment."""
+    return segments, points + MORE
 
 
 def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> float:
@@ -104,12 +102,12 @@ def confirmed(trials: Trials, grid: Grid) -> StaticSolution:
     if isinstance(answer, Unsettled):
         if same:
             raise answer
-        raise Unsettled(f"not resolved with {grid[1]} control points; {remedy(more)}", ())
+        raise Unsettled(f"not resolved with {named(*grid)}; {remedy(grid)}", ())
     if same and (answer.status is Status.CONVERGED or _at_limit(answer)):
         apart = spread(answer.critical_points, better.critical_points)
-        told = f"{more[1]} control points have it within {max(apart, LEAST):.0e}"
+        told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
-    return _cut(answer, better, grid[1], more)
+    return _cut(answer, better, grid, more)
 
 
 def _is_plain(answer: StaticSolution) -> bool:
@@ -117,7 +115,7 @@ def _is_plain(answer: StaticSolution) -> bool:
 
 
 def _cut(
-    answer: StaticSolution, better: StaticSolution | Unsettled, points: int, more: Grid
+    answer: StaticSolution, better: StaticSolution | Unsettled, grid: Grid, more: Grid
 ) -> StaticSolution:
     """The part of a path that is resolved, and what is not."""
     kept = 1 if isinstance(better, Unsettled) else _agreeing(answer, better)
@@ -135,7 +133,7 @@ def _cut(
         here = _end(answer) if _at_limit(answer) else answer.message
         what = f"{here}; with {more[1]} {_end(better)}"
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
-    message = f"not resolved with {points} control points: {what}; {remedy(more)}"
+    message = f"not resolved with {named(*grid)}: {what}; {remedy(grid)}"
     return replace(
         answer,
         **answer.rows(slice(kept)),
@@ -145,11 +143,9 @@ def _cut(
     )
 
 
-def remedy(more: Grid) -> str:
+def remedy(grid: Grid) -> str:
     """What to do where a discretisation and a finer one have different critical points or ends."""
-    if more[0] == "bezier":
-        return f"leave the number open, or take basis = bspline with {SPANS} control points"
-    return f"take {2 * more[1] - 3} control points"
+    return f"leave the number open, or take segments = {2 * grid[0]}"
 
 
 def _place(load_factor: float, rotation: float) -> str:

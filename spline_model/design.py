@@ -1,143 +1,27 @@
-"""A design: strips and bodies by their geometry and material, and how they are discretised."""
+"""A design: strips and bodies by their geometry and material."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, TypedDict
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import HatModes, LegendreModes, SplineBasis, bezier, cubic_bspline, singular
+from spline_model.basis import Bezier
+from spline_model.discretisation import Discretisation
 from spline_model.effects.boundary import GROUND
-from spline_model.effects.elastic import MEASURES
-from spline_model.errors import (
-    InvalidParameter,
-    is_finite,
-    require_choice,
-    require_count,
-    require_not_negative,
-    require_positive,
-)
+from spline_model.errors import InvalidParameter, is_finite, require_not_negative, require_positive
 
-BASES = ("bezier", "bspline")
-STRETCH_FORMS = ("mixed", "consistent", "inextensible")
-FIRST_POINTS = 6
-"""Control points of a design that leaves them open, where no accuracy chooses them."""
-SLIDE_STIFFNESS = 10.0
-"""Default stiffness of the strains that the axial modes do not see in statics, in EI/L^2.
+Array = NDArray[np.float64]
 
-With control_points - 2 modes the control points of a straight strip slide along it without
-resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that and moves
-the static error by some factors only: 10 is best for n = 5 and 8 and several times the least
-for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip begins to lock.
-"""
 NOT_GIVEN = math.nan
 """Area and second moment of a strip that has them from its width and thickness."""
 ROUNDED = 1e-3
 """Relative difference to which a printed area and second moment agree with those of the sides."""
-
-
-def swinging_slide_stiffness(control_points: int) -> float:
-    """The default slide stiffness of a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
-
-    In a motion the sliding has inertia and must be fast against the strips' bending, or it
-    takes part in the swing; how stiff it may be before it locks grows with n. The rule goes
-    through the best values for n = 4, 6 and 8 (results of convergence/slide_stiffness).
-    """
-    return 100.0 * ((control_points - 2) / 6.0) ** 3
-
-
-class Described(TypedDict, total=False):
-    """Keywords of ``Discretisation``."""
-
-    control_points: int | None
-    axial_modes: int | None
-    basis: str
-    measure: str
-    stretch: str
-    gauss_points: int | None
-    slide_stiffness: float | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Discretisation:
-    """How every strip is described.
-
-    control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
-    FIRST_POINTS where nothing estimates its error); axial_modes m in 1 ... n - 1, default n - 2;
-    basis "bezier" (degree n - 1) or "bspline" (cubic); measure "material", or with consistent stretch
-    "spatial" (Eqs 10, 13) or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by
-    quadrature) or "inextensible"; gauss_points in each knot span, default degree + 3, which follows the
-    primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
-    that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
-    and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
-    the tangent of a straight strip singular is refused with the reason (``spline_model.basis.singular``).
-    """
-
-    control_points: int | None = None
-    axial_modes: int | None = None
-    basis: str = "bezier"
-    measure: str = "material"
-    stretch: str = "mixed"
-    gauss_points: int | None = None
-    slide_stiffness: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.control_points is not None:
-            require_count("control_points", self.control_points, 4)
-        for name in ("axial_modes", "gauss_points"):
-            if self.control_points is None and getattr(self, name) is not None:
-                raise InvalidParameter(
-                    name, getattr(self, name), "control_points beside it, which it goes with"
-                )
-        require_choice("basis", self.basis, BASES)
-        require_choice("measure", self.measure, MEASURES)
-        require_choice("stretch", self.stretch, STRETCH_FORMS)
-        if self.slide_stiffness is not None:
-            require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
-        if self.gauss_points is not None:
-            require_count("gauss_points", self.gauss_points, 1)
-        if self.measure != "material" and self.stretch != "consistent":
-            only = f"consistent, the only form with measure = {self.measure}"
-            raise InvalidParameter("stretch", self.stretch, only)
-        if self.axial_modes is not None:
-            if self.stretch == "consistent":
-                raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
-            require_count("axial_modes", self.axial_modes, 1, self.points - 1)
-        axial = None if self.stretch == "consistent" else self.modes
-        reason = singular(self.spline, self.points_a_span, axial, self.slide > 0)
-        if reason:
-            raise InvalidParameter("discretisation", reason, "a strip whose tangent at rest is regular")
-
-    @property
-    def points(self) -> int:
-        """Control points that were given, or those of a design that leaves them open."""
-        return FIRST_POINTS if self.control_points is None else self.control_points
-
-    @cached_property
-    def spline(self) -> SplineBasis:
-        """The basis of the control points."""
-        return (bezier if self.basis == "bezier" else cubic_bspline)(self.points)
-
-    @cached_property
-    def modes(self) -> LegendreModes | HatModes:
-        """The axial-force modes: Legendre's for one span, hats for a B-spline."""
-        count = self.points - 2 if self.axial_modes is None else self.axial_modes
-        return LegendreModes(count=count) if self.basis == "bezier" else HatModes(count=count)
-
-    @property
-    def slide(self) -> float:
-        """The slide stiffness that was given, or that of statics [EI/L^2]."""
-        return SLIDE_STIFFNESS if self.slide_stiffness is None else self.slide_stiffness
-
-    @property
-    def points_a_span(self) -> int:
-        """Gauss points in each knot span."""
-        return self.spline.degree + 3 if self.gauss_points is None else self.gauss_points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,42 +111,77 @@ class StripDesign:
         """mu = rho A [kg/m]."""
         return self.density * self.area
 
-    def control_points(self, basis: SplineBasis) -> NDArray[np.float64]:
+    @property
+    def opening(self) -> float:
+        """Half the angle of the arc at rest [rad], positive to the left; 0 for a straight strip."""
+        return 2.0 * math.atan2(2.0 * self.rise, self.chord)
+
+    def at(self, shares: Array) -> Array:
+        """Points at rest (P, 2) [m] at shares (P,) of the length from the root."""
+        start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
+        if self.rise == 0.0:
+            return np.asarray(start + np.asarray(shares)[:, None] * (end - start))
+        along, half = (end - start) / self.chord, self.opening
+        turn, radius = half * (1.0 - 2.0 * np.asarray(shares)), self.length / (2.0 * half)
+        x = radius * (math.sin(half) - np.sin(turn))
+        y = radius * (np.cos(turn) - math.cos(half))
+        return np.asarray(start + np.outer(x, along) + np.outer(y, (-along[1], along[0])))
+
+    def control_points(self, basis: Bezier) -> Array:
         """Control points at rest (n, 2): exact for a straight strip, the least-squares arc otherwise.
 
         The arc's ends and end tangents are met exactly; its parametrisation is by arc length.
         """
-        start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
-        straight = start + basis.greville[:, None] * (end - start)
+        n = basis.control_points
         if self.rise == 0.0:
-            return np.asarray(straight)
-        return _arc(basis, start, end, self.rise, self.length)
+            return self.at(np.linspace(0.0, 1.0, n))
+        start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
+        along, half = (end - start) / self.chord, self.opening
+        left, reach = np.array([-along[1], along[0]]), self.length / basis.degree
+        points = np.zeros((n, 2))
+        points[0], points[-1] = start, end
+        points[1] = start + reach * (math.cos(half) * along + math.sin(half) * left)
+        points[-2] = end - reach * (math.cos(half) * along - math.sin(half) * left)
+        if n > 4:
+            u = basis.gauss_rule(basis.degree + 5)[0]
+            values = basis.evaluate(u)
+            known = values[:, [0, 1, -2, -1]] @ points[[0, 1, -2, -1]]
+            points[2:-2] = np.linalg.lstsq(values[:, 2:-2], self.at(u) - known, rcond=None)[0]
+        return points
+
+    def pieces(self, count: int) -> tuple[Piece, ...]:
+        """The strip in so many pieces of equal length, root first, with joints between them."""
+        if count == 1:
+            return (Piece(self, self, (0.0, 1.0)),)
+        cuts = np.linspace(0.0, 1.0, count + 1)
+        points = [tuple(point) for point in self.at(cuts).tolist()]
+        half = self.opening
+        rise = self.length / (2.0 * half) * (1.0 - math.cos(half / count)) if half else 0.0
+        ends = [self.root, *(f"{self.name}, joint {k}" for k in range(1, count)), self.tip]
+        return tuple(
+            Piece(
+                replace(
+                    self,
+                    name=f"{self.name}, piece {k + 1}",
+                    start=points[k],
+                    end=points[k + 1],
+                    rise=rise,
+                    root=str(ends[k]),
+                    tip=ends[k + 1],
+                ),
+                self,
+                (float(cuts[k]), float(cuts[k + 1])),
+            )
+            for k in range(count)
+        )
 
 
-def _arc(
-    basis: SplineBasis, start: NDArray[np.float64], end: NDArray[np.float64], rise: float, length: float
-) -> NDArray[np.float64]:
-    """Control points of the circular arc from start to end with that sagitta."""
-    along = (end - start) / math.dist(start, end)
-    left = np.array([-along[1], along[0]])
-    half = 2.0 * math.atan2(2.0 * rise, math.dist(start, end))
-    u = basis.gauss_rule(basis.degree + 5)[0]
-    turn = half * (1.0 - 2.0 * u)  # of the tangent against the chord
-    radius = length / (2.0 * half)
-    x = radius * (math.sin(half) - np.sin(turn))
-    y = radius * (np.cos(turn) - math.cos(half))
-    target = start + np.outer(x, along) + np.outer(y, left)
-    n = basis.control_points
-    points = np.zeros((n, 2))
-    reach = length / basis.evaluate(np.array([0.0]), 1)[0, 1]
-    points[0], points[-1] = start, end
-    points[1] = start + reach * (math.cos(half) * along + math.sin(half) * left)
-    points[-2] = end - reach * (math.cos(half) * along - math.sin(half) * left)
-    if n > 4:
-        values = basis.evaluate(u)
-        known = values[:, [0, 1, -2, -1]] @ points[[0, 1, -2, -1]]
-        points[2:-2] = np.linalg.lstsq(values[:, 2:-2], target - known, rcond=None)[0]
-    return points
+class Piece(NamedTuple):
+    """A piece of a ``whole`` strip, or all of it, and the shares of its length between which it lies."""
+
+    strip: StripDesign
+    whole: StripDesign
+    reach: tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -296,6 +215,17 @@ class Design:
             for end in (strip.root, strip.tip):
                 if end not in {*names, GROUND, None}:
                     raise InvalidParameter(f"end of {strip.name}", end, f"ground or one of {sorted(names)}")
+
+    @cached_property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The pieces that the strips are cut into, strip by strip."""
+        return tuple(piece for strip in self.strips for piece in strip.pieces(self.discretisation.segments))
+
+    @property
+    def joints(self) -> tuple[BodyDesign, ...]:
+        """The frames between pieces: bodies without mass."""
+        inner = (piece.strip for piece in self.pieces if piece.reach[1] < 1.0)
+        return tuple(BodyDesign(name=str(strip.tip), centre=strip.end) for strip in inner)
 
     def body_named(self, name: str | None) -> str:
         """That name, or the only body's."""

@@ -227,7 +227,7 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[t
     with none of them.
     """
     grid, failed, reached = mechanism.design.discretisation, None, False
-    most = grid.points if grid.control_points is not None else MOST[grid.basis]
+    most = grid.points if grid.control_points is not None else MOST
     for points in sorted({*range(grid.points, most, MORE), most}):
         chosen = mechanism if points == grid.points else mechanism.with_control_points(points)
         chosen = chosen.in_motion()

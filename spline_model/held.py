@@ -175,7 +175,7 @@ class HeldPivot:
 
 def _held_model(mechanism: Mechanism) -> Reduced | None:
     """The mechanism with its rotation driven; all axial forces are the strips' own."""
-    if len(mechanism.design.bodies) != 1:
+    if len(mechanism.design.bodies) != 1 or mechanism.design.discretisation.segments != 1:
         return None
     system = compile_scene(mechanism.driven(1.0))
     model = reduced(system)

@@ -9,14 +9,8 @@ from typing import Any, Self, Unpack
 
 import numpy as np
 
-from spline_model.design import (
-    BodyDesign,
-    Described,
-    Design,
-    Discretisation,
-    StripDesign,
-    swinging_slide_stiffness,
-)
+from spline_model.design import BodyDesign, Design, StripDesign
+from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
 from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
@@ -69,13 +63,14 @@ class Mechanism:
             return self
         return self.with_discretisation(control_points=control_points)
 
-    def on(self, basis: str, control_points: int) -> Self:
-        """The same mechanism with that basis and so many control points a strip, and what goes with them."""
+    def on(self, segments: int, control_points: int) -> Self:
+        """The same mechanism with so many segments a strip, of so many control points, and what goes with
+        them."""
         grid = self.design.discretisation
-        if (basis, control_points) == (grid.basis, grid.points):
+        if (segments, control_points) == (grid.segments, grid.points):
             return self.with_control_points(control_points)
         own = {"axial_modes": None, "gauss_points": None}
-        return self.with_discretisation(basis=basis, control_points=control_points, **own)
+        return self.with_discretisation(segments=segments, control_points=control_points, **own)
 
     def in_motion(self) -> Self:
         """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
@@ -163,16 +158,25 @@ def compliant_mechanism(
         curling=tuple(name for name in names if name in CURLING),
     )
     attachments: list[Effect] = []
-    for strip in strips:
+    for strip, _, _ in design.pieces:
         attachments.append(Clamp(strip=strip.name, end="start", to=strip.root))
         if strip.tip is not None:
             attachments.append(Clamp(strip=strip.name, end="end", to=strip.tip))
     scene = Scene(
         strips=tuple(
-            Strip(name=s.name, basis=grid.spline, control_points=s.control_points(grid.spline))
-            for s in strips
+            Strip(
+                name=piece.name,
+                basis=grid.spline,
+                control_points=piece.control_points(grid.spline),
+                of=whole.name,
+            )
+            for piece, whole, _ in design.pieces
         ),
-        bodies=tuple(Body(name=b.name, centre=np.asarray(b.centre, dtype=float)) for b in bodies),
+        bodies=tuple(
+            Body(name=body.name, centre=np.asarray(body.centre, dtype=float), joint=joint)
+            for joint, frames in ((False, bodies), (True, design.joints))
+            for body in frames
+        ),
         effects=(*build(names, given, design), *attachments),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)

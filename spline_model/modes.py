@@ -13,6 +13,7 @@ from scipy.linalg import eigh, null_space
 
 from spline_model.accuracy import search, wanted
 from spline_model.compile import System, compile_scene
+from spline_model.confirmed import Grid
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
@@ -22,7 +23,7 @@ from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, propped, require_unborne
-from spline_model.sections import STATIONS
+from spline_model.sections import STATIONS, by_piece
 from spline_model.solution import FrequencyEstimate, Later
 from spline_model.statics import solve_mechanism
 
@@ -55,7 +56,8 @@ class Modes:
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
     name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
     nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
-    static state (N,); control_points: of a strip; estimate: of the error, where an accuracy was asked for.
+    static state (N,); segments of a strip and control_points of each; estimate: of the error, where an
+    accuracy was asked for.
     """
 
     frequency: Array
@@ -66,6 +68,7 @@ class Modes:
     rotation: float
     held: bool
     state: Array
+    segments: int
     control_points: int
     estimate: FrequencyEstimate | None = None
 
@@ -111,13 +114,13 @@ def _accurate_modes(
     """The modes with as many control points as the accuracy takes; strict: refused where none reaches it."""
 
     @cache
-    def modes(control_points: int) -> Modes | None:
+    def modes(grid: Grid) -> Modes | None:
         try:
-            return solve(pivot.with_control_points(control_points).in_motion())
+            return solve(pivot.on(*grid).in_motion())
         except ConvergenceError:  # more control points may reach the state
             return None
 
-    def attempt(fewer: int, more: int) -> tuple[float, Modes] | None:
+    def attempt(fewer: Grid, more: Grid) -> tuple[float, Modes] | None:
         coarse, fine = modes(fewer), modes(more)
         if coarse is None or fine is None or coarse.frequency.shape != fine.frequency.shape:
             return None
@@ -125,12 +128,16 @@ def _accurate_modes(
 
     outcome = search(pivot.design.discretisation, accuracy, attempt)
     if outcome.found is None:
-        return solve(pivot.with_control_points(outcome.trials[-1]).in_motion())
+        return solve(pivot.on(*outcome.trials[-1]).in_motion())
     if strict and outcome.message:
         raise InvalidParameter("accuracy", accuracy, f"no less than {outcome.error:.2g}, which is reached")
-    points, trials = outcome.control_points, outcome.trials
+    segments, points = outcome.best
     estimate = FrequencyEstimate(
-        accuracy=accuracy, frequency=outcome.error, control_points=points, trials=trials
+        accuracy=accuracy,
+        frequency=outcome.error,
+        segments=segments,
+        control_points=points,
+        trials=outcome.tried,
     )
     return replace(outcome.found, estimate=estimate)
 
@@ -160,19 +167,23 @@ def _modes(
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
     kept = np.flatnonzero(~slide)[:count]
     shapes = [
-        np.moveaxis(vectors[layout.strip(strip.name)][:, kept].reshape(-1, 2, len(kept)), 2, 0)
-        for strip in system.scene.strips
+        [
+            strip.basis.evaluate(at)
+            @ np.moveaxis(vectors[layout.strip(strip.name)][:, kept].reshape(-1, 2, len(kept)), 2, 0)
+            for strip in strips
+        ]
+        for strips, at in by_piece(system.scene, STATIONS)
     ]
-    values_at = [strip.basis.evaluate(STATIONS) for strip in system.scene.strips]
     return Modes(
         frequency=frequency[kept],
-        shapes=np.stack([b @ s for b, s in zip(values_at, shapes, strict=True)], axis=1),
+        shapes=np.concatenate([np.stack(part, axis=1) for part in shapes], axis=2),
         body_shapes=np.zeros((len(kept), 3)) if body is None else vectors[layout.body(body)][:, kept].T,
-        bodies={each.name: vectors[layout.body(each.name)][:, kept].T for each in system.scene.bodies},
+        bodies={each.name: vectors[layout.body(each.name)][:, kept].T for each in system.scene.own_bodies},
         slide_frequency=frequency[slide],
         rotation=math.nan if rotation is None else rotation,
         held=held,
         state=z,
+        segments=mechanism.design.discretisation.segments,
         control_points=mechanism.design.discretisation.points,
     )
 

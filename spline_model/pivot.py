@@ -10,14 +10,8 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.design import (
-    NOT_GIVEN,
-    SLIDE_STIFFNESS,
-    BodyDesign,
-    Described,
-    StripDesign,
-    swinging_slide_stiffness,
-)
+from spline_model.design import NOT_GIVEN, BodyDesign, StripDesign
+from spline_model.discretisation import SLIDE_STIFFNESS, Described, swinging_slide_stiffness
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_finite, require_positive
 from spline_model.mechanism import Mechanism, compliant_mechanism

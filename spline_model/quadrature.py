@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, SplineBasis
+from spline_model.basis import AxialModes, Bezier
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
 from spline_model.scene import Scene, Strip
 from spline_model.strip.laws import curl_factors
@@ -25,9 +25,9 @@ WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXA
 class PointTable(NamedTuple):
     """One row a Gauss point, P in all; those of bending come first, strip by strip.
 
-    place (P, 5): index in z of the support's first x and its number of control points; index in z of the
-    first axial force that does not vanish there, and their number; code of the measure. basis (2, P, S):
-    first and second derivatives, S the widest support. modes (P, M): values of the axial forces' modes.
+    place (P, 5): index in z of the strip's first x and its number of control points; index in z of its
+    first axial force, and their number; code of the measure. basis (2, P, S):
+    first and second derivatives, S the most control points. modes (P, M): values of the axial forces' modes.
     numbers (P, 11): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
     strain; EA of stretching by quadrature [N]; compliance 1/EA of the axial forces [1/N]; relaxation time
     [s]; the two numbers of ``curl_law`` [1, m]. What does not act is zero.
@@ -45,8 +45,8 @@ class PointTable(NamedTuple):
         The stress-free curvature is the one at rest and the natural one.
         """
         groups = _groups(scene)
-        widest = max((scene.strip(e.strip).basis.degree + 1 for e, *_ in groups), default=0)
-        most = max((at.modes.width for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
+        widest = max((scene.strip(e.strip).basis.control_points for e, *_ in groups), default=0)
+        most = max((at.modes.count for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
         parts = [_rows(scene, *group, widest, most) for group in groups]
         if not parts:
             return cls(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11)))
@@ -108,13 +108,13 @@ def _groups(scene: Scene) -> list[tuple[Any, Any, int]]:
 def _rows(
     scene: Scene, effect: Any, axial: Any, mode: int, widest: int, most: int
 ) -> tuple[Indices, Array, Array, Array]:
-    """Rows of a group, as wide as the widest support and the most modes of the scene."""
+    """Rows of a group, as wide as the most control points and the most modes of the scene."""
     strip = scene.strip(effect.strip)
-    weight, support, basis, _ = _tables(strip.basis, effect.gauss_points)
+    weight, basis = _tables(strip.basis, effect.gauss_points)
     count, width = len(weight), basis.shape[2]
     place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 11))
     modes = np.zeros((count, most))
-    place[:, FIRST] = scene.layout.strips[strip.name][0] + 2 * support
+    place[:, FIRST] = scene.layout.strips[strip.name][0]
     place[:, WIDTH], place[:, MEASURE] = width, MEASURES.index(effect.measure)
     numbers[:, WEIGHT] = weight
     numbers[:, SPEED], numbers[:, REST] = _rest_of(strip, effect.gauss_points)
@@ -124,48 +124,44 @@ def _rows(
     if isinstance(effect, Bending):
         numbers[:, CURVATURE] += effect.natural_curvature
         u = strip.basis.gauss_rule(effect.gauss_points)[0]
-        numbers[:, RIGIDITY] = effect.rigidity_at(strip.basis, u)
+        numbers[:, RIGIDITY] = effect.rigidity_at(strip.basis.degree, u)
         if effect.curl is not None:
-            numbers[:, DROP], numbers[:, CURL] = effect.curl.drop(strip.basis, u), effect.curl.flattening
+            numbers[:, DROP] = effect.curl.drop(strip.basis.degree, u)
+            numbers[:, CURL] = effect.curl.flattening
     if axial is not None:
         numbers[:, STRAIN] = axial.natural_strain
     if isinstance(axial, Stretching):
         numbers[:, STRETCHING] = axial.axial_rigidity
     if isinstance(axial, MixedStretching):
         numbers[:, COMPLIANCE] = axial.axial_compliance
-        first, values = _modes_at(axial.modes, strip.basis, axial.gauss_points)
-        place[:, MODE], place[:, MODES] = mode + first, axial.modes.width
-        modes[:, : axial.modes.width] = values
+        place[:, MODE], place[:, MODES] = mode, axial.modes.count
+        modes[:, : axial.modes.count] = _modes_at(axial.modes, strip.basis, axial.gauss_points)
     if width < widest:
         basis = np.pad(basis, ((0, 0), (0, 0), (0, widest - width)))
     return place, basis, modes, numbers
 
 
 @lru_cache(maxsize=256)
-def _tables(basis: SplineBasis, count: int) -> tuple[Array, Indices, Array, Array]:
-    """Weights, first of the support (P,), its derivatives (2, P, degree + 1), of all (2, P, n); kept."""
+def _tables(basis: Bezier, count: int) -> tuple[Array, Array]:
+    """Weights (P,), and both derivatives of the basis (2, P, n); kept."""
     u, weight = basis.gauss_rule(count)
-    support = basis.first_of_support(u)
-    columns = support[:, None] + np.arange(basis.degree + 1)
-    every = np.array([basis.evaluate(u, order) for order in (1, 2)])
-    kept = (weight, support, np.take_along_axis(every, columns[None], axis=2), every)
+    kept = (weight, np.array([basis.evaluate(u, order) for order in (1, 2)]))
     for array in kept:
         array.setflags(write=False)
     return kept
 
 
 @lru_cache(maxsize=256)
-def _modes_at(modes: AxialModes, basis: SplineBasis, count: int) -> tuple[Indices, Array]:
-    """First axial force that does not vanish (P,), and values of those that do not (P, W); kept."""
-    first, values = modes.evaluate(basis.gauss_rule(count)[0])
-    for array in (first, values):
-        array.setflags(write=False)
-    return first, values
+def _modes_at(modes: AxialModes, basis: Bezier, count: int) -> Array:
+    """Values of the modes (P, M); kept."""
+    values = modes.evaluate(basis.gauss_rule(count)[0])
+    values.setflags(write=False)
+    return values
 
 
 @lru_cache(maxsize=256)
 def _rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
-    """Speed and curvature (P,) at rest, ``count`` Gauss points a knot span; kept."""
+    """Speed and curvature (P,) at rest at ``count`` Gauss points; kept."""
     tangent, bend = _tables(strip.basis, count)[-1] @ strip.control_points
     speed = np.hypot(tangent[:, 0], tangent[:, 1])
     return speed, (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3

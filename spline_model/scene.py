@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import SplineBasis
+from spline_model.basis import Bezier
 from spline_model.effects import GROUND, Clamp, DrivenRotation, MixedStretching, StripGravity
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.errors import InvalidParameter
@@ -21,14 +21,15 @@ Kind = TypeVar("Kind", bound=Effect)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Strip:
-    """A flexure: a curve C(u) of control points, given at rest.
+    """A flexure or a piece of one: a curve C(u) of control points, given at rest.
 
-    control_points: (n, 2) positions at rest [m].
+    control_points: (n, 2) positions at rest [m]; of: name of the flexure that it is a piece of, if it is one.
     """
 
     name: str
-    basis: SplineBasis
+    basis: Bezier
     control_points: NDArray[np.float64]
+    of: str | None = None
 
     def gauss_points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Points u and weights ds0 [m] of a rule that is exact for products of two basis functions."""
@@ -63,10 +64,14 @@ class Strip:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Body:
-    """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero."""
+    """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero.
+
+    joint: whether it is the frame between two pieces of a strip, without mass and behind all bodies.
+    """
 
     name: str
     centre: NDArray[np.float64]
+    joint: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,6 +105,20 @@ class Scene:
     def body(self, name: str) -> Body:
         """The body of that name."""
         return next(body for body in self.bodies if body.name == name)
+
+    @cached_property
+    def whole(self) -> dict[str, tuple[Strip, ...]]:
+        """The pieces of each flexure, root first, by its name."""
+        found: dict[str, tuple[Strip, ...]] = {}
+        for strip in self.strips:
+            name = strip.of or strip.name
+            found[name] = (*found.get(name, ()), strip)
+        return found
+
+    @property
+    def own_bodies(self) -> tuple[Body, ...]:
+        """The bodies of the design, without joints."""
+        return tuple(body for body in self.bodies if not body.joint)
 
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""

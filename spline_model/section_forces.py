@@ -16,7 +16,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.scene import Scene
-from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
+from spline_model.sections import ENDS, STATIONS, Sections, by_piece, clamp_reactions, sections
 
 Array = NDArray[np.float64]
 
@@ -93,47 +93,69 @@ def _known(system: System, states: Array) -> Array:
 
 
 def _fields(mechanism: Mechanism, system: System, states: Array, *, moving: bool) -> StripFields:
-    strips, layout, along = system.scene.strips, system.layout, sections(system, states, STATIONS)
-    points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
-    value, first, second = (strips[0].basis.evaluate(STATIONS, order) for order in range(3))
-    at_rest, moved = np.array([strip.control_points for strip in strips]), np.stack(points, axis=1)
-    tangent, rest = first @ moved, first @ at_rest
+    scene, layout, along = system.scene, system.layout, sections(system, states, STATIONS)
+    (rest_shape, rest), arc = _at_rest(scene)
+    tangent, bend = (_curve(system, states, order) for order in (1, 2))
     speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.linalg.norm(rest, axis=-1)
     rotation = np.unwrap(np.arctan2(_cross(rest, tangent), np.sum(rest * tangent, axis=-1)), axis=-1)
     for g, root in enumerate(strip.root for strip in mechanism.design.strips):
         if root != GROUND:  # a body at the root says how many whole turns it has made
             turn = states[:, layout.body(root)][:, 2:]
             rotation[:, g] += 2.0 * np.pi * np.round((turn - rotation[:, g, :1]) / (2.0 * np.pi))
-    stretch, arc = speed / rest_speed, np.array([strip.length_to(STATIONS) for strip in strips])
+    stretch = speed / rest_speed
     _stretch(system, along.axial_force, stretch)
     if moving:
         direction = rotation + np.arctan2(rest[..., 1], rest[..., 0])
         force, reactions = _by_moments(arc, along, stretch, direction)
     else:
-        ends = [[clamp_reactions(system, states, strip.name, end) for end in ENDS] for strip in strips]
+        ends = [[clamp_reactions(system, states, name, end) for end in ENDS] for name in scene.whole]
         force, reactions = along.shear_force, np.array(ends).transpose(2, 0, 1, 3)
     return StripFields(
         arc_length=arc,
-        rest_shape=value @ at_rest,
+        rest_shape=rest_shape,
         shape=along.shape,
         rotation=rotation,
-        curvature=_cross(tangent, second @ moved) / speed**2 / rest_speed,
+        curvature=_cross(tangent, bend) / speed**2 / rest_speed,
         stretch=stretch,
         axial_force=along.axial_force,
         shear_force=force,
         bending_moment=along.bending_moment,
         reactions=reactions,
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
-        bodies=states[:, layout.poses].reshape(len(states), -1, 3),
+        bodies=states[:, layout.poses].reshape(len(states), -1, 3)[:, : len(scene.own_bodies)],
     )
+
+
+def _curve(system: System, states: Array, order: int) -> Array:
+    """That derivative of the strips' curves at the stations, in the u of their pieces (S, G, P, 2)."""
+    layout, parts = system.layout, []
+    for strips, at in by_piece(system.scene, STATIONS):
+        points = [states[:, layout.strip(strip.name)].reshape(len(states), -1, 2) for strip in strips]
+        parts.append(strips[0].basis.evaluate(at, order) @ np.stack(points, axis=1))
+    return np.concatenate(parts, axis=2)
+
+
+def _at_rest(scene: Scene) -> tuple[tuple[Array, Array], Array]:
+    """The strips' curves and their first derivative at rest (G, P, 2), and the arc length (G, P) [m]."""
+    curve, lengths = [], []
+    for strips, at in by_piece(scene, STATIONS):
+        points = np.array([strip.control_points for strip in strips])
+        curve.append([strips[0].basis.evaluate(at, order) @ points for order in range(2)])
+        before = np.array([[strip.length_to(np.ones(1))[0]] for strip in strips])
+        lengths.append((np.array([strip.length_to(at) for strip in strips]), before))
+    done = np.cumsum([whole for _, whole in lengths], axis=0)
+    arc = [inside + (done[k - 1] if k else 0.0) for k, (inside, _) in enumerate(lengths)]
+    shape, tangent = (np.concatenate([part[order] for part in curve], axis=1) for order in range(2))
+    return (shape, tangent), np.concatenate(arc, axis=1)
 
 
 def _stretch(system: System, axial_force: Array, stretch: Array) -> None:
     """Put 1 + N/EA + natural strain of mixed strips in the place of that of the shape."""
-    names = [strip.name for strip in system.scene.strips]
-    for mixed in reversed(system.scene.of(MixedStretching)):
+    scene = system.scene
+    of = {strip.name: strip.of or strip.name for strip in scene.strips}
+    for mixed in reversed(scene.of(MixedStretching)):
         if not isinstance(mixed.modes, SlideModes):
-            g = names.index(mixed.strip)
+            g = list(scene.whole).index(of[mixed.strip])
             stretch[:, g] = 1.0 + mixed.axial_compliance * axial_force[:, g] + mixed.natural_strain
 
 

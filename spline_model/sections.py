@@ -8,18 +8,20 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, SplineBasis, all_modes
+from spline_model.basis import AxialModes, Bezier
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
 from spline_model.read_only import read_only
-from spline_model.scene import Strip
+from spline_model.scene import Scene, Strip
 
 Array = NDArray[np.float64]
 
 STATIONS = read_only(np.linspace(0.0, 1.0, 61))
 """Where sections are recovered, reference arc length over L; both clamped ends are among them."""
 ENDS = ("start", "end")
+ROUND_OFF = 1e-9
+"""Part of a piece by which a station may lie before it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,22 +44,21 @@ class Sections:
         read_only(vars(self))
 
 
+def by_piece(scene: Scene, stations: Array) -> list[tuple[list[Strip], Array]]:
+    """Pieces of all strips that lie alike, root first, and where stations (P,) of the strips lie in them."""
+    wholes = list(scene.whole.values())
+    count = len(wholes[0]) if wholes else 1
+    piece = np.minimum(count * stations + ROUND_OFF, count - 1).astype(np.int64)
+    return [([each[k] for each in wholes], (count * stations - k)[piece == k]) for k in range(count)]
+
+
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
     """Recover all strips' sections at ``stations`` (P,), u in [0, 1]; states (S, N)."""
-    bases = [strip.basis for strip in system.scene.strips]
-    parts = [
-        _alike(system, states, [s for s in system.scene.strips if s.basis == basis], stations, balanced)
-        for basis in dict.fromkeys(bases)
-    ]
+    parts = [_alike(system, states, strips, at, balanced) for strips, at in by_piece(system.scene, stations)]
     if len(parts) == 1:
         return parts[0]
-    order = np.argsort([i for basis in dict.fromkeys(bases) for i, b in enumerate(bases) if b == basis])
-    return Sections(
-        **{
-            part.name: np.concatenate([getattr(p, part.name) for p in parts], axis=1)[:, order]
-            for part in fields(Sections)
-        }
-    )
+    names = [part.name for part in fields(Sections)]
+    return Sections(**{name: np.concatenate([getattr(p, name) for p in parts], axis=2) for name in names})
 
 
 def _alike(system: System, states: Array, strips: list[Strip], stations: Array, balanced: bool) -> Sections:
@@ -88,7 +89,7 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
                 length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
                 strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
                 strain -= bending.natural_curvature
-                moment[..., g] = bending.moment_at(strain, strip.basis, stations)
+                moment[..., g] = bending.moment_at(strain, strip.basis.degree, stations)
         force = _axial_forces(system, states, strips, stations, speed / rest_speed)
     return Sections(
         shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),
@@ -149,14 +150,14 @@ def _axial_forces(
 
 
 @lru_cache(maxsize=64)
-def _basis_at(basis: SplineBasis, stations: bytes) -> Array:
+def _basis_at(basis: Bezier, stations: bytes) -> Array:
     """The basis and its first two derivatives at stations, one above the other (3 P, n); kept."""
     u = np.frombuffer(stations)
     return np.concatenate([basis.evaluate(u, order) for order in range(3)])
 
 
 @lru_cache(maxsize=64)
-def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
+def _areas_at(basis: Bezier, stations: bytes) -> Array:
     """Integrals of the basis from the root to stations (P, n); kept."""
     return basis.areas(np.frombuffer(stations))
 
@@ -164,10 +165,13 @@ def _areas_at(basis: SplineBasis, stations: bytes) -> Array:
 @lru_cache(maxsize=64)
 def _modes_at(modes: AxialModes, stations: bytes) -> Array:
     """All axial modes at stations (K, P); kept."""
-    return np.ascontiguousarray(all_modes(modes, np.frombuffer(stations)).T)
+    return np.ascontiguousarray(modes.evaluate(np.frombuffer(stations)).T)
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:
-    """Force and moment of the clamp on that end of the strip (S, 3) [N, N, N m]; zero if free."""
+    """Force and moment of the clamp on that end of a strip or piece (S, 3) [N, N, N m]; zero if free."""
+    pieces = system.scene.whole.get(strip)
+    if pieces is not None:
+        strip = pieces[0 if end == "start" else -1].name
     rows = system.scene.clamps.get((strip, end))
     return np.zeros((len(states), 3)) if rows is None else states[:, rows]

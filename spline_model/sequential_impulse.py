@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.content import STEPS_PER_PERIOD
+from spline_model.discretisation import require_uncut
 from spline_model.effects import DrivenDisplacement, DrivenRotation, RootCompliance
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
@@ -75,6 +76,7 @@ class ImpulseSolver:
             require_count("sweeps", sweeps, 1)
             if form == "stable":
                 raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
+        require_uncut(mechanism.design.discretisation, "sequential impulses")
         self.motion, soft = set_in_motion(system), form == "stable"
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:

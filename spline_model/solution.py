@@ -218,7 +218,8 @@ class ErrorEstimate:
     not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
     energy, section_forces, stress (the largest over a strip of the rectangular section that A and I imply):
     largest error over the largest magnitude on the path. nan of what a path does not have.
-    control_points that were chosen; trials: numbers of control points that were tried.
+    segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
+    were tried.
     Leaves out what more control points do not mend: the theory's own simplifications.
     """
 
@@ -230,6 +231,7 @@ class ErrorEstimate:
     energy: float
     section_forces: float
     stress: float
+    segments: int
     control_points: int
     trials: tuple[int, ...]
 
@@ -242,29 +244,35 @@ class ErrorEstimate:
     def remark(self) -> str:
         """Empty, or what is more uncertain than the accuracy."""
         return remark(
-            {name: float(getattr(self, name)) for name in ERRORS}, self.accuracy, self.control_points
+            {name: float(getattr(self, name)) for name in ERRORS},
+            self.accuracy,
+            named(self.segments, self.control_points),
         )
 
 
-def remark(errors: Mapping[str, float], accuracy: float, control_points: int) -> str:
-    """Empty, or which errors of an answer with that many control points are above its accuracy."""
+def named(segments: int, points: int) -> str:
+    """A discretisation in words."""
+    return f"{points} control points" if segments == 1 else f"{segments} segments of {points} control points"
+
+
+def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
+    """Empty, or which errors of an answer with a discretisation are above its accuracy."""
     missed = ", ".join(
         f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
     )
-    return (
-        f"estimated error above {accuracy:g} with {control_points} control points: {missed}" if missed else ""
-    )
+    return f"estimated error above {accuracy:g} with {grid}: {missed}" if missed else ""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrequencyEstimate:
     """Estimated error of natural frequencies that were solved to an ``accuracy``, relative [1].
 
-    frequency: the largest of all modes; control_points and trials as of ``ErrorEstimate``.
+    frequency: the largest of all modes; segments, control_points and trials as of ``ErrorEstimate``.
     """
 
     accuracy: float
     frequency: float
+    segments: int
     control_points: int
     trials: tuple[int, ...]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +17,7 @@ from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
 from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
-from spline_model.reduced.states import whole_tangents
+from spline_model.reduced.states import body_tangents
 from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,
@@ -45,7 +44,7 @@ class StaticSolution(Tabulated, Path):
     way; stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) is that at fixed loads and driven
     displacements, from the tangent. What is known along the strips is made when it is asked for;
     balanced: see ``Sections``; effects: names of what was assembled;
-    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a strip;
+    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a segment of a strip;
     estimate: of the error, where the control points were chosen for an accuracy; asked: the body that was
     asked for, if one was.
     """
@@ -92,12 +91,9 @@ class StaticSolution(Tabulated, Path):
         return self
 
     @property
-    def basis(self) -> str:
-        """Of its strips: "bezier" or "bspline"."""
-        one_span = all(
-            strip.basis.degree == strip.basis.control_points - 1 for strip in self.system.scene.strips
-        )
-        return "bezier" if one_span else "bspline"
+    def segments(self) -> int:
+        """Segments of a strip."""
+        return max((len(pieces) for pieces in self.system.scene.whole.values()), default=1)
 
     @cached_property
     def driven(self) -> str | None:
@@ -107,7 +103,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def bodies(self) -> dict[str, Array]:
         """x, y, theta (S, 3) of the bodies by name [m, m, rad]."""
-        names = [body.name for body in self.system.scene.bodies]
+        names = [body.name for body in self.system.scene.own_bodies]
         return {name: self.poses[:, 3 * i : 3 * i + 3] for i, name in enumerate(names)}
 
     @kept
@@ -152,7 +148,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def clamp_reactions(self) -> Array:
         """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
-        names = [strip.name for strip in self.system.scene.strips]
+        names = self.system.scene.whole
         ends = [[clamp_reactions(self.system, self.states, name, end) for end in ENDS] for name in names]
         return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
 
@@ -204,7 +200,7 @@ class StaticSolution(Tabulated, Path):
         """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
         without one, and for printed forces."""
         body = self.asked or self.driven or (next(iter(self.bodies)) if len(self.bodies) == 1 else None)
-        if body is None or reduced(self.system, longest=math.inf) is None:
+        if body is None or reduced(self.system) is None:
             return np.full((len(self.work), 3, 3), np.nan)
         return self._stiffness_of(body)
 
@@ -241,16 +237,18 @@ class StaticSolution(Tabulated, Path):
 
 
 def _body_stiffness(model: Reduced, states: Array, body: str) -> Array:
-    """From the tangent of the strips' elements, in poses, control points and axial forces, the Schur
-    complement (S, 3, 3) of all others on a body's coordinates."""
+    """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
+    on a body's coordinates."""
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
-    own, y = np.arange(at, at + 3), from_unknowns(model, states)
-    rest = np.setdiff1d(np.arange(model.size), [*own, *model.bodies.held[model.bodies.held < model.size]])
-    found = np.full((len(states), 3, 3), np.nan)
-    tangents = whole_tangents(model, y)[1] * model.energy
-    inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
-    regular = np.linalg.cond(inner, 1) < SINGULAR
-    moves = np.linalg.solve(inner[regular], beside[regular])
-    found[regular] = tangents[regular][:, own[:, None], own] - beside[regular].swapaxes(1, 2) @ moves
+    own, held = np.arange(at, at + 3), model.bodies.held
+    tangents = model.energy * body_tangents(model, from_unknowns(model, states))
+    rest = np.setdiff1d(np.arange(tangents.shape[1]), [*own, *held[held < len(model.bodies.rest)]])
+    found = tangents[:, own[:, None], own]
+    if rest.size:
+        inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
+        regular = np.linalg.cond(inner, 1) < SINGULAR
+        moves = np.linalg.solve(inner[regular], beside[regular])
+        found[regular] -= beside[regular].swapaxes(1, 2) @ moves
+        found[~regular] = np.nan
     unit = np.array([model.length, model.length, 1.0])
     return np.asarray(found / (unit[:, None] * unit))

@@ -10,7 +10,7 @@ from report.forms import percent, signed_percent, significant, unit
 QUANTITIES = ("trajectory", "torque", "stiffness")
 #: Splines without locking that the table shows, by their control points.
 COUNTS = (4, 6, 8, 10)
-MAP = Stored("convergence/control_points", "map", basis="bezier")
+MAP = Stored("convergence/control_points", "map", segments=1)
 #: Four control points as published, integrated exactly; strips that cannot stretch, refined.
 PAPER = MAP.where(measure="spatial", stretch="consistent", control_points=4)
 RIGID = MAP.where(measure="material", stretch="inextensible", control_points=12, axial_modes=10)

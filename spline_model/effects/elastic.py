@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, SplineBasis
+from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
 from spline_model.effects.plate import rigidity_of, rigidity_rate
 from spline_model.errors import (
@@ -42,35 +42,38 @@ class Curl:
     (``spline_model.strip.laws.curl_law``). Each is 1 where its effect is not named. Their product counts near
     a clamp twice what either holds: beside a shell it is up to 1.2 % too stiff, g alone up to 4.5 % too soft.
 
-    Parameters: poisson_ratio nu; clamped: b/L, or 0; flattening: x^2 / kappa, or 0 [m].
+    Parameters: poisson_ratio nu; clamped: b/L, or 0; flattening: x^2 / kappa, or 0 [m]; reach: shares of the
+    strip's length between which a piece of it lies.
     """
 
     poisson_ratio: float
     clamped: float
     flattening: float
+    reach: tuple[float, float] = (0.0, 1.0)
 
-    def rigidity(self, basis: SplineBasis, u: Array) -> Array:
-        """The rigidity at small curvature over EI at u (P,), as a strip of that basis can follow it."""
+    def rigidity(self, degree: int, u: Array) -> Array:
+        """The rigidity at small curvature over EI at u (P,) of the piece, as a curve of that degree can
+        follow it."""
         if self.clamped == 0.0:
             return np.ones(len(u))
-        return rigidity_of(self.clamped, self.poisson_ratio, basis, u)
+        return rigidity_of(self.clamped, self.poisson_ratio, degree, u, self.reach)
 
-    def rigidity_rate(self, basis: SplineBasis, u: Array) -> Array:
+    def rigidity_rate(self, degree: int, u: Array) -> Array:
         """Its derivative by log(b/L) at u (P,)."""
         if self.clamped == 0.0:
             return np.zeros(len(u))
-        return rigidity_rate(self.clamped, self.poisson_ratio, basis, u)
+        return rigidity_rate(self.clamped, self.poisson_ratio, degree, u, self.reach)
 
-    def drop(self, basis: SplineBasis, u: Array) -> Array:
+    def drop(self, degree: int, u: Array) -> Array:
         """nu^2 g at u (P,): the part of the plate's rigidity that the curl takes at small curvature."""
-        return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * self.rigidity(basis, u))
+        return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * self.rigidity(degree, u))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StrainEnergy(Potential):
     """An energy of one strip's strain, summed over its Gauss points.
 
-    Parameters: strip, measure (one of MEASURES), gauss_points in each knot span.
+    Parameters: strip, measure (one of MEASURES), gauss_points.
     """
 
     strip: str
@@ -103,7 +106,7 @@ class Bending(StrainEnergy):
     natural_curvature : kappa_n of the stress-free strip, counted from kappa_0 at rest,
         as the natural strain is counted from the length at rest.                  [1/m]
     curl : of the section; None for a narrow beam's, whose rigidity is EI all along.
-    gauss_points : Gauss points in each knot span.
+    gauss_points : Gauss points.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
     spatial differs from it by the order of the axial strain.
@@ -119,17 +122,17 @@ class Bending(StrainEnergy):
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
         self.require_sum(*MEASURES)
 
-    def rigidity_at(self, basis: SplineBasis, u: Array) -> Array:
-        """Rigidity at u (P,) of a strip of that basis [N m^2]."""
+    def rigidity_at(self, degree: int, u: Array) -> Array:
+        """Rigidity at u (P,) of a strip of that degree [N m^2]."""
         if self.curl is None:
             return np.full(len(u), self.flexural_rigidity)
-        return self.flexural_rigidity * self.curl.rigidity(basis, u)
+        return self.flexural_rigidity * self.curl.rigidity(degree, u)
 
-    def moment_at(self, strain: Array, basis: SplineBasis, u: Array) -> Array:
+    def moment_at(self, strain: Array, degree: int, u: Array) -> Array:
         """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
-        moment = self.rigidity_at(basis, u)[:, None] * strain
+        moment = self.rigidity_at(degree, u)[:, None] * strain
         if self.curl is not None and self.curl.flattening > 0.0:
-            moment *= curl_factors(strain, self.curl.drop(basis, u)[:, None], self.curl.flattening)[1]
+            moment *= curl_factors(strain, self.curl.drop(degree, u)[:, None], self.curl.flattening)[1]
         return np.asarray(moment)
 
 
@@ -168,7 +171,7 @@ class Stretching(StrainEnergy):
     printed     the spatial energy with the forces of Eq 15 as they are printed.
 
     Parameters: strip, axial_rigidity EA >= 0 [N], natural_strain eps_0 of the stress-free
-    strip against the one at rest, gauss_points in each knot span. eps is less by eps_0.
+    strip against the one at rest, gauss_points. eps is less by eps_0.
 
     Exact for: uniform stretch. A curve of few control points cannot bend far without
     stretching: with n = 4 it is several times too stiff at a quarter turn (membrane

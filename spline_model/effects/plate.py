@@ -43,7 +43,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from spline_model.basis import SplineBasis, gauss_legendre
+from spline_model.basis import gauss_legendre
 
 Array = NDArray[Any]
 
@@ -211,50 +211,46 @@ def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _graded(ratio: float, breakpoints: tuple[float, ...], points: int) -> tuple[Array, Array]:
-    """Points and weights on [0, 1] that see layers of some 0.1 of the width at both ends, and breakpoints."""
+def _graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
+    """Points and weights on a reach of [0, 1] that see layers of some 0.1 of the width at its ends."""
     layers = [min(0.5, part * ratio) for part in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)]
-    edges = np.unique([*breakpoints, *layers, *(1.0 - part for part in layers)])
+    edges = np.array([*reach, *layers, *(1.0 - part for part in layers)])
+    edges = np.unique(edges[(edges >= reach[0]) & (edges <= reach[1])])
     nodes, weights = gauss_legendre(points)
     width = np.diff(edges)[:, None]
     return (edges[:-1, None] + width * (nodes + 1.0) / 2.0).ravel(), (width * weights / 2.0).ravel()
 
 
-def rigidity_of(ratio: complex, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
-    """R / EI at u (P,) as a strip of that basis can follow it.
+def rigidity_of(
+    ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
+) -> Array:
+    """R / EI at u (P,) of a piece of a strip between shares of its length, as a curve of a degree follows it.
 
-    The compliance EI / R in each knot span is projected on polynomials of the degree of the curvature under
+    The compliance EI / R is projected on polynomials of the degree of the curvature under
     a linear moment, less one: the strip's own curvature M EI / R is then one that it can take, and it has
     both factors exactly, however thin the layers are. With more control points it tends to R.
     """
-    return _rigidity(ratio, poisson_ratio, basis, u.tobytes())
+    return _rigidity(ratio, poisson_ratio, degree, reach, u.tobytes())
 
 
-def rigidity_rate(ratio: float, poisson_ratio: float, basis: SplineBasis, u: Array) -> Array:
+def rigidity_rate(
+    ratio: float, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
+) -> Array:
     """Its derivative by log(b/L) at u (P,): that of the plate's discrete solution, exact to round-off."""
-    return np.asarray(rigidity_of(ratio * (1.0 + 1j * STEP), poisson_ratio, basis, u).imag / STEP)
+    found = rigidity_of(ratio * (1.0 + 1j * STEP), poisson_ratio, degree, u, reach)
+    return np.asarray(found.imag / STEP)
 
 
 @lru_cache(maxsize=256)
-def _rigidity(ratio: complex, poisson_ratio: float, basis: SplineBasis, at: bytes) -> Array:
-    coefficients, u = _projected(ratio, poisson_ratio, basis), np.frombuffer(at)
-    span = basis.first_of_support(u)
-    left, width = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
-    values = legendre.legvander(2.0 * (u - left) / width - 1.0, coefficients.shape[1] - 1)
-    rigidity = 1.0 / np.einsum("pk,pk->p", values, coefficients[span])
+def _rigidity(
+    ratio: complex, poisson_ratio: float, degree: int, reach: tuple[float, float], at: bytes
+) -> Array:
+    profile, most = profile_of(ratio, poisson_ratio), max(2, degree - 3)
+    s, weight = _graded(ratio.real, reach, 16 + most)
+    left, long = reach[0], reach[1] - reach[0]
+    shares = weight * profile.compliance(s) / long
+    coefficients = shares @ legendre.legvander(2.0 * (s - left) / long - 1.0, most)
+    values = legendre.legvander(2.0 * np.frombuffer(at) - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
+    rigidity = 1.0 / (values @ coefficients)
     rigidity.setflags(write=False)
     return np.asarray(rigidity)
-
-
-@lru_cache(maxsize=256)
-def _projected(ratio: complex, poisson_ratio: float, basis: SplineBasis) -> Array:
-    """Legendre coefficients (spans, degree + 1) of EI / R."""
-    profile, degree = profile_of(ratio, poisson_ratio), max(2, basis.degree - 3)
-    s, w = _graded(ratio.real, tuple(basis.breakpoints), 16 + degree)
-    span = basis.first_of_support(s)
-    left, long = basis.breakpoints[span], np.diff(basis.breakpoints)[span]
-    values = legendre.legvander(2.0 * (s - left) / long - 1.0, degree)
-    shares = (w * profile.compliance(s) / long)[:, None] * values
-    found = np.zeros((len(basis.breakpoints) - 1, degree + 1), dtype=shares.dtype)
-    np.add.at(found, span, shares)
-    return found * (2.0 * np.arange(degree + 1) + 1.0)

@@ -32,19 +32,22 @@ MONOLITHIC = 0.416
 def _bending(design: Design) -> Iterator[Effect]:
     """Bending of every strip, in the discretisation's measure, with the design's pre-strain and curl."""
     grid = design.discretisation
-    for strip in design.strips:
+    for strip, whole, reach in design.pieces:
         yield elastic.Bending(
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
-            curl=_curl(design, strip),
+            curl=_curl(design, whole, reach),
             measure=grid.measure,
-            gauss_points=grid.points_a_span,
+            gauss_points=grid.quadrature,
         )
 
 
-def _curl(design: Design, strip: StripDesign) -> elastic.Curl | None:
-    """The curl of a strip, if the design names an effect of it; refused where it has none."""
+def _curl(design: Design, strip: StripDesign, reach: tuple[float, float]) -> elastic.Curl | None:
+    """The curl of a strip over a ``reach`` of its length, if the design names an effect of it.
+
+    Refused where it has none.
+    """
     if not design.curling:
         return None
     names, nu, measure = " and ".join(design.curling), strip.poisson_ratio, design.discretisation.measure
@@ -53,25 +56,27 @@ def _curl(design: Design, strip: StripDesign) -> elastic.Curl | None:
     if width is None or thickness is None:
         raise InvalidParameter(f"width of {strip.name}", width, f"width and thickness [m] for {names}")
     ratio, (low, high), name = width / strip.length, elastic.WIDTHS, strip.name
-    reach = f"{low:g} to {high:g}"
+    widths = f"{low:g} to {high:g}"
     for right, what, got, expected in (
         (strip.rise == 0.0, f"rise of {name}", strip.rise, f"0, a straight strip, for {names}"),
         (natural == 0.0, "natural curvature of pre_strain", natural, f"0 for {names}"),
         (0.0 <= nu <= 0.5, f"poisson_ratio of {name}", nu, f"0 to 0.5 for {names}"),
         (not flattens or measure == "material", "measure", measure, f"material for {elastic.ANTICLASTIC}"),
         (not clamped or strip.tip, f"tip of {name}", None, f"ground or a body for {elastic.CLAMPED_WIDTH}"),
-        (not clamped or low <= ratio <= high, f"width over length of {name}", ratio, reach),
+        (not clamped or low <= ratio <= high, f"width over length of {name}", ratio, widths),
     ):
         if not right:
             raise InvalidParameter(what, got, expected)
     flattening = math.sqrt(3.0 * (1.0 - nu * nu)) * width**2 / thickness
-    return elastic.Curl(poisson_ratio=nu, clamped=ratio * clamped, flattening=flattening * flattens)
+    return elastic.Curl(
+        poisson_ratio=nu, clamped=ratio * clamped, flattening=flattening * flattens, reach=reach
+    )
 
 
 def _stretching(design: Design) -> Iterator[Effect]:
     """Stretching of every strip: mixed, or by quadrature where the discretisation says so."""
     grid = design.discretisation
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         if grid.stretch != "consistent":
             yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
             continue
@@ -80,13 +85,13 @@ def _stretching(design: Design) -> Iterator[Effect]:
             axial_rigidity=strip.axial_rigidity,
             natural_strain=design.pre_strain.get("strain", 0.0),
             measure=grid.measure,
-            gauss_points=grid.points_a_span,
+            gauss_points=grid.quadrature,
         )
 
 
 def _inextensible(design: Design) -> Iterator[Effect]:
     """Strips that keep their length: the mixed form with zero compliance."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield from _mixed(design, strip, 0.0)
 
 
@@ -102,19 +107,19 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
             axial_compliance=part,
             modes=modes,
             natural_strain=design.pre_strain.get("strain", 0.0),
-            gauss_points=grid.points_a_span,
+            gauss_points=grid.quadrature,
         )
 
 
 def _strip_inertia(design: Design) -> Iterator[Effect]:
     """Translational inertia of every strip; without it strips are massless."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield moving.StripInertia(strip=strip.name, linear_density=strip.linear_density)
 
 
 def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
     """Rotary inertia of every strip's sections."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield moving.SectionRotaryInertia(
             strip=strip.name, rotary_density=strip.density * strip.second_moment_of_area
         )
@@ -128,7 +133,7 @@ def _body_inertia(design: Design) -> Iterator[Effect]:
 
 def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Effect]:
     """Weight of every strip and body; acceleration [m/s^2]."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield boundary.StripGravity(
             strip=strip.name, linear_density=strip.linear_density, acceleration=acceleration
         )
@@ -138,13 +143,13 @@ def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Ef
 
 def _strip_damping(design: Design, relaxation_time: float) -> Iterator[Effect]:
     """Kelvin-Voigt damping of every strip; relaxation_time [s]."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield moving.StripDamping(strip=strip.name, relaxation_time=relaxation_time)
 
 
 def _strip_drag(design: Design, rate: float) -> Iterator[Effect]:
     """Mass-proportional drag on every strip; rate [1/s]."""
-    for strip in design.strips:
+    for strip, _, _ in design.pieces:
         yield moving.StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
 
 
@@ -172,7 +177,8 @@ def _tip_force(design: Design, strip: str, force: Vector, history: History = STE
     """Dead force [N] at the free end of a strip."""
     if strip not in {s.name for s in design.strips if s.tip is None}:
         raise InvalidParameter("strip", strip, "a strip with a free end")
-    yield boundary.TipForce(strip=strip, end="end", force=force, history=history)
+    last = next(piece for piece, whole, reach in design.pieces if whole.name == strip and reach[1] == 1.0)
+    yield boundary.TipForce(strip=last.name, end="end", force=force, history=history)
 
 
 def _driven_displacement(
@@ -206,15 +212,15 @@ def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterat
     if root != "monolithic" and not (not isinstance(root, str) and is_finite(root) and root >= 0.0):
         raise InvalidParameter("root", root, '"monolithic" or a number >= 0, its length over the thickness')
     length = MONOLITHIC if isinstance(root, str) else root
-    for strip in design.strips:
+    for strip, _, reach in design.pieces:
         if strip.thickness is None:
             needs = "width and thickness [m] for root_compliance"
             raise InvalidParameter(f"thickness of {strip.name}", None, needs)
         compliance = length * strip.thickness / strip.flexural_rigidity
-        if compliance > 0.0:
+        if compliance > 0.0 and reach[0] == 0.0:
             yield elastic.RootCompliance(strip=strip.name, end="start", compliance=compliance)
-            if strip.tip is not None:
-                yield elastic.RootCompliance(strip=strip.name, end="end", compliance=compliance)
+        if compliance > 0.0 and reach[1] == 1.0 and strip.tip is not None:
+            yield elastic.RootCompliance(strip=strip.name, end="end", compliance=compliance)
 
 
 REGISTRY: dict[str, Builder] = {

@@ -19,9 +19,9 @@ Places = NDArray[np.int64]
 
 
 class Flexures(NamedTuple):
-    """S strips of n control points, G Gauss points with W basis functions each, K axial forces.
+    """S strips of n control points, G Gauss points, K axial forces.
 
-    first (G,) of the basis functions; d1, d2 (G, W) their derivatives, pairs (G, 4, W W) the products d1 d1,
+    d1, d2 (G, n) derivatives of the basis, pairs (G, 4, n n) the products d1 d1,
     d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
     ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
     root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; own: W; lead: the first control point
@@ -29,7 +29,6 @@ class Flexures(NamedTuple):
     beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n); dead (S, 2, n).
     """
 
-    first: Places
     d1: Array
     d2: Array
     pairs: Array

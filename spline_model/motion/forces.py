@@ -34,7 +34,7 @@ INNER_ROOT, INNER_TIP, TIP, ROOT = range(4)
 class Grid(NamedTuple):
     """Constants of S strips.
 
-    d1, d2 (n, G) derivatives of the basis, not zero from begin to end (n,); modes (S, K, G) and stiffness
+    d1, d2 (n, G) derivatives of the basis; modes (S, K, G) and stiffness
     (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow
     (S, 4, I) W^T, ends (S, 4, 4) the end points' mass, of which 1 and n - 2 are none where roots turn, but
     inner ones; ties (S, K, 4 + I, G) d1 times the modes, of end points less W^T of the inner ones, and C^T of
@@ -44,8 +44,6 @@ class Grid(NamedTuple):
 
     d1: Array
     d2: Array
-    begin: Places
-    end: Places
     modes: Array
     stiffness: Array
     inverse: Array
@@ -60,13 +58,10 @@ class Grid(NamedTuple):
     @classmethod
     def of(cls, strips: Flexures) -> Grid:
         """The constants of strips with mass."""
-        n, (gauss, width) = strips.mass.shape[1], strips.d1.shape
+        n = strips.mass.shape[1]
         inner, ends = np.arange(strips.lead, n - strips.lead), np.array([1, n - 2, n - 1, 0])
         held = np.array([strips.lead == 2, strips.lead == 2, True, True])
-        places, points = strips.first[:, None] + np.arange(width), np.arange(gauss)[:, None]
-        d1, d2 = np.zeros((2, n, gauss))
-        d1[places, points], d2[places, points] = strips.d1, strips.d2
-        seen = (np.arange(n)[:, None] >= strips.first) & (np.arange(n)[:, None] < strips.first + width)
+        d1, d2 = (np.ascontiguousarray(each.T) for each in (strips.d1, strips.d2))
         inverse = np.array([np.linalg.inv(b[np.ix_(inner, inner)]) for b in strips.mass])
         across = strips.mass[:, inner[:, None], ends] * held
         follow, of_ends = inverse @ across, strips.mass[:, ends[:, None], ends] * held[:, None] * held
@@ -83,8 +78,6 @@ class Grid(NamedTuple):
         return cls(
             d1=d1,
             d2=d2,
-            begin=seen.argmax(axis=1),
-            end=(gauss - seen[:, ::-1].argmax(axis=1)),
             modes=np.ascontiguousarray(strips.modes.transpose(0, 2, 1)),
             stiffness=1.0 / np.where(strips.compliance > 0.0, strips.compliance, np.inf),
             inverse=np.ascontiguousarray(inverse),
@@ -203,9 +196,8 @@ def add_forces(s, tied, strips, grid, points, at, axial, force):
     measure, strain, stretching = strips.measure, strips.strain[s], strips.stretching[s]
     for p in range(gauss):
         x1 = y1 = x2 = y2 = 0.0
-        begin = strips.first[p]
         for i in range(width):
-            u, q, x, y = strips.d1[p, i], strips.d2[p, i], points[0, begin + i], points[1, begin + i]
+            u, q, x, y = strips.d1[p, i], strips.d2[p, i], points[0, i], points[1, i]
             x1 += u * x
             y1 += u * y
             x2 += q * x
@@ -237,7 +229,7 @@ def add_forces(s, tied, strips, grid, points, at, axial, force):
         at[G2, p], at[G3, p] = -bend * y1, bend * x1
     for i in range(points.shape[1]):
         fx, fy = -strips.dead[s, 0, i], -strips.dead[s, 1, i]
-        for p in range(grid.begin[i], grid.end[i]):
+        for p in range(gauss):
             fx += grid.d1[i, p] * at[G0, p] + grid.d2[i, p] * at[G2, p]
             fy += grid.d1[i, p] * at[G1, p] + grid.d2[i, p] * at[G3, p]
         force[0, i], force[1, i] = fx, fy
@@ -254,10 +246,9 @@ def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
     """
     for p in range(strips.weight.size):
         ux = uy = 0.0
-        begin = strips.first[p]
         for i in range(strips.d1.shape[1]):
-            ux += strips.d1[p, i] * speed[0, begin + i]
-            uy += strips.d1[p, i] * speed[1, begin + i]
+            ux += strips.d1[p, i] * speed[0, i]
+            uy += strips.d1[p, i] * speed[1, i]
         inverse, weight = 1.0 / at[SPEED, p], strips.weight[p]
         tx, ty = at[X1, p] * inverse, at[Y1, p] * inverse
         along, across = tx * ux + ty * uy, tx * uy - ty * ux

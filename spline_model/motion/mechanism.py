@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import SplineBasis
+from spline_model.basis import Bezier
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, StrainEnergy, StripDamping
 from spline_model.effects.base import Constraint
@@ -156,7 +156,7 @@ class Moving:
 
 
 def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
-    """Those of statics with a banded basis, and what they have in motion."""
+    """Those of statics, and what they have in motion."""
     system = motion.system
     scene, layout, weight = system.scene, system.layout, system.weight
     length, energy, names = system.scales.length, system.scales.energy, [s.name for s in scene.strips]
@@ -191,7 +191,7 @@ def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
     return {"strips": strips, "to_modes": to_modes}
 
 
-def _grid(system: System) -> tuple[SplineBasis, int]:
+def _grid(system: System) -> tuple[Bezier, int]:
     """Basis and Gauss points of all strips."""
     scene = system.scene
     bases = {strip.basis for strip in scene.strips}
@@ -204,11 +204,9 @@ def _grid(system: System) -> tuple[SplineBasis, int]:
 
 
 @lru_cache(maxsize=64)
-def _tables(basis: SplineBasis, points: int) -> dict[str, Any]:
+def _tables(basis: Bezier, points: int) -> dict[str, Any]:
     u, weight = basis.gauss_rule(points)
-    first, width = basis.first_of_support(u), basis.degree + 1
-    places = first[:, None] + np.arange(width)
-    d1, d2 = (np.take_along_axis(basis.evaluate(u, k), places, axis=1) for k in (1, 2))
+    d1, d2 = (basis.evaluate(u, k) for k in (1, 2))
     pairs = [np.einsum("gi,gj->gij", a, b).reshape(len(u), -1) for a in (d1, d2) for b in (d1, d2)]
     whole = {"d1": d1, "d2": d2, "pairs": np.stack(pairs, axis=1)}
-    return {"first": first, "weight": weight} | {name: np.ascontiguousarray(t) for name, t in whole.items()}
+    return {"weight": weight} | {name: np.ascontiguousarray(t) for name, t in whole.items()}

@@ -48,7 +48,7 @@ def stepper(start: Start) -> Moves:
         raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:
-        raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia for long B-splines")
+        raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia")
     y = from_unknowns(model, start.known.array[-1]) if y is None else y
     return _Stepper(model.let_go(motion.system), y, start)
 

@@ -279,7 +279,7 @@ class Trajectory(Tabulated):
             status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
             message=run.message,
             time=np.arange(0.0, len(rows)) * run.spacing,
-            bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.bodies)},
+            bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.own_bodies)},
             body=body,
             kinetic_energy=rows[:, KINETIC],
             strain_energy=rows[:, STRAIN],

@@ -113,12 +113,11 @@ def place_strip(s, y, at, strips, points, ends):
 
 
 @called()
-def curve_at(p, points, first, d1, d2, out):
+def curve_at(p, points, d1, d2, out):
     """C', C'' and |C'| at a Gauss point: out (5,)."""
     x1 = y1 = x2 = y2 = 0.0
-    begin = first[p]
     for i in range(d1.shape[1]):
-        x, y = points[0, begin + i], points[1, begin + i]
+        x, y = points[0, i], points[1, i]
         x1 += d1[p, i] * x
         y1 += d1[p, i] * y
         x2 += d2[p, i] * x
@@ -134,23 +133,15 @@ def set_points(state, strips, masses):
         at = masses.inertia.size + s * (strips.own + modes)
         place_strip(s, state.y, at, strips, state.points[s], state.ends[s])
         for p in range(strips.weight.size):
-            curve_at(p, state.points[s], strips.first, strips.d1, strips.d2, state.at[s, p])
+            curve_at(p, state.points[s], strips.d1, strips.d2, state.at[s, p])
 
 
 @called()
-def _add_products(begin, n, pairs, h0, h1, h2, h3, block):
+def _add_products(pairs, h0, h1, h2, h3, block):
     """Add one component's h (C', C'') to its block of the tangent, (n n,) by rows."""
     p0, p1, p2, p3 = pairs[0], pairs[1], pairs[2], pairs[3]
-    if p0.size == n * n:
-        for c in range(p0.size):
-            block[c] += h0 * p0[c] + h1 * p1[c] + h2 * p2[c] + h3 * p3[c]
-        return
-    width = int(math.sqrt(p0.size) + 0.5)
-    for i in range(width):
-        row, at = (begin + i) * n + begin, i * width
-        for j in range(width):
-            c = at + j
-            block[row + j] += h0 * p0[c] + h1 * p1[c] + h2 * p2[c] + h3 * p3[c]
+    for c in range(p0.size):
+        block[c] += h0 * p0[c] + h1 * p1[c] + h2 * p2[c] + h3 * p3[c]
 
 
 @part()
@@ -166,7 +157,7 @@ def _clear_points(s, a, strips, work):
 
 
 @part()
-def _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along):
+def _add_axial(weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along):
     """Add one Gauss point to gaps, pulls and their derivatives, of axial forces a (K,); returns their sum N.
 
     mean: of the strain over the step; dx, dy: its discrete gradient; tx, ty: the tangent at the end.
@@ -181,24 +172,24 @@ def _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pul
         qx, qy = share * mode * tx, share * mode * ty
         for i in range(d1.size):
             u = d1[i]
-            pull[k, begin + i] += px * u
-            pull[k, n + begin + i] += py * u
-            along[k, begin + i] += qx * u
-            along[k, n + begin + i] += qy * u
+            pull[k, i] += px * u
+            pull[k, n + i] += py * u
+            along[k, i] += qx * u
+            along[k, n + i] += qy * u
     return tension
 
 
 @part()
 def add_points(s, a, h, state, strips, work):
     """Forces on the control points, their tangent in the new ones, gaps and their derivatives."""
-    n, force, blocks = strips.mass.shape[1], work.force[s], work.blocks
+    force, blocks = work.force[s], work.blocks
     rate, strain, stretching = strips.relaxation[s] / h, strips.strain[s], strips.stretching[s]
     points, gap, pull, along = work.points[s], work.gap[s], work.pull, work.along
     _clear_points(s, a, strips, work)
     for p in range(strips.weight.size):
-        begin, weight, speed = strips.first[p], strips.weight[p], strips.speed[s, p]
+        weight, speed = strips.weight[p], strips.speed[s, p]
         old, new, d1, d2 = state.at[s, p], work.at[s, p], strips.d1[p], strips.d2[p]
-        curve_at(p, points, strips.first, strips.d1, strips.d2, new)
+        curve_at(p, points, strips.d1, strips.d2, new)
         x1, y1, v0, v1 = new[0], new[1], old[4], new[4]
         (
             g0, g1, g2, g3,
@@ -213,7 +204,7 @@ def add_points(s, a, h, state, strips, work):
         tx, ty = x1 * inverse, y1 * inverse
         if a.size > 0:
             mean, modes = 0.5 * (v0 + v1) - (1.0 + strain) * speed + rate * (v1 - v0), strips.modes[s, p]
-            tension = _add_axial(begin, weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along)
+            tension = _add_axial(weight, rate, mean, dx, dy, tx, ty, modes, d1, a, gap, pull, along)
         if stretching > 0.0:
             tension, stiffness = stretching_between(v0, v1, speed, strain, stretching, rate)
         turn = 0.5 * tension * w
@@ -221,15 +212,15 @@ def add_points(s, a, h, state, strips, work):
         g0, g1 = weight * (g0 + tension * dx), weight * (g1 + tension * dy)
         g2, g3 = weight * g2, weight * g3
         for i in range(d1.size):
-            force[0, begin + i] += d1[i] * g0 + d2[i] * g2
-            force[1, begin + i] += d1[i] * g1 + d2[i] * g3
+            force[0, i] += d1[i] * g0 + d2[i] * g2
+            force[1, i] += d1[i] * g1 + d2[i] * g3
         pairs = strips.pairs[p]
         xx, xy = weight * (h00 + grow * dx * tx + turn), weight * (h01 + grow * dx * ty)
         yx, yy = weight * (h10 + grow * dy * tx), weight * (h11 + grow * dy * ty + turn)
-        _add_products(begin, n, pairs, xx, weight * h02, weight * h20, weight * h22, blocks[0])
-        _add_products(begin, n, pairs, xy, weight * h03, weight * h21, weight * h23, blocks[1])
-        _add_products(begin, n, pairs, yx, weight * h12, weight * h30, weight * h32, blocks[2])
-        _add_products(begin, n, pairs, yy, weight * h13, weight * h31, weight * h33, blocks[3])
+        _add_products(pairs, xx, weight * h02, weight * h20, weight * h22, blocks[0])
+        _add_products(pairs, xy, weight * h03, weight * h21, weight * h23, blocks[1])
+        _add_products(pairs, yx, weight * h12, weight * h30, weight * h32, blocks[2])
+        _add_products(pairs, yy, weight * h13, weight * h31, weight * h33, blocks[3])
 
 
 @part()

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import all_modes
 from spline_model.effects import MixedStretching
 from spline_model.reduced.arrays import Route
 from spline_model.reduced.equilibrium import ITERATIONS
@@ -56,7 +55,7 @@ class Stations(NamedTuple):
         """Tables at the stations u in [0, 1], with working arrays of their own."""
         scene = model.system.scene
         basis, mine = scene.strips[0].basis, scene.strips[0].name
-        parts = [all_modes(e.modes, stations) for e in scene.of(MixedStretching) if e.strip == mine]
+        parts = [e.modes.evaluate(stations) for e in scene.of(MixedStretching) if e.strip == mine]
         modes = np.column_stack(parts) if parts else np.zeros((len(stations), 0))
         tables = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
         d1, d2 = (np.ascontiguousarray(table.T) for table in tables)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -21,8 +20,6 @@ from spline_model.tables import steady_loads
 Array = NDArray[np.float64]
 
 ELASTIC: tuple[type[Bending | MixedStretching | Stretching], ...] = (Bending, MixedStretching, Stretching)
-MOST_CONTROL_POINTS = 24
-"""Longer B-splines are narrow bands, which the element's dense tangent does not use along a path."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,21 +93,21 @@ class Reduced:
         return Local.of(s, len(self.shape.order), k, g, self.strips.coupled)
 
 
-def reduced(system: System, *, longest: float = MOST_CONTROL_POINTS) -> Reduced | None:
+def reduced(system: System) -> Reduced | None:
     """The reduced mechanism of a scene, or None where the element does not know one of its parts.
 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
-    or the spatial measure; longest: control points of a strip, at most. It is made once a system.
+    or the spatial measure. It is made once a system.
     """
-    if not _known(system.scene, longest):
+    if not _known(system.scene):
         return None
     made: Reduced | None = system.once("reduced", _reduced)
     return made
 
 
 def require_reduced(system: System) -> Reduced:
-    """The reduced mechanism of a scene with strips of any length; InvalidParameter where there is none."""
-    model = reduced(system, longest=math.inf)
+    """The reduced mechanism of a scene; InvalidParameter where there is none."""
+    model = reduced(system)
     if model is None and any(e.measure == "printed" for e in system.scene.of(Bending)):
         expected = "material or spatial: printed forces are of static paths alone"
         raise InvalidParameter("measure", "printed", expected)
@@ -143,7 +140,7 @@ def _reduced(system: System) -> Reduced | None:
     )
 
 
-def _known(scene: Scene, longest: float) -> bool:
+def _known(scene: Scene) -> bool:
     bending = scene.of(Bending)
     grids = {(e.gauss_points, e.measure) for kind in ELASTIC for e in scene.of(kind)}
     bases = {strip.basis for strip in scene.strips}
@@ -153,7 +150,7 @@ def _known(scene: Scene, longest: float) -> bool:
         and "printed" not in {measure for _, measure in grids}
         and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)
         and all(e.flexural_rigidity > 0.0 for e in bending)
-        and 4 <= next(iter(bases)).control_points <= longest
+        and next(iter(bases)).control_points >= 4
     )
 
 

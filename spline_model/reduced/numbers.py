@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline
 
-from spline_model.basis import AxialModes, SlideModes, SplineBasis, all_modes
+from spline_model.basis import AxialModes, Bezier, SlideModes
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching
 from spline_model.effects.base import Constraint
@@ -91,13 +90,12 @@ def in_order(points: Array, shape: Shape) -> Array:
 
 
 @lru_cache(maxsize=64)
-def shape_of(basis: SplineBasis, points: int, yields: bool) -> Shape:
+def shape_of(basis: Bezier, points: int, yields: bool) -> Shape:
     """The basis at the Gauss points; yields: with a point on no curve (``spline_model.strip.ends``)."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
-    whole = BSpline(basis.knots, np.eye(n), basis.degree).antiderivative()
-    values = [basis.evaluate(u, k) for k in range(3)] + [whole(1.0) - whole(u)]
+    values = [basis.evaluate(u, k) for k in range(3)] + [1.0 / n - basis.areas(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
     if yields:
         order = np.concatenate(([n], order))
@@ -106,7 +104,7 @@ def shape_of(basis: SplineBasis, points: int, yields: bool) -> Shape:
 
 
 def strips_of(
-    system: System, shape: Shape, basis: SplineBasis, points: int, ends: Ends
+    system: System, shape: Shape, basis: Bezier, points: int, ends: Ends
 ) -> tuple[Strips, Array, Array]:
     """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
@@ -143,14 +141,14 @@ def strips_of(
 
 def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: Array, modes: Array) -> Array:
     """What changes along the strips (S, G, 5 + K), at Gauss points u (G,)."""
-    basis, (length, energy) = system.scene.strips[0].basis, (system.scales.length, system.scales.energy)
+    degree, length, energy = system.scene.strips[0].basis.degree, system.scales.length, system.scales.energy
     along = np.zeros((*speed.shape, MODES + modes.shape[-1]))
     along[..., SPEED], along[..., MODES:] = speed, modes
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
-    along[..., RIGIDITY] = np.array([e.rigidity_at(basis, u) for e in bends]) / (energy * length)
+    along[..., RIGIDITY] = np.array([e.rigidity_at(degree, u) for e in bends]) / (energy * length)
     for row, curl in zip(along, (e.curl for e in bends), strict=True):
         if curl is not None:
-            row[:, DROP], row[:, CURL] = curl.drop(basis, u), curl.flattening / length
+            row[:, DROP], row[:, CURL] = curl.drop(degree, u), curl.flattening / length
     return along
 
 
@@ -201,7 +199,7 @@ def _speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
 
 
 def _orthonormal_modes(
-    parts: list[tuple[AxialModes, ...]], basis: SplineBasis, points: int, speed: Array
+    parts: list[tuple[AxialModes, ...]], basis: Bezier, points: int, speed: Array
 ) -> tuple[Array, Array]:
     """Modes (S, G, K) orthonormal along strips of a speed (S, G), and the scene's modes from them (S, K, K).
 
@@ -216,15 +214,13 @@ def _orthonormal_modes(
 
 
 @lru_cache(maxsize=64)
-def _modes_of(
-    parts: tuple[AxialModes, ...], basis: SplineBasis, points: int, speed: bytes
-) -> tuple[Array, Array]:
+def _modes_of(parts: tuple[AxialModes, ...], basis: Bezier, points: int, speed: bytes) -> tuple[Array, Array]:
     """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
     u, weight = basis.gauss_rule(points)
     weight = weight * (ROUND_OFF * np.frombuffer(speed))
     values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
     for modes in parts:
-        full, to_part = all_modes(modes, u), np.eye(modes.count)
+        full, to_part = modes.evaluate(u), np.eye(modes.count)
         if not isinstance(modes, SlideModes):  # the mean first
             to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
             full = full @ to_part

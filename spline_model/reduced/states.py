@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.effects import MixedStretching
 from spline_model.reduced.arrays import AXIAL, Answer
-from spline_model.reduced.assembly import place_of
+from spline_model.reduced.assembly import assemble, place_of
 from spline_model.reduced.model import Reduced
 from spline_model.solution import Later
 from spline_model.strip.compiled import called, kernel
@@ -104,6 +104,25 @@ def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: A
     drives = system.drives
     z[..., drives.row] = reaction * unit[2 * drives.turns]
     return z
+
+
+def body_tangents(model: Reduced, y: Array) -> Array:
+    """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y), in EI/L; nan of a singular
+    strip."""
+    arrays = model.arrays()
+    found = np.empty((len(y), *arrays.space.tangent.shape))
+    _condense_all(y, arrays, found)
+    return found
+
+
+@kernel()
+def _condense_all(y, arrays, tangents):
+    for row in range(y.shape[0]):
+        singular = np.isinf(assemble(y[row], 0.0, arrays))
+        for i in range(tangents.shape[1]):
+            for j in range(i, tangents.shape[1]):
+                value = np.nan if singular else arrays.space.tangent[i, j]
+                tangents[row, i, j] = tangents[row, j, i] = value
 
 
 def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:

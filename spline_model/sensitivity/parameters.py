@@ -224,12 +224,12 @@ class Varied(NamedTuple):
     def along(self, model: Reduced, u: Numbers) -> tuple[Numbers, Numbers]:
         """The rigidity at small curvature and the drop of ``curl_law`` at u (Q,), (Q, G, P, 1)."""
         scene = model.system.scene
-        basis, bends = scene.strips[0].basis, {e.strip: e.curl for e in scene.of(Bending)}
+        degree, bends = scene.strips[0].basis.degree, {e.strip: e.curl for e in scene.of(Bending)}
         curls = [bends[strip.name] for strip in scene.strips]
         stiffer, rate = np.ones((len(u), len(curls))), np.zeros((len(u), len(curls)))
         for s, curl in enumerate(curls):
             if curl is not None:
-                stiffer[:, s], rate[:, s] = curl.rigidity(basis, u), curl.rigidity_rate(basis, u)
+                stiffer[:, s], rate[:, s] = curl.rigidity(degree, u), curl.rigidity_rate(degree, u)
         plate = _spread(np.array([0.0 if curl is None else curl.poisson_ratio**2 for curl in curls]))
         found = _spread(stiffer) + _spread(rate) * (self.aspect - 1.0)
         return found * self.bending, 1.0 - (1.0 - plate) * found

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import all_modes
 from spline_model.compile import System, compile_scene
+from spline_model.discretisation import require_uncut
 from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
@@ -62,7 +62,8 @@ def sensitivities(
     """
     require_mechanism(asked)
     if asked.design.discretisation.control_points is None:
-        asked = asked.on(solution.basis, solution.control_points)
+        asked = asked.on(solution.segments, solution.control_points)
+    require_uncut(asked.design.discretisation, "sensitivities")
     rates = Rates.of(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
@@ -196,7 +197,7 @@ def _fibre_stress(elements: Elements, stations: Array) -> NDArray[Any]:
         force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
     if len(elements.axial):
         parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
-        shown = np.column_stack([all_modes(modes, stations) for modes in parts]) @ model.to_modes
+        shown = np.column_stack([modes.evaluate(stations) for modes in parts]) @ model.to_modes
         force = force + times_each(shown, elements.axial)
     mean = force * (model.energy / model.length / varied.area)
     return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)

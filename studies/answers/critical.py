@@ -25,8 +25,8 @@ FORCE = "applied_force"
 LOADS = (FORCE, "applied_moment", "tip_force", "driven_displacement")
 #: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
 PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
-#: Discretisations that are tried one after another: Bezier strips, cubic B-splines; in the given elements.
-POINTS, SPANS, MESHES = tuple(range(8, 21, 2)), (19, 35, 67), (1, 2, 4)
+#: Discretisations that are tried one after another: control points, then segments; in the given elements.
+POINTS, SEGMENTS, MESHES = tuple(range(8, 15, 2)), (2, 4, 8, 16), (1, 2, 4)
 #: Relative difference of two discretisations at which no finer one is tried, and up to which they agree.
 SETTLED, AGREED = 1e-5, 1e-2
 #: Rotation that counts as soft [rad], and relative width to which its force is found.
@@ -170,13 +170,12 @@ def _refined(settings: Settings) -> Iterator[Settings]:
         from spline_model.confirmed import finer
 
         yield settings
-        points = finer(settings.basis, settings.control_points)[1]
+        _, points = finer(settings.segments, settings.control_points)
         yield replace(settings, control_points=points, axial_modes=None, gauss_points=None)
     else:
-        if settings.basis == "bezier":
-            yield from (replace(settings, control_points=points) for points in POINTS)
-        if settings.stretch != "consistent":
-            yield from (replace(settings, control_points=points, basis="bspline") for points in SPANS)
+        yield from (replace(settings, control_points=points) for points in POINTS)
+        finer_ones = (settings.segments * times for times in SEGMENTS)
+        yield from (replace(settings, control_points=POINTS[0], segments=each) for each in finer_ones)
 
 
 def _settled(settings: Settings, found: Sequence[CriticalLoad]) -> bool:
@@ -208,15 +207,15 @@ def _name(settings: Settings) -> str:
     """Return how fine settings are, in words."""
     if isinstance(settings, FeSettings):
         return f"{settings.elements} elements"
-    return f"{settings.control_points} control points" + (" (bspline)" if settings.basis == "bspline" else "")
+    cut = f"{settings.segments} segments of " if settings.segments > 1 else ""
+    return f"{cut}{settings.control_points} control points"
 
 
 def _remedy(settings: Settings) -> str:
     """Return what is finer than the finest that was tried."""
     if isinstance(settings, FeSettings):
         return f"take {2 * settings.elements} elements"
-    more = f"leave the number open, or take basis = bspline with {SPANS[1]} control points"
-    return more if settings.basis == "bezier" else f"take {2 * settings.points - 3} control points"
+    return f"leave the number open, or take segments = {2 * settings.segments}"
 
 
 def _of(question: _Question, settings: Settings) -> CriticalLoad:

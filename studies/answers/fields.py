@@ -175,7 +175,7 @@ def _as_fine(asked: Any, solution: Any) -> Any:
         grid = asked.design.discretisation
         chosen = getattr(solution, "settings", {}).get("control_points", grid.points)
         points = getattr(solution, "control_points", chosen)
-        fine = asked.on(getattr(solution, "basis", grid.basis), points)
+        fine = asked.on(getattr(solution, "segments", grid.segments), points)
         return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
     from fe_reference.refined import finer
 

@@ -102,7 +102,7 @@ class Asked:
             given["elements"] = meshes[-1]
         elif hasattr(result, "control_points"):
             given["control_points"] = result.control_points
-            given["basis"] = getattr(result, "basis", given["basis"])
+            given["segments"] = getattr(result, "segments", given["segments"])
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
     def refusals(self) -> AbstractContextManager[None]:

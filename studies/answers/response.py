@@ -15,7 +15,7 @@ from studies.cases.section import Sectioned
 from studies.kinds import Array
 
 #: Parts of an estimate that are no error.
-CHOSEN = ("accuracy", "control_points", "trials", "meshes")
+CHOSEN = ("accuracy", "segments", "control_points", "trials", "meshes")
 #: What the models call the error of the bodies' places.
 PLACES = ("trajectory", "path")
 

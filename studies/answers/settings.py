@@ -9,10 +9,10 @@ class SplineSettings:
     """Discretisation by dynamic splines; what each value may be is checked by `spline_model`.
 
     Args:
-        control_points: n per strip [1]; None for as many as the model's own accuracy takes, which the answer
-            then names.
-        axial_modes: m axial-force modes per strip [1]; None for the model's default, n - 2.
-        basis: "bezier" (degree n - 1) or "bspline" (cubic).
+        control_points: n per segment [1]; None for as many as the model's own accuracy takes, which the
+            answer then names.
+        axial_modes: m axial-force modes per segment [1]; None for the model's default, n - 2.
+        segments: Bezier curves that a strip is cut into, each with those control points and modes [1].
         measure: "material", "spatial" (the paper's energy) or "printed" (the paper's generalised forces as
             printed), the latter two with stretch "consistent".
         stretch: "mixed", "consistent" (the paper's quadrature) or "inextensible".
@@ -23,7 +23,7 @@ class SplineSettings:
 
     control_points: int | None = None
     axial_modes: int | None = None
-    basis: str = "bezier"
+    segments: int = 1
     measure: str = "material"
     stretch: str = "mixed"
     gauss_points: int | None = None

@@ -67,7 +67,9 @@ CONTROL_POINTS = Argument(
     "control points a strip (spline; default: as many as the accuracy takes, 6 of a motion)",
     int,
 )
-BASIS = Argument("--basis", "of the curve (spline; default bezier)", choices=("bezier", "bspline"))
+SEGMENTS = Argument(
+    "--segments M", "Bezier curves that a strip is cut into, with those control points each (spline)", int
+)
 MEASURE = Argument(
     "--measure",
     "of curvature and strain: spatial as in the paper, printed with its forces, both with "
@@ -83,10 +85,10 @@ STRETCH = Argument(
 SPLINE = (
     CONTROL_POINTS,
     Argument("--axial-modes M", "axial-force modes a strip (spline; default N - 2)", int),
-    BASIS,
+    SEGMENTS,
     MEASURE,
     STRETCH,
-    Argument("--gauss-points G", "quadrature points of a knot span (spline; default: degree + 3)", int),
+    Argument("--gauss-points G", "quadrature points of a segment (spline; default: degree + 3)", int),
     Argument(
         "--slide-stiffness S",
         "of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",

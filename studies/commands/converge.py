@@ -66,7 +66,7 @@ def _counts(low: int) -> Callable[[str], tuple[int, int]]:
     take.ELEMENTS.but(
         "of the meshes, by doubling, default 5:160", read=_counts(1), default=(5, 160), metavar="A:B"
     ),
-    take.BASIS.but(default="bezier"),
+    take.SEGMENTS.but(default=1),
     take.MEASURE.but(choices=("material", "spatial"), default="material"),
     take.STRETCH.but(default="mixed"),
     take.OUT.but("of tables and figure (default: results/designs/<name of the case>)"),
@@ -78,7 +78,10 @@ def main(arguments: argparse.Namespace) -> int:
     first, last = arguments.control_points
     settings = [
         SplineSettings(
-            control_points=n, basis=arguments.basis, measure=arguments.measure, stretch=arguments.stretch
+            control_points=n,
+            segments=arguments.segments,
+            measure=arguments.measure,
+            stretch=arguments.stretch,
         )
         for n in range(first, last + 1)
     ]

@@ -175,7 +175,7 @@ def _path_rows(store: Store) -> dict[str, Any]:
     """Return the rows of the errors along the static path, by the label of their formulation."""
     splines = _stored(store, "convergence/control_points", "map")
     meshes = _stored(store, "convergence/elements", "meshes")
-    bezier = splines[splines["basis"] == "bezier"]
+    bezier = splines[splines["segments"] == 1]
     paper = bezier[(bezier["measure"] == "spatial") & (bezier["stretch"] == "consistent")]
     found = {PAPER.format(4): paper[paper["control_points"] == 4]}
     default = bezier[(bezier["measure"] == "material") & (bezier["stretch"] == "mixed")]

@@ -31,7 +31,8 @@ FINEST = 160
 def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> dict[str, Any]:
     """Return what a spline is, how it ended, its errors, its work.
 
-    Columns: basis, measure, stretch, control_points, axial_modes (none for consistent stretch), status,
+    Columns: segments, measure, stretch, control_points (of a segment), strip_points (of a strip, those that
+    segments share counted once), axial_modes (none for consistent stretch), status,
     reached_rad (end of the converged part of the path), error_trajectory, error_torque, error_stiffness,
     error_stress (largest magnitudes over the path; empty when the path was not completed),
     newton_iterations, message.
@@ -93,10 +94,11 @@ def _described(setting: SplineSettings) -> dict[str, Any]:
     if modes is None and setting.stretch != "consistent":
         modes = setting.points - 2
     return {
-        "basis": setting.basis,
+        "segments": setting.segments,
         "measure": setting.measure,
         "stretch": setting.stretch,
         "control_points": setting.points,
+        "strip_points": setting.segments * (setting.points - 1) + 1,
         "axial_modes": modes,
     }
 

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from spline_model.accuracy import DEFAULT, NOTHING, search
-from spline_model.design import Discretisation
+from spline_model.confirmed import Grid
+from spline_model.discretisation import Discretisation
 from spline_model.sensitivity.solve import sensitivities
 from spline_model.solution import largest
 from studies.answers.models import put
@@ -190,8 +191,8 @@ def accurate(solve: Callable[[int], Answers], quantities: Callable[[Answers], di
                 known[points] = error
         return known[points]
 
-    def attempt(fewer: int, more: int) -> tuple[float, tuple[Answers, dict[str, float]]] | None:
-        coarse, fine = solved(fewer), solved(more)
+    def attempt(fewer: Grid, more: Grid) -> tuple[float, tuple[Answers, dict[str, float]]] | None:
+        coarse, fine = solved(fewer[1]), solved(more[1])
         if isinstance(coarse, PathEnds) or isinstance(fine, PathEnds):
             return None
         mine, errors = quantities(coarse), {}
@@ -200,12 +201,12 @@ def accurate(solve: Callable[[int], Answers], quantities: Callable[[Answers], di
             errors[name] = abs(mine[name] - right) / scale if scale else 0.0
         return largest(errors.values()), (coarse, errors)
 
-    outcome = search(Discretisation(control_points=CONTROL_POINTS), DEFAULT, attempt)
+    outcome = search(Discretisation(control_points=CONTROL_POINTS), DEFAULT, attempt, most_segments=1)
     if outcome.found is None:
         outcome.found = first, dict.fromkeys(quantities(first), math.nan)
     found, errors = outcome.found
     return Accurate(
-        answers=found, quantities=quantities(found), errors=errors, control_points=outcome.control_points
+        answers=found, quantities=quantities(found), errors=errors, control_points=outcome.best[1]
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from spline_model.accuracy import FIRST
-from spline_model.basis import bezier
+from spline_model.basis import Bezier
 from spline_model.pivot import Pivot, cross_axis_pivot
 from spline_model.solution import Status
 from spline_model.statics import solve_statics
@@ -70,7 +70,7 @@ def chosen(values: Mapping[str, float]) -> tuple[int, str]:
     heavy = abs(values["load"]) > HEAVY * scales(values)["force"]
     pivot = build(values, loaded=not heavy)
     path = solve_statics(pivot, rotation=REACH, increments=INCREMENTS, raise_on_failure=False)
-    if path.status is not Status.CONVERGED or path.basis != "bezier":
+    if path.status is not Status.CONVERGED or path.segments != 1:
         return FIRST, f"not estimated: {path.message}"
     return path.control_points, path.resolution or "estimated without the load" * heavy
 
@@ -79,7 +79,7 @@ def chosen(values: Mapping[str, float]) -> tuple[int, str]:
 def _tables(control_points: int) -> tuple[list[Array], Array, Array]:
     """Tables of a strip's shape and its derivatives at the stations, of its slope at Gauss points, and from
     the stretch there to the axial modes' at the stations."""
-    basis = bezier(control_points)
+    basis = Bezier(control_points=control_points)
     u, weight = legendre.leggauss(control_points + 3)
     modes = legendre.legvander(u, control_points - 3)
     project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(control_points - 2) + 1)

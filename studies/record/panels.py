@@ -84,6 +84,7 @@ class Axis:
 ROTATION = Axis("rotation_rad", "rotation [deg]", factor=180.0 / math.pi, ticks=range(0, 91, 15))
 TIME = Axis("time_s", "time [ms]", factor=1e3)
 CONTROL_POINTS = Axis("control_points", "control points a strip, n", each=True)
+STRIP_POINTS = Axis("strip_points", "control points a strip", each=True)
 MESH = Axis("elements", "elements a strip", log=True, each=True)
 
 

@@ -90,7 +90,6 @@ ELEMENTS: dict[str, Look] = {
 #: and a name for the pivot of the paper's Table 1, since reports have tables of their own.
 WRITTEN = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]", "Table 1": "reference pivot"}
 
-BASES: dict[str, str] = {"bezier": "Bézier curve of degree n - 1", "bspline": "cubic B-spline"}
 
 #: Stretch forms by colour, measures by line: (stretch, measure) -> look.
 STRETCH: dict[tuple[str, str], Look] = {

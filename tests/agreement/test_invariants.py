@@ -124,7 +124,7 @@ ELEMENTS = [{"element": element} for element in fe_reference.ELEMENTS]
 FORMS = [
     {},
     {"control_points": 4},
-    {"control_points": 9, "basis": "bspline"},
+    {"control_points": 6, "segments": 2},
     {"stretch": "inextensible"},
     {"stretch": "consistent", "measure": "spatial", "control_points": 4},
     {"crossing_ratio": 0.2, "inclination": np.radians(30), "centre_offset": (0.01, 0.02)},

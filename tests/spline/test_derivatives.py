@@ -16,7 +16,7 @@ FORMS = {
     "material consistent": {"stretch": "consistent"},
     "spatial consistent": {"stretch": "consistent", "measure": "spatial"},
     "printed": {"stretch": "consistent", "measure": "printed"},
-    "B-spline": {"basis": "bspline", "control_points": 7, "axial_modes": 3},
+    "segments": {"segments": 2, "control_points": 5, "axial_modes": 2},
     "curling": {
         "effects": (*DEFAULT_EFFECTS, "clamped_width", "anticlastic"),
         "width": 0.04,

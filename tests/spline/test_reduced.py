@@ -28,7 +28,7 @@ FORMS = {
     "inextensible": {"stretch": "inextensible"},
     "consistent": {"stretch": "consistent", "control_points": 5},
     "consistent spatial": {"stretch": "consistent", "measure": "spatial", "control_points": 5},
-    "B-spline": {"basis": "bspline", "control_points": 9},
+    "segments": {"segments": 2, "control_points": 6},
     "four points": {"control_points": 4},
     "all axial modes": {"control_points": 8, "axial_modes": 7},
 }

@@ -52,7 +52,7 @@ PIVOTS = [
     ({"control_points": 4, "gauss_points": 2, "stretch": "consistent"}, "2 of 3 shapes of stretching"),
     ({"slide_stiffness": 0.0}, "4 axial modes leave 1 of 5 strains free"),
     ({"control_points": 8, "axial_modes": 2, "slide_stiffness": 0.0}, "2 axial modes leave 5 of 7"),
-    ({"control_points": 8, "basis": "bspline", "gauss_points": 1}, "5 Gauss points see 5 of 6 shapes"),
+    ({"segments": 0}, "segments: got 0, expected an integer >= 1"),
     (scene(("bending", "gravty")), "effects: got 'gravty', expected one of bending, ... nearest: gravity"),
     (scene(("bending", "stretching", "shear")), "'shear', expected ... (use --model fe-shear)"),
     (scene(("bending", "stretching", "inextensible")), "not both"),

@@ -27,7 +27,6 @@ FORMS = (
     {},
     {"control_points": 8},
     {"stretch": "consistent"},
-    {"basis": "bspline", "control_points": 7},
     {"control_points": 5, "axial_modes": 3},
 )
 
@@ -99,7 +98,7 @@ ROOTED = {"parameters": {"root_compliance": {"root": "monolithic"}}}
     ("effects", "grid"),
     [
         (("clamped_width",), {"measure": "spatial", "stretch": "consistent"}),
-        (("clamped_width", "anticlastic"), {"basis": "bspline", "control_points": 7}),
+        (("clamped_width", "anticlastic"), {"control_points": 7}),
         (("root_compliance",), ROOTED | {"stretch": "consistent"}),
         (("clamped_width", "anticlastic", "root_compliance"), ROOTED),
     ],

@@ -68,7 +68,7 @@ WORDS = {
     "solve CASE --plot a.gif": "expected a file that ends in .svg, .png or .pdf",
     "solve CASE --control-points 3": "control_points: got 3, expected",
     "solve CASE --model fe --elements 0": "elements: got 0, expected",
-    "solve CASE --model fe --basis bezier": "--basis: got it with --model fe",
+    "solve CASE --model fe --segments 2": "--segments: got it with --model fe",
     "solve CASE --elements 4": "--elements: got it with --model spline",
     "solve CASE --elemnts 4": "expected --elements (the nearest option)",
     "solve CASE --effects -gravity": "one that begins with - is given as --effects=-...",

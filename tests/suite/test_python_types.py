@@ -96,7 +96,7 @@ def test_values_out_of_range_are_one_line(name):
 
 #: Call -> its parameters that are one of several names.
 CHOICES = {
-    "spline pivot": ("basis", "measure", "stretch"),
+    "spline pivot": ("measure", "stretch"),
     "fe pivot": ("element",),
     "spline statics": ("order", "method", "branch"),
     "spline mechanism": ("order", "control", "branch"),

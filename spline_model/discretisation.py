@@ -1,0 +1,128 @@
+"""How every strip of a design is discretised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypedDict
+
+from spline_model.basis import Bezier, LegendreModes, singular
+from spline_model.effects.elastic import MEASURES
+from spline_model.errors import InvalidParameter, require_choice, require_count, require_not_negative
+
+STRETCH_FORMS = ("mixed", "consistent", "inextensible")
+FIRST_POINTS = 6
+"""Control points of a design that leaves them open, where no accuracy chooses them."""
+SLIDE_STIFFNESS = 10.0
+"""Default stiffness of the strains that the axial modes do not see in statics, in EI/L^2.
+
+With control_points - 2 modes the control points of a straight strip slide along it without
+resistance and the tangent at rest is singular. Any value from 1e-6 to 10 mends that and moves
+the static error by some factors only: 10 is best for n = 5 and 8 and several times the least
+for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip begins to lock.
+"""
+
+
+def swinging_slide_stiffness(control_points: int) -> float:
+    """The default slide stiffness of a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
+
+    In a motion the sliding has inertia and must be fast against the strips' bending, or it
+    takes part in the swing; how stiff it may be before it locks grows with n. The rule goes
+    through the best values for n = 4, 6 and 8 (results of convergence/slide_stiffness).
+    """
+    return 100.0 * ((control_points - 2) / 6.0) ** 3
+
+
+class Described(TypedDict, total=False):
+    """Keywords of ``Discretisation``."""
+
+    control_points: int | None
+    segments: int
+    axial_modes: int | None
+    measure: str
+    stretch: str
+    gauss_points: int | None
+    slide_stiffness: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Discretisation:
+    """How every strip is described.
+
+    control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
+    FIRST_POINTS where nothing estimates its error), of a Bezier curve of degree n - 1; segments: such curves
+    that a strip is cut into, with equal lengths and frames between them that both are built into;
+    axial_modes m in 1 ... n - 1 of each, default n - 2; measure "material", or with consistent stretch
+    "spatial" (Eqs 10, 13) or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by
+    quadrature) or "inextensible"; gauss_points of each, default degree + 3, which follows the
+    primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
+    that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
+    and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
+    the tangent of a straight strip singular is refused with the reason (``spline_model.basis.singular``).
+    """
+
+    control_points: int | None = None
+    segments: int = 1
+    axial_modes: int | None = None
+    measure: str = "material"
+    stretch: str = "mixed"
+    gauss_points: int | None = None
+    slide_stiffness: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.control_points is not None:
+            require_count("control_points", self.control_points, 4)
+        require_count("segments", self.segments, 1)
+        for name in ("axial_modes", "gauss_points"):
+            if self.control_points is None and getattr(self, name) is not None:
+                raise InvalidParameter(
+                    name, getattr(self, name), "control_points beside it, which it goes with"
+                )
+        require_choice("measure", self.measure, MEASURES)
+        require_choice("stretch", self.stretch, STRETCH_FORMS)
+        if self.slide_stiffness is not None:
+            require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
+        if self.gauss_points is not None:
+            require_count("gauss_points", self.gauss_points, 1)
+        if self.measure != "material" and self.stretch != "consistent":
+            only = f"consistent, the only form with measure = {self.measure}"
+            raise InvalidParameter("stretch", self.stretch, only)
+        if self.axial_modes is not None:
+            if self.stretch == "consistent":
+                raise InvalidParameter("axial_modes", self.axial_modes, "none with stretch = consistent")
+            require_count("axial_modes", self.axial_modes, 1, self.points - 1)
+        axial = None if self.stretch == "consistent" else self.modes
+        reason = singular(self.spline, self.quadrature, axial, self.slide > 0)
+        if reason:
+            raise InvalidParameter("discretisation", reason, "a strip whose tangent at rest is regular")
+
+    @property
+    def points(self) -> int:
+        """Control points that were given, or those of a design that leaves them open."""
+        return FIRST_POINTS if self.control_points is None else self.control_points
+
+    @cached_property
+    def spline(self) -> Bezier:
+        """The basis of the control points."""
+        return Bezier(control_points=self.points)
+
+    @cached_property
+    def modes(self) -> LegendreModes:
+        """The axial-force modes."""
+        return LegendreModes(count=self.points - 2 if self.axial_modes is None else self.axial_modes)
+
+    @property
+    def slide(self) -> float:
+        """The slide stiffness that was given, or that of statics [EI/L^2]."""
+        return SLIDE_STIFFNESS if self.slide_stiffness is None else self.slide_stiffness
+
+    @property
+    def quadrature(self) -> int:
+        """Number of Gauss points of each segment."""
+        return self.spline.degree + 3 if self.gauss_points is None else self.gauss_points
+
+
+def require_uncut(grid: Discretisation, name: str) -> None:
+    """Refuse strips in segments where an answer does not know them."""
+    if grid.segments != 1:
+        raise InvalidParameter("segments", grid.segments, f"1 for {name}")

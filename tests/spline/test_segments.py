@@ -1,0 +1,127 @@
+"""Strips in segments: pieces of a strip with frames between them answer as the whole strip does."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from spline_model import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+    moving_fields,
+    natural_frequencies,
+    solve_mechanism,
+    solve_motion,
+    solve_statics,
+    static_fields,
+)
+from tests import gates
+from tests.table_one import TABLE_ONE
+
+SIDES = {"width": 0.03, "thickness": 0.002}
+WIDE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
+WIDE = WIDE | SIDES
+#: Effects that act along a whole strip, and what they are given.
+ALONG = ("gravity", "pre_strain", "clamped_width")
+GIVEN = {"gravity": {"acceleration": (2e2, -9e2)}, "pre_strain": {"strain": 1e-3}, "clamped_width": {}}
+PLACES = ("shape", "axial_force", "bending_moment", "shear_force", "clamp_reactions", "bodies")
+
+
+def apart(one, other, names):
+    """Largest difference of arrays of two answers, each over the largest magnitude."""
+    pairs = [(getattr(one, name), getattr(other, name)) for name in names]
+    pairs = [(next(iter(a.values())), next(iter(b.values()))) if isinstance(a, dict) else (a, b) for a, b in pairs]
+    return max(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs)
+
+
+def made(**grid):
+    """The pivot of Table 1 with wide strips and effects along them."""
+    return cross_axis_pivot(**WIDE, effects=(*DEFAULT_EFFECTS, *ALONG), parameters=GIVEN, **grid)
+
+
+def test_a_pivot_in_segments_answers_as_a_whole_one():
+    """Forces, shapes, reactions and fields along the strips are those of one curve with many points."""
+
+    def error(segments=3, control_points=9):
+        pivots = made(segments=segments, control_points=control_points), made(control_points=17)
+        paths = [replace(solve_statics(each, rotation=0.9, increments=3), balanced=True) for each in pivots]
+        fields = [static_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
+        curves = ("arc_length", "rest_shape", "rotation", "curvature", "reactions", "rest_bodies")
+        numbers = ("torque", "stiffness", "work", "bending_energy", "own_stiffness")
+        return max(apart(*paths, (*PLACES, *numbers)), apart(*fields, curves))
+
+    gates.hold("spline_segments", error)
+
+
+def arch(**grid):
+    """A curved strip to a heavy body, and a curved cantilever with a free tip that a force pulls."""
+    section = {"width": 0.01, "thickness": 0.001, "youngs_modulus": 2e11, "density": 7800.0}
+    strips = [
+        StripDesign(name="arch", start=(0.0, 0.0), end=(0.2, 0.0), rise=0.05, tip="stage", **section),
+        StripDesign(name="free", start=(0.0, 0.1), end=(0.1, 0.1), rise=-0.02, **section),
+    ]
+    return compliant_mechanism(
+        strips=strips,
+        bodies=[BodyDesign(name="stage", centre=(0.21, 0.0), mass=0.2, moment_of_inertia=1e-4)],
+        effects=(*DEFAULT_EFFECTS, "tip_force", "gravity"),
+        parameters={"tip_force": {"strip": "free", "force": (0.5, -1.0)}},
+        **grid,
+    )
+
+
+def test_arcs_and_free_tips_in_segments():
+    """Static states, modes and motions of curved strips and of a free tip are those of whole ones."""
+    pair = arch(segments=2, control_points=9), arch(control_points=14)
+    paths = [solve_mechanism(each, rotation=-0.6, increments=4) for each in pair]
+    assert apart(*paths, ("shape", "torque", "clamp_reactions")) < 1e-5
+    modes = [natural_frequencies(each, rotation=-0.6, count=4) for each in pair]
+    assert apart(*modes, ("frequency",)) < 1e-5
+    assert np.abs(modes[0].shapes).max() == pytest.approx(np.abs(modes[1].shapes).max(), rel=1e-4)
+    runs = [solve_motion(each, start=-0.6, duration=0.02, step=1e-4, check=False) for each in pair]
+    assert apart(*runs, ("rotation", "strain_energy")) < 1e-3
+    assert list(runs[0].bodies) == ["stage"]
+    fields = [moving_fields(each.in_motion(), run.states[-1:]) for each, run in zip(pair, runs, strict=True)]
+    assert apart(*fields, ("shape", "arc_length", "bodies")) < 1e-3
+
+
+def test_leapfrog_keeps_the_energy_of_segments():
+    """The explicit scheme integrates strips in segments too: the frames between them have their mass."""
+    run = solve_motion(made(segments=2, control_points=5), start=0.5, duration=2e-3, integrator="leapfrog", check=False)
+    energy = run.kinetic_energy + run.strain_energy + run.gravity_energy
+    assert np.ptp(energy) < 1e-3 * run.kinetic_energy.max()
+
+
+def cantilever(**pull):
+    """A straight strip of length and EI 1 with a body at its tip, that a moment and a force act on."""
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", area=12e6, second_moment_of_area=1.0,
+        youngs_modulus=1.0, density=1.0,
+    )  # fmt: skip
+    return compliant_mechanism(
+        strips=[strip],
+        bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
+        effects=("bending", "stretching", *pull),
+        parameters=pull,
+    )
+
+
+def test_a_strip_that_is_rolled_up_three_times_is_resolved_by_default():
+    """A moment of 6 pi EI/L rolls a strip up to three whole circles; the tip is back at the root."""
+    path = solve_mechanism(cantilever(applied_moment={"moment": 6.0 * math.pi}), increments=12)
+    assert path.segments > 1
+    assert path.rotation[-1] == pytest.approx(6.0 * math.pi, rel=1e-4)
+    assert np.abs(path.shape[-1, 0, -1]).max() < 1e-4 / math.pi
+
+
+def test_a_strip_in_tension_is_resolved_by_default():
+    """Under a pull of 1e4 EI/L^2 a tip's turn costs 2 sqrt(F EI) sin(turn / 2): a layer a hundredth long.
+
+    Exact of a half-infinite strip; the rest of it is e^-100 away.
+    """
+    path = solve_mechanism(cantilever(applied_force={"force": (1e4, 0.0)}), rotation=0.5, increments=4)
+    assert path.segments > 1
+    assert path.torque[-1] == pytest.approx(2.0 * 100.0 * math.sin(0.25), rel=1e-4)
