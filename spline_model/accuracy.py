@@ -52,6 +52,8 @@ MOST_CUT = 11
 """Control points from which on a strip is cut rather than raised where no trial has an answer."""
 MOST_SEGMENTS = 16
 """Segments of a strip at which the search ends."""
+FLOOR = 1e-8
+"""Error below which a strip is not cut any more: what is left is round-off."""
 FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""
 GAINS = (2.0, 12.0)
@@ -123,7 +125,7 @@ class Search(Generic[Found]):
     def _go_on(self) -> bool:
         """Set the next trial: more control points, or twice the segments where those do not help."""
         (segments, points), most = self.at, max(MOST, self.trials[0][1])
-        expected, may_cut = self._expected(), 2 * segments <= self.most_segments
+        expected, may_cut = self._expected(), 2 * segments <= self.most_segments and self.error > FLOOR
         far = expected > most if self.levels else points >= MOST_CUT
         if points < most and not (far and may_cut):
             self.at = segments, min(expected, most)

@@ -16,6 +16,7 @@ from spline_model.confirmed import finer
 from spline_model.discretisation import Described, Discretisation, require_uncut
 from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH
+from spline_model.effects.registry import ROOTS
 from spline_model.errors import InvalidParameter, require_choice, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.proportional import LOADS_FIRST, ORDERS
@@ -24,7 +25,7 @@ from spline_model.reduced.designs import Given, one_each, pivots, varied
 Array = NDArray[np.float64]
 
 SAME = 1e-9
-"""Relative difference to which two widths over lengths are one."""
+"""Relative difference to which two sides over lengths are one."""
 
 
 def solve_many(
@@ -157,16 +158,16 @@ def _depth(base: Mechanism, given: Given, section_depth: ArrayLike | None) -> Ar
 
 
 def _require_shape(base: Mechanism, given: Given) -> None:
-    """Refuse strips of another b/L than the mechanism's: clamped over the width they have other profiles."""
-    if CLAMPED_WIDTH in base.design.curling:
-        own = Given.of(base.design)
-        shape, known = (each.width / np.abs(each.chord) for each in (given, own))
+    """Refuse strips of another shape than the mechanism's, where their profile of rigidity goes by it."""
+    own, design = Given.of(base.design), base.design
+    for acts, effect, name, side in (
+        (CLAMPED_WIDTH in design.curling, CLAMPED_WIDTH, "b/L", "width"),
+        (design.root_length > 0.0, ROOTS, "t/L", "thickness"),
+    ):
+        shape, known = (getattr(each, side) / np.abs(each.chord) for each in (given, own))
         other = np.argwhere(np.abs(shape / known - 1.0) > SAME)
-        if other.size:
+        if acts and other.size:
             d, s = other[0]
-            name = f"design {d}: b/L of {base.design.strips[s].name}"
-            raise InvalidParameter(
-                name,
-                float(shape[d, s]),
-                f"{known[0, s]:.6g}, that of the mechanism, for {CLAMPED_WIDTH}",
-            )
+            place = f"design {d}: {name} of {design.strips[s].name}"
+            expected = f"{known[0, s]:.6g}, that of the mechanism, for {effect}"
+            raise InvalidParameter(place, float(shape[d, s]), expected)

@@ -30,7 +30,7 @@ from spline_model.quadrature import (
 )
 from spline_model.strip.compiled import kernel, part
 from spline_model.strip.laws import SPATIAL, bending_law, mixed_law, stretching_law
-from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN, YIELDING
+from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def assemble(z, points, clamps, gradient, hessian, work):
         axial += stretched
         slowest = min(slowest, v / points.numbers[p, SPEED])
     for c in range(clamps.place.shape[0]):
-        bending += _subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
+        _subtract_clamp(z, clamps.place[c], clamps.numbers[c], gradient, hessian)
     return bending, axial, slowest
 
 
@@ -192,16 +192,10 @@ def _add_to_points(first, width, d1, d2, work, gradient, hessian):
 
 @part()
 def _subtract_clamp(z, place, numbers, gradient, hessian):
-    """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6); returns the energy of
-    its root, if that yields [J]."""
+    """Subtract lambda psi of a clamped end, its gradient and its Hessian (Eqs 5 and 6)."""
     angle = 0.0 if place[BODY] < 0 else z[place[BODY] + 2]
     _subtract_position(z, angle, place, numbers, gradient, hessian)
     _subtract_direction(z, angle, place, numbers, gradient, hessian)
-    row = place[ROW] + 2
-    yielded = numbers[YIELDING] * z[row]
-    gradient[row] -= yielded
-    hessian[row, row] -= numbers[YIELDING]
-    return 0.5 * yielded * z[row]
 
 
 @part()

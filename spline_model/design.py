@@ -201,13 +201,15 @@ class BodyDesign:
 @dataclass(frozen=True, kw_only=True)
 class Design:
     """Strips and bodies with their discretisation; pre_strain holds curvature and strain, if any; curling
-    the names of the effects of the sections' curl, which bending takes up."""
+    the names of the effects of the sections' curl, and root_length that of roots over the thickness, which
+    bending takes up."""
 
     strips: tuple[StripDesign, ...]
     bodies: tuple[BodyDesign, ...]
     discretisation: Discretisation
     pre_strain: Mapping[str, Any] = field(default_factory=dict)
     curling: tuple[str, ...] = ()
+    root_length: float = 0.0
 
     def __post_init__(self) -> None:
         names = {body.name for body in self.bodies}

@@ -163,7 +163,7 @@ class HeldPivot:
         shape, points = self.model.shape, self._arrays.local.points
         ordered = np.empty((len(points), len(shape.order), 2))
         ordered[:, shape.order] = points.reshape(ordered.shape) * self.model.length
-        return ordered[:, : len(shape.order) - self.model.yields]  # the turns of roots are on no curve
+        return ordered
 
     def full_state(self, system: System) -> Array:
         """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""

@@ -15,7 +15,7 @@ from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
-from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, build, check_names
+from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, ROOTS, build, check_names, root_length
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import propped
 from spline_model.scene import Body, Effect, Scene, Strip
@@ -156,6 +156,7 @@ def compliant_mechanism(
         discretisation=grid,
         pre_strain=pre_strain,
         curling=tuple(name for name in names if name in CURLING),
+        root_length=root_length(**given.get(ROOTS, {})) if ROOTS in names else 0.0,
     )
     attachments: list[Effect] = []
     for strip, _, _ in design.pieces:

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System, compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.discretisation import require_uncut
-from spline_model.effects import DrivenDisplacement, DrivenRotation, RootCompliance
+from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import Problem, Space
@@ -81,8 +81,6 @@ class ImpulseSolver:
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
             raise InvalidParameter("effects", ANTICLASTIC, held)
-        if system.scene.of(RootCompliance):
-            raise InvalidParameter("effects", "root_compliance", held)
         self.mechanism, self.system, self.form = mechanism, system, form
         self.problem = Problem.of(self.motion, soft=soft, sweeps=sweeps, tolerance=tolerance)
         sizes = {"N": len(self.problem.unit), "Q": len(self.problem.mass), "R": len(self.problem.rows)}

@@ -246,7 +246,10 @@ def _body_stiffness(model: Reduced, states: Array, body: str) -> Array:
     found = tangents[:, own[:, None], own]
     if rest.size:
         inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
-        regular = np.linalg.cond(inner, 1) < SINGULAR
+        # beside a unit, as all is of its order that is not round-off: a single small number has no condition
+        padded = np.pad(inner, ((0, 0), (0, 1), (0, 1)))
+        padded[:, -1, -1] = model.energy
+        regular = np.linalg.cond(padded, 1) < SINGULAR
         moves = np.linalg.solve(inner[regular], beside[regular])
         found[regular] -= beside[regular].swapaxes(1, 2) @ moves
         found[~regular] = np.nan

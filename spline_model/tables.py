@@ -15,7 +15,6 @@ from spline_model.effects import (
     Clamp,
     DrivenDisplacement,
     DrivenRotation,
-    RootCompliance,
     StripGravity,
 )
 from spline_model.effects.base import Constraint, Load
@@ -29,7 +28,7 @@ Indices = NDArray[np.int64]
 
 END, INNER, BODY, ROW = range(4)
 """Columns of ``ClampTable.place``."""
-SIGN, ACROSS, ALONG, DIRECTION, YIELDING = range(5)
+SIGN, ACROSS, ALONG, DIRECTION = range(4)
 """Columns of ``ClampTable.numbers``."""
 PLACES = ("coordinate", "row", "turns")
 """Columns of whole numbers of the other two tables."""
@@ -39,9 +38,9 @@ class ClampTable(NamedTuple):
     """One row a clamp, C in all.
 
     place (C, 4): indices in z of x of the end's control point, of its neighbour and of the body, -1 for the
-    ground, and of the first of its three multipliers. numbers (C, 5): sign, +1 at the start of a strip and -1
+    ground, and of the first of its three multipliers. numbers (C, 4): sign, +1 at the start of a strip and -1
     at its end, so that sign * (inner - end) points along C'; clamped point from the body's centre [m];
-    angle of m at rest [rad]; compliance of the root [rad/(N m)], 0 for a clamp that holds.
+    angle of m at rest [rad].
     """
 
     place: Indices
@@ -51,7 +50,6 @@ class ClampTable(NamedTuple):
     def of(cls, scene: Scene) -> Self:
         """The clamped strip ends of a scene."""
         places, numbers = [], []
-        yielding = {(e.strip, e.end): e.compliance for e in scene.of(RootCompliance)}
         for i, clamp in enumerate(scene.of(Constraint)):
             if not isinstance(clamp, Clamp):
                 continue
@@ -65,11 +63,10 @@ class ClampTable(NamedTuple):
             body = -1 if clamp.to == GROUND else scene.layout.bodies[clamp.to]
             places.append((start + 2 * end, start + 2 * inner, body, scene.layout.multipliers[i][0]))
             point = strip.control_points[end] - centre
-            yields = yielding.get((clamp.strip, clamp.end), 0.0)
-            numbers.append((sign, *point, np.arctan2(along[1], along[0]), yields))
+            numbers.append((sign, *point, np.arctan2(along[1], along[0])))
         return cls(
             place=np.array(places, dtype=np.int64).reshape(-1, 4),
-            numbers=np.array(numbers, dtype=float).reshape(-1, 5),
+            numbers=np.array(numbers, dtype=float).reshape(-1, 4),
         )
 
     @property

@@ -13,7 +13,6 @@ from spline_model.effects.boundary import TipForce as TipForce
 from spline_model.effects.elastic import MEASURES as MEASURES
 from spline_model.effects.elastic import Bending as Bending
 from spline_model.effects.elastic import MixedStretching as MixedStretching
-from spline_model.effects.elastic import RootCompliance as RootCompliance
 from spline_model.effects.elastic import StrainEnergy as StrainEnergy
 from spline_model.effects.elastic import Stretching as Stretching
 from spline_model.effects.moving import BodyDamper as BodyDamper

@@ -1,21 +1,19 @@
-"""Strain energies of a strip: bending, with its roots, and stretching."""
+"""Strain energies of a strip: bending and stretching."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
-from spline_model.effects.plate import rigidity_of, rigidity_rate
+from spline_model.effects.plate import STEP, rigidity_of
 from spline_model.errors import (
     require_choice,
     require_count,
     require_not_negative,
-    require_positive,
 )
 from spline_model.strip.laws import curl_factors
 
@@ -51,22 +49,11 @@ class Curl:
     flattening: float
     reach: tuple[float, float] = (0.0, 1.0)
 
-    def rigidity(self, degree: int, u: Array) -> Array:
-        """The rigidity at small curvature over EI at u (P,) of the piece, as a curve of that degree can
-        follow it."""
-        if self.clamped == 0.0:
-            return np.ones(len(u))
-        return rigidity_of(self.clamped, self.poisson_ratio, degree, u, self.reach)
-
-    def rigidity_rate(self, degree: int, u: Array) -> Array:
-        """Its derivative by log(b/L) at u (P,)."""
-        if self.clamped == 0.0:
-            return np.zeros(len(u))
-        return rigidity_rate(self.clamped, self.poisson_ratio, degree, u, self.reach)
-
     def drop(self, degree: int, u: Array) -> Array:
-        """nu^2 g at u (P,): the part of the plate's rigidity that the curl takes at small curvature."""
-        return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * self.rigidity(degree, u))
+        """nu^2 g at u (P,) of the piece: the part of the plate's rigidity that the curl takes at small
+        curvature, as a curve of that degree can follow it."""
+        stiffer = rigidity_of(self.clamped, self.poisson_ratio, degree, u, self.reach)
+        return np.asarray(1.0 - (1.0 - self.poisson_ratio**2) * stiffer)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,6 +93,11 @@ class Bending(StrainEnergy):
     natural_curvature : kappa_n of the stress-free strip, counted from kappa_0 at rest,
         as the natural strain is counted from the length at rest.                  [1/m]
     curl : of the section; None for a narrow beam's, whose rigidity is EI all along.
+    roots : length of the root at start and end over the strip's, 0 where there is none: a strip that is cut
+        from the same block as its bodies turns in its roots as if it were longer, by 0.416 t at a sharp
+        corner (half-plane in plane stress). Their compliance is a peak at the clamp, which is projected
+        along the strip (``spline_model.effects.plate``). Left out: what a root gives way along and across
+        the strip. Source: O'Donnell, J Appl Mech 27 (1960) 461.
     gauss_points : Gauss points.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
@@ -117,6 +109,7 @@ class Bending(StrainEnergy):
     flexural_rigidity: float
     natural_curvature: float = 0.0
     curl: Curl | None = None
+    roots: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
@@ -124,9 +117,20 @@ class Bending(StrainEnergy):
 
     def rigidity_at(self, degree: int, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that degree [N m^2]."""
-        if self.curl is None:
-            return np.full(len(u), self.flexural_rigidity)
-        return self.flexural_rigidity * self.curl.rigidity(degree, u)
+        return self.flexural_rigidity * self._stiffer(degree, u)
+
+    def rigidity_rates(self, degree: int, u: Array) -> tuple[Array, Array, Array]:
+        """The rigidity over EI at u (P,), and its derivatives by log(b/L) and by log(t/L)."""
+        by_width = self._stiffer(degree, u, width=1.0 + 1j * STEP)
+        by_thickness = self._stiffer(degree, u, thickness=1.0 + 1j * STEP)
+        return self._stiffer(degree, u), by_width.imag / STEP, by_thickness.imag / STEP
+
+    def _stiffer(self, degree: int, u: Array, *, width: complex = 1.0, thickness: complex = 1.0) -> Array:
+        """The rigidity over EI at u (P,), of sides in these parts of those given."""
+        curl, reach = self.curl, (0.0, 1.0) if self.curl is None else self.curl.reach
+        ratio, nu = (0.0, 0.0) if curl is None else (curl.clamped * width, curl.poisson_ratio)
+        root, tip = self.roots
+        return rigidity_of(ratio, nu, degree, u, reach, (root * thickness, tip * thickness))
 
     def moment_at(self, strain: Array, degree: int, u: Array) -> Array:
         """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
@@ -134,30 +138,6 @@ class Bending(StrainEnergy):
         if self.curl is not None and self.curl.flattening > 0.0:
             moment *= curl_factors(strain, self.curl.drop(degree, u)[:, None], self.curl.flattening)[1]
         return np.asarray(moment)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class RootCompliance(Potential):
-    """A rotational spring between what a strip's end is clamped to and the end's tangent.
-
-        V = 1/2 psi^2 / c,      M = -psi / c                                         [J, N m]
-
-    with psi the angle from the clamp's direction to the tangent and c the compliance: the row of the clamp's
-    moment M becomes psi + c M = 0, exact for any angle. A strip that is cut from the same block as its bodies
-    turns in its roots as if it were longer, c = 0.416 t / EI at a sharp corner (half-plane in plane stress).
-    Its energy counts to that of bending.
-
-    Parameters: strip, end, compliance c > 0 [rad/(N m)].
-    Left out: what a root gives way along and across the strip.
-    Source: O'Donnell, J Appl Mech 27 (1960) 461.
-    """
-
-    strip: str
-    end: Literal["start", "end"]
-    compliance: float
-
-    def __post_init__(self) -> None:
-        require_positive("compliance", self.compliance, "rad/(N m)")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -55,6 +55,10 @@ DEGREE = 5
 MOST_STEPS = 30
 TOLERANCE = 1e-13
 """Of the two compliances, 1 / f; round-off is some 1e-15."""
+ROOT_DEGREE = 4
+"""Of the polynomial that a root's compliance is projected on: within 3.5e-4 of springs up to 45 degrees."""
+LEAST = 0.25
+"""Part of the compliance without roots below which that with roots does not fall between their peaks."""
 STEP = 1e-40
 """Of derivatives by a complex step: its square is beyond any round-off."""
 
@@ -222,35 +226,56 @@ def _graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Arra
 
 
 def rigidity_of(
-    ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
+    ratio: complex,
+    poisson_ratio: float,
+    degree: int,
+    u: Array,
+    reach: tuple[float, float] = (0.0, 1.0),
+    roots: tuple[complex, complex] = (0.0, 0.0),
 ) -> Array:
     """R / EI at u (P,) of a piece of a strip between shares of its length, as a curve of a degree follows it.
 
-    The compliance EI / R is projected on polynomials of the degree of the curvature under
+    ratio: b/L, 0 where no clamp holds the section flat; roots: lengths of the roots at its ends over its own,
+    whose compliance stands there as delta functions. The compliance EI / R is projected on polynomials of the
+    degree of the curvature under
     a linear moment, less one: the strip's own curvature M EI / R is then one that it can take, and it has
-    both factors exactly, however thin the layers are. With more control points it tends to R.
+    both factors exactly, however thin the layers are. With more control points it tends to R; the roots do
+    not go beyond ROOT_DEGREE, and as far as the compliance stays above LEAST of that without them.
     """
-    return _rigidity(ratio, poisson_ratio, degree, reach, u.tobytes())
-
-
-def rigidity_rate(
-    ratio: float, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
-) -> Array:
-    """Its derivative by log(b/L) at u (P,): that of the plate's discrete solution, exact to round-off."""
-    found = rigidity_of(ratio * (1.0 + 1j * STEP), poisson_ratio, degree, u, reach)
-    return np.asarray(found.imag / STEP)
+    if not ratio and not any(roots):
+        return np.ones(len(u))
+    return _rigidity(ratio, poisson_ratio, degree, reach, roots, u.tobytes())
 
 
 @lru_cache(maxsize=256)
 def _rigidity(
-    ratio: complex, poisson_ratio: float, degree: int, reach: tuple[float, float], at: bytes
+    ratio: complex,
+    poisson_ratio: float,
+    degree: int,
+    reach: tuple[float, float],
+    roots: tuple[complex, complex],
+    at: bytes,
 ) -> Array:
-    profile, most = profile_of(ratio, poisson_ratio), max(2, degree - 3)
-    s, weight = _graded(ratio.real, reach, 16 + most)
-    left, long = reach[0], reach[1] - reach[0]
-    shares = weight * profile.compliance(s) / long
-    coefficients = shares @ legendre.legvander(2.0 * (s - left) / long - 1.0, most)
-    values = legendre.legvander(2.0 * np.frombuffer(at) - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
-    rigidity = 1.0 / (values @ coefficients)
+    most = max(2, degree - 3)
+    count, sign = 2.0 * np.arange(most + 1) + 1.0, (-1.0) ** np.arange(most + 1)
+    plate = count * (_projected(ratio, poisson_ratio, most, reach) if ratio else np.eye(1, most + 1)[0])
+    peaks = count * (roots[0] * sign + roots[1])
+    values, fine = (
+        legendre.legvander(2.0 * u - 1.0, most) for u in (np.frombuffer(at), np.linspace(0.0, 1.0, 65))
+    )
+    compliance = plate
+    for highest in range(min(most, ROOT_DEGREE), -1, -1):
+        compliance = plate + np.where(np.arange(most + 1) <= highest, peaks, 0.0)
+        if ((fine @ compliance).real >= LEAST * (fine @ plate).real).all():
+            break
+    rigidity = 1.0 / (values @ compliance)
     rigidity.setflags(write=False)
     return np.asarray(rigidity)
+
+
+def _projected(ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float]) -> Array:
+    """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials."""
+    profile, (left, right) = profile_of(ratio, poisson_ratio), reach
+    s, weight = _graded(ratio.real, reach, 16 + most)
+    shares = weight * profile.compliance(s) / (right - left)
+    return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

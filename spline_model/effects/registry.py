@@ -25,6 +25,7 @@ Parameters = Mapping[str, Mapping[str, Any]]
 Builder = Callable[..., "Iterable[Effect]"]
 Vector = tuple[float, float]
 
+ROOTS = "root_compliance"
 MONOLITHIC = 0.416
 """Length of a root over the thickness: half-plane in plane stress, sharp corner, of any Poisson ratio."""
 
@@ -38,6 +39,7 @@ def _bending(design: Design) -> Iterator[Effect]:
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
             curl=_curl(design, whole, reach),
+            roots=_roots(design, whole, reach),
             measure=grid.measure,
             gauss_points=grid.quadrature,
         )
@@ -71,6 +73,17 @@ def _curl(design: Design, strip: StripDesign, reach: tuple[float, float]) -> ela
     return elastic.Curl(
         poisson_ratio=nu, clamped=ratio * clamped, flattening=flattening * flattens, reach=reach
     )
+
+
+def _roots(design: Design, strip: StripDesign, reach: tuple[float, float]) -> tuple[float, float]:
+    """Lengths of the roots at the ends of a ``reach`` of a strip over its length; 0 where there is none."""
+    if design.root_length == 0.0:
+        return 0.0, 0.0
+    if strip.thickness is None:
+        needs = "width and thickness [m] for root_compliance"
+        raise InvalidParameter(f"thickness of {strip.name}", None, needs)
+    length = design.root_length * strip.thickness / (strip.length * (reach[1] - reach[0]))
+    return length * (reach[0] == 0.0), length * (reach[1] == 1.0 and strip.tip is not None)
 
 
 def _stretching(design: Design) -> Iterator[Effect]:
@@ -208,19 +221,19 @@ def _taken_up(design: Design) -> Iterator[Effect]:
 
 
 def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterator[Effect]:
-    """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0."""
-    if root != "monolithic" and not (not isinstance(root, str) and is_finite(root) and root >= 0.0):
+    """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0, which
+    bending takes up."""
+    del design, root
+    yield from ()
+
+
+def root_length(root: float | str = "monolithic") -> float:
+    """Length of a root over the thickness, of what "root_compliance" may be given."""
+    if isinstance(root, str) and root == "monolithic":
+        return MONOLITHIC
+    if isinstance(root, str) or not is_finite(root) or root < 0.0:
         raise InvalidParameter("root", root, '"monolithic" or a number >= 0, its length over the thickness')
-    length = MONOLITHIC if isinstance(root, str) else root
-    for strip, _, reach in design.pieces:
-        if strip.thickness is None:
-            needs = "width and thickness [m] for root_compliance"
-            raise InvalidParameter(f"thickness of {strip.name}", None, needs)
-        compliance = length * strip.thickness / strip.flexural_rigidity
-        if compliance > 0.0 and reach[0] == 0.0:
-            yield elastic.RootCompliance(strip=strip.name, end="start", compliance=compliance)
-        if compliance > 0.0 and reach[1] == 1.0 and strip.tip is not None:
-            yield elastic.RootCompliance(strip=strip.name, end="end", compliance=compliance)
+    return root
 
 
 REGISTRY: dict[str, Builder] = {

@@ -25,7 +25,6 @@ from spline_model.motion.forces import (
     add_ties,
     move,
     place,
-    turn_roots,
 )
 from spline_model.reduced.assembly import scatter
 from spline_model.strip.compiled import part
@@ -104,33 +103,29 @@ def _set_drift(s, at, w, strips, room):
 
 
 @part()
-def _gather_ends(v, lead, follow, c):
+def _gather_ends(v, follow, c):
     """The four end points' entries of a covector (n,), inner points condensed by W."""
     n = v.size
     c[INNER_ROOT], c[INNER_TIP], c[TIP], c[ROOT] = v[1], v[n - 2], v[n - 1], v[0]
-    if lead == 1:
-        c[INNER_ROOT] = c[INNER_TIP] = 0.0
     for p in range(4):
         total = 0.0
         for i in range(follow.shape[1]):
-            total += follow[p, i] * v[i + lead]
+            total += follow[p, i] * v[i + 2]
         c[p] -= total
 
 
 @part()
 def _strip_system(s, tied, grid, strips, room):
     """The equations of a strip's ends in g and h, and their size; its inner points are eliminated."""
-    lead, force, follow, drift = strips.lead, room.force[s], grid.follow[s], room.drift[s]
+    force, follow, drift = room.force[s], grid.follow[s], room.drift[s]
     count = follow.shape[1]
     tip, root, m = strips.tips[s] >= 0, strips.roots[s] >= 0, grid.ends[s]
     first, g, h, c = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector
     ends, lever, line, inner = room.ends[s], room.lever[s], room.line, room.inner
     outer = 2 + 3 * tip + 3 * root
     _mass_of_ends(m, ends, lever, tip, root, first, h)
-    if lead == 1:  # the first two unknowns are none
-        h[0, 0] = h[1, 1] = 1.0
     for k in range(2):
-        _gather_ends(force[k], lead, follow, c[k])
+        _gather_ends(force[k], follow, c[k])
         d0, d1, d2, d3 = drift[k, 0], drift[k, 1], drift[k, 2], drift[k, 3]
         for p in range(4):
             c[k, p] = -(c[k, p] + m[p, 0] * d0 + m[p, 1] * d1 + m[p, 2] * d2 + m[p, 3] * d3)
@@ -142,7 +137,7 @@ def _strip_system(s, tied, grid, strips, room):
             for i in range(count):
                 inner[k, i] = 0.0
                 for j in range(count):
-                    inner[k, i] += grid.white[s, i, j] * force[k, j + lead]
+                    inner[k, i] += grid.white[s, i, j] * force[k, j + 2]
     for a in range(tied):
         row, mine = room.rows[s, a], (first + outer - 2 if a == 0 else a + 1)
         left = -room.rest[a]
@@ -192,11 +187,10 @@ def _solve_ends(s, tied, size, poses, strips, room, push):
 @part()
 def _follow_ends(s, at, tied, grid, strips, room, push):
     """Accelerations of a strip's ends (2, 4) from its unknowns and its bodies, and of its own coordinates."""
-    lead, count, y, last = strips.lead, grid.follow.shape[2], room.y, at + strips.own - 2
+    count, y, last = grid.follow.shape[2], room.y, at + strips.own - 2
     force, drift, tip, root = room.force[s], room.drift[s], strips.tips[s], strips.roots[s]
     c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
-    if lead == 2:
-        push[last], push[last + 1] = y[0], y[1]
+    push[last], push[last + 1] = y[0], y[1]
     for i in range(2):
         c[i, INNER_ROOT] = drift[i, INNER_ROOT] + y[0] * ends[0, 2 + i]
         c[i, INNER_TIP] = drift[i, INNER_TIP] + y[1] * ends[1, 2 + i]
@@ -216,7 +210,7 @@ def _follow_ends(s, at, tied, grid, strips, room, push):
         for j in range(count):
             total = 0.0
             for q in range(count):
-                total -= grid.inverse[s, j, q] * force[i, q + lead] + grid.white[s, q, j] * pull[i, q]
+                total -= grid.inverse[s, j, q] * force[i, q + 2] + grid.white[s, q, j] * pull[i, q]
             for p in range(4):
                 total -= grid.follow[s, p, j] * c[i, p]
             push[at + 2 * j + i] = total
@@ -250,8 +244,6 @@ def accelerate(r, w, sharpness, grid, strips, masses, room, push):
         at, tied = poses + s * own, grid.tied[s]
         place(s, at, r, grid, strips, room)
         add_forces(s, tied, strips, grid, room.points[s], room.at, room.axial[s], room.force[s])
-        if strips.lead == 1:
-            turn_roots(s, strips, room, tangent, load)
         _set_drift(s, at, w, strips, room)
         if tied > 0:
             move(s, at, w, strips, room)

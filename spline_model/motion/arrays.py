@@ -24,9 +24,9 @@ class Flexures(NamedTuple):
     d1, d2 (G, n) derivatives of the basis, pairs (G, 4, n n) the products d1 d1,
     d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
     ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
-    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; own: W; lead: the first control point
-    among them, 2, or 1 where roots turn by spring (S, 2) in EI/L; outer: leading axial forces that stay
-    beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n); dead (S, 2, n).
+    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; own: W; outer: leading axial
+    forces that stay beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n);
+    dead (S, 2, n).
     """
 
     d1: Array
@@ -43,8 +43,6 @@ class Flexures(NamedTuple):
     compliance: Array
     gain: Array
     own: int
-    lead: int
-    spring: Array
     outer: int
     free_from: int
     relaxation: Array
@@ -134,7 +132,7 @@ class Scratch(NamedTuple):
 
     dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; pose, points, move, at,
     ends: of the step's end; steady, force, stiff: inertia, drag and loads; maps: D, and derivatives at the
-    end; roots: as of ``spline_model.motion.project``; blocks xx, xy, yx, yy of the tangent; half of it in
+    end; blocks xx, xy, yx, yy of the tangent; half of it in
     element coordinates; pull, along: of the axial forces and of their strains; residual, reduced: of it at
     the bodies with the strips condensed; system and x, free: what is solved; held: 1 where a drive holds.
     """
@@ -149,7 +147,6 @@ class Scratch(NamedTuple):
     force: Annotated[Array, "S 2 n"]
     stiff: Annotated[Array, "S n n"]
     maps: Annotated[Array, "S 2 16"]
-    roots: Annotated[Array, "S 2 7"]
     blocks: Annotated[Array, "4 nn"]
     half: Annotated[Array, "2n E"]
     pull: Annotated[Array, "K 2n"]

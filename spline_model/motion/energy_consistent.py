@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 
 from spline_model.motion.mechanism import Moving
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
-from spline_model.motion.project import PUSH, root_energy
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
 from spline_model.motion.strip import look_at, place_strip
@@ -42,7 +41,7 @@ def forward(state, strips, masses, work):
         at = masses.inertia.size + s * (own + modes) + own - 2
         for e in range(2):
             body = strips.roots[s] if e == 0 else strips.tips[s]
-            if strips.lead == 2 and body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
+            if body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
                 return False
         for p in range(strips.weight.size):
             if not work.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]:
@@ -63,8 +62,6 @@ def clamp_forces(s, state, strips, work):
         state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
             maps[7] if body >= 0 else 1.0
         )
-        if strips.lead == 1:
-            state.clamped[s, e, 2] = -work.roots[s, e, PUSH]
 
 
 @part()
@@ -140,8 +137,6 @@ def store(state, strips, masses, work, row):
     work.energies[0] = 0.0
     for s in range(strips.roots.size):
         look_at(s, state.at[s], state.at[s], 0.0, strips, work.energies)
-        if strips.lead == 1:
-            work.energies[0] += root_energy(s, state.points[s], state.ends[s], strips)
         for i in range(n):
             for k in range(2):
                 row[at], row[at + 1] = state.points[s, k, i], state.velocity[s, k, i]
@@ -245,10 +240,9 @@ class Stepper(Moves):
         """Why the last step was given up, and what helps."""
         model, own = self._model, self._model.strips.own
         slowest = np.nan_to_num(self._work.at[:, :, 4] / model.strips.speed).min(axis=1)
-        if model.strips.lead == 2:
-            after = (self._state.y + self._work.dy)[len(model.masses.inertia) :]
-            ends = after.reshape(len(slowest), -1)[:, own - 2 : own]
-            slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
+        after = (self._state.y + self._work.dy)[len(model.masses.inertia) :]
+        ends = after.reshape(len(slowest), -1)[:, own - 2 : own]
+        slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
         return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
 
     def switch(self, time: float, span: float) -> None:

@@ -18,7 +18,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from spline_model.motion.arrays import Array, Flexures, Masses, Places, sizes_of, zeros
-from spline_model.motion.project import root_turn
 from spline_model.strip.compiled import part
 from spline_model.strip.laws import bending_law, stretching_law
 
@@ -34,11 +33,10 @@ INNER_ROOT, INNER_TIP, TIP, ROOT = range(4)
 class Grid(NamedTuple):
     """Constants of S strips.
 
-    d1, d2 (n, G) derivatives of the basis; modes (S, K, G) and stiffness
-    (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow
-    (S, 4, I) W^T, ends (S, 4, 4) the end points' mass, of which 1 and n - 2 are none where roots turn, but
-    inner ones; ties (S, K, 4 + I, G) d1 times the modes, of end points less W^T of the inner ones, and C^T of
-    these; frames (S, 2, 4) point and s-direction of root and tip in the frame of their body or the ground;
+    d1, d2 (n, G) derivatives of the basis; modes (S, K, G) and stiffness (S, K) of the axial forces; inverse
+    (S, I, I) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end
+    points' mass; ties (S, K, 4 + I, G) d1 times the modes, of end points less W^T of the inner ones, and C^T
+    of these; frames (S, 2, 4) point and s-direction of root and tip in the frame of their body or the ground;
     tied (S,) leading axial forces that hold the length; outer: 1 with any, the first stays with the bodies.
     """
 
@@ -59,16 +57,15 @@ class Grid(NamedTuple):
     def of(cls, strips: Flexures) -> Grid:
         """The constants of strips with mass."""
         n = strips.mass.shape[1]
-        inner, ends = np.arange(strips.lead, n - strips.lead), np.array([1, n - 2, n - 1, 0])
-        held = np.array([strips.lead == 2, strips.lead == 2, True, True])
+        inner, ends = np.arange(2, n - 2), np.array([1, n - 2, n - 1, 0])
         d1, d2 = (np.ascontiguousarray(each.T) for each in (strips.d1, strips.d2))
         inverse = np.array([np.linalg.inv(b[np.ix_(inner, inner)]) for b in strips.mass])
-        across = strips.mass[:, inner[:, None], ends] * held
-        follow, of_ends = inverse @ across, strips.mass[:, ends[:, None], ends] * held[:, None] * held
+        across = strips.mass[:, inner[:, None], ends]
+        follow, of_ends = inverse @ across, strips.mass[:, ends[:, None], ends]
         white = np.linalg.cholesky(inverse).transpose(0, 2, 1)
         stretch = strips.modes.transpose(0, 2, 1)[:, :, None] * d1
         with_ends = np.einsum("sip,skig->skpg", follow, stretch[:, :, inner])
-        at_ends = stretch[:, :, ends] * held[:, None] - with_ends
+        at_ends = stretch[:, :, ends] - with_ends
         whitened = np.einsum("sij,skjg->skig", white, stretch[:, :, inner])
         frames = np.zeros((len(strips.roots), 2, 4))
         for e, (frame, sign) in enumerate(((strips.root, 1.0), (strips.tip, -1.0))):
@@ -148,9 +145,9 @@ def _place_end(body, frame, turns, end, lever, at, s):
 @part()
 def place(s, at, r, grid, strips, room):
     """Control points of a strip, its ends and their levers."""
-    n, lead, points, last = strips.mass.shape[1], strips.lead, room.points[s], at + strips.own - 2
-    for i in range(lead, n - lead):
-        points[0, i], points[1, i] = r[at + 2 * (i - lead)], r[at + 2 * (i - lead) + 1]
+    n, points, last = strips.mass.shape[1], room.points[s], at + strips.own - 2
+    for i in range(2, n - 2):
+        points[0, i], points[1, i] = r[at + 2 * i - 4], r[at + 2 * i - 3]
     for e in range(2):
         body = strips.roots[s] if e == 0 else strips.tips[s]
         outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
@@ -160,29 +157,26 @@ def place(s, at, r, grid, strips, room):
         if body >= 0:
             x, y = x + r[3 * body], y + r[3 * body + 1]
         points[0, outer], points[1, outer] = x, y
-        if lead == 2:
-            points[0, inner], points[1, inner] = x + reach * end[2], y + reach * end[3]
+        points[0, inner], points[1, inner] = x + reach * end[2], y + reach * end[3]
 
 
 @part()
 def move(s, at, w, strips, room):
     """Velocities of the control points of a strip that was placed."""
-    n, lead, speed, lever = strips.mass.shape[1], strips.lead, room.speed[s], room.lever[s]
+    n, speed, lever = strips.mass.shape[1], room.speed[s], room.lever[s]
     last = at + strips.own - 2
-    for i in range(lead, n - lead):
-        speed[0, i], speed[1, i] = w[at + 2 * (i - lead)], w[at + 2 * (i - lead) + 1]
+    for i in range(2, n - 2):
+        speed[0, i], speed[1, i] = w[at + 2 * i - 4], w[at + 2 * i - 3]
     for e in range(2):
         body = strips.roots[s] if e == 0 else strips.tips[s]
         outer, inner = (0, 1) if e == 0 else (n - 1, n - 2)
         rate, turn = w[last + e], 4 - 4 * e
         for k in range(2):
             speed[k, outer] = 0.0
-            if lead == 2:
-                speed[k, inner] = rate * room.ends[s, e, 2 + k]
+            speed[k, inner] = rate * room.ends[s, e, 2 + k]
             if body >= 0:
                 spin = w[3 * body + 2]
                 speed[k, outer] += w[3 * body + k] + spin * lever[turn + 2 + k]
-            if body >= 0 and lead == 2:
                 speed[k, inner] += w[3 * body + k] + spin * lever[turn + k]
 
 
@@ -265,23 +259,3 @@ def add_ties(s, tied, sharpness, strips, grid, speed, at, rows, rest):
                 x += grid.ties[s, k, i, p] * at[G0, p]
                 y += grid.ties[s, k, i, p] * at[G1, p]
             rows[k, 0, i], rows[k, 1, i] = x, y
-
-
-@part()
-def turn_roots(s, strips, room, tangent, load):
-    """Add the springs of both roots (``spline_model.motion.project``); a free end's body has no angle."""
-    points, force, n = room.points[s], room.force[s], strips.mass.shape[1]
-    for e in range(2):
-        end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
-        if body >= strips.free_from:
-            tangent[3 * body + 2, 3 * body + 2] = 1.0
-            continue
-        x, y = points[0, inner] - points[0, end], points[1, inner] - points[1, end]
-        moment = strips.spring[s, e] * root_turn(room.ends[s, e], x, y)
-        push = moment / (x * x + y * y)
-        force[0, inner] -= push * y
-        force[1, inner] += push * x
-        force[0, end] += push * y
-        force[1, end] -= push * x
-        if body >= 0:
-            load[3 * body + 2] += moment

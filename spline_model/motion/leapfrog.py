@@ -184,7 +184,7 @@ def require_explicit(motion: Motion) -> None:
 def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
     """Reduced coordinates r and rates w, (R,) each, of a state with its velocities."""
     strips, q, n = model.strips, len(model.masses.inertia), model.strips.mass.shape[1]
-    own, lead, modes = strips.own, strips.lead, strips.compliance.shape[1]
+    own, modes = strips.own, strips.compliance.shape[1]
     y, rate = state.y, state.rate.copy()
     places, rates = [y[:q]], [rate]
     for s in range(len(strips.roots)):
@@ -195,9 +195,9 @@ def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
             along = state.ends[s, e, 2:]
             chord, square = velocity[:, inner] - velocity[:, outer], along @ along
             reaches.append(along @ chord / square)
-            if body >= strips.free_from:  # a free end is its own body, without an angle where roots turn
+            if body >= strips.free_from:  # a free end is its own body
                 turn = along[0] * chord[1] - along[1] * chord[0]
-                turn = turn / (square * y[at + own - 2 + e]) if lead == 2 else 0.0
+                turn /= square * y[at + own - 2 + e]
                 rate[3 * body : 3 * body + 3] = *velocity[:, outer], turn
-        rates += [velocity[:, lead : n - lead].T.ravel(), np.array(reaches if lead == 2 else ())]
+        rates += [velocity[:, 2 : n - 2].T.ravel(), np.array(reaches)]
     return np.concatenate(places), np.concatenate(rates)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import Bezier
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, StrainEnergy, StripDamping
+from spline_model.effects import Bending, Clamp, MixedStretching, StrainEnergy, StripDamping
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Flexures, Masses, Scratch, State, sizes_of, zeros
@@ -93,11 +93,11 @@ class Moving:
                     turn = np.arctan2(chord[1], chord[0]) - frame[2]
                     turn = np.arctan2(np.sin(turn), np.cos(turn))
                     pose[3 * body : 3 * body + 3] = *points[at], turn
-            reach = np.hypot(*np.transpose(chords)) / strips.reach[s] if strips.lead == 2 else ()
+            reach = np.hypot(*np.transpose(chords)) / strips.reach[s]
             effects = [i for i, e in enumerate(system.scene.of(MixedStretching)) if e.strip == strip.name]
             forces = np.concatenate([z[system.layout.axial_modes(i)] for i in effects] or [np.zeros(0)])
             own += [
-                points[strips.lead : -strips.lead].ravel(),
+                points[2:-2].ravel(),
                 reach,
                 np.linalg.solve(self.to_modes[s], forces) * length / energy,
             ]
@@ -161,8 +161,7 @@ def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
     scene, layout, weight = system.scene, system.layout, system.weight
     length, energy, names = system.scales.length, system.scales.energy, [s.name for s in scene.strips]
     basis, points = _grid(system)
-    yields = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
-    made, _, to_modes = strips_of(system, shape_of(basis, points, False), basis, points, ends)
+    made, _, to_modes = strips_of(system, shape_of(basis, points), basis, points, ends)
     n, count, c = basis.control_points, len(names), made.compliance
     small = c < LEAST_COMPLIANCE
     outer = c.shape[1] if small[:, made.split :].any() else made.split if small.any() else 0
@@ -171,15 +170,12 @@ def _strips(motion: Motion, ends: Ends) -> dict[str, Any]:
     places = [layout.strip(name) for name in names]
     weight = weight if weight.size else np.zeros(layout.coordinate_count)
     mass, drag = length**2 / energy, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
-    springs = [[yields.get((name, end), energy) / energy for end in ("start", "end")] for name in names]
     strips = Flexures(
         **_tables(basis, points),
         **{name: np.ascontiguousarray(getattr(made, name)) for name in AS_IN_STATICS},
         curl=np.ascontiguousarray(made.along[..., DROP : CURL + 1]),
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
-        own=2 * (n - 2) if yields else 2 * n - 6,
-        lead=1 if yields else 2,
-        spring=np.array(springs),
+        own=2 * n - 6,
         outer=outer,
         free_from=len(scene.bodies),
         relaxation=np.array([time.get(name, 0.0) for name in names]),

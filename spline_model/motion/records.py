@@ -17,7 +17,6 @@ from spline_model.motion.start import Motion
 from spline_model.newton import Laps
 from spline_model.read_only import kept
 from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
-from spline_model.tables import YIELDING
 
 Array = NDArray[np.float64]
 
@@ -98,10 +97,7 @@ def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
 
 
 def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array]:
-    """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m], and their rates.
-
-    Of a root that turns those of its end alone (2, R).
-    """
+    """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m], and their rates."""
     clamps = motion.system.tables.clamps
     end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
     pose, rate = (q[:, body : body + 3].T if body >= 0 else np.zeros((3, len(q))) for q in (z, v))
@@ -116,8 +112,6 @@ def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Arra
     turned = rate[2] * np.array((-arm[1], arm[0]))
     position = (*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0]))
     velocity = (*(u - rate[:2] - turned), m[0] * w[1] - m[1] * w[0] - rate[2] * (m * d).sum(axis=0))
-    if clamps.numbers[c, YIELDING] > 0.0:  # a root turns
-        position, velocity = position[:2], velocity[:2]
     return np.array(position), np.array(velocity)
 
 

@@ -17,7 +17,7 @@ from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
-from spline_model.tables import YIELDING, DriveTable, LoadTable
+from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -129,8 +129,7 @@ class Motion:
         gradient, hessian = np.empty(size), np.empty((size, size))
         points, clamps = self.system.tables.points, self.system.tables.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
-        holding = clamps.row[clamps.numbers[:, YIELDING] == 0.0]
-        rows = np.concatenate((clamps.row, clamps.row + 1, holding + 2, drives.row[held])).astype(int)
+        rows = np.concatenate((clamps.row, clamps.row + 1, clamps.row + 2, drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0
         jacobian = -hessian[rows][:, :count]
         rate = np.zeros(len(rows))
@@ -187,10 +186,6 @@ class Motion:
         free[count:end] = self.rigidity @ gradient[count:end]
         fixed = np.ones(layout.size, dtype=bool)
         fixed[:count], fixed[count:end] = False, np.diag(self.rigidity) == 0
-        clamps = system.tables.clamps
-        for row, compliance in zip(clamps.row + 2, clamps.numbers[:, YIELDING], strict=True):
-            if compliance > 0.0:
-                free[row], fixed[row] = gradient[row] / compliance, False
         return free, np.flatnonzero(fixed)
 
     def _with_first_loads(self) -> System:

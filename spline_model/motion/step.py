@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.project import condense, to_reduced, turn_bodies, turn_roots
+from spline_model.motion.project import condense, to_reduced
 from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, move_strip
 from spline_model.newton import ROUND_OFF
@@ -115,11 +115,7 @@ def _add_strip(s, poses, h, state, strips, work):
                 total += work.stiff[s, i, j] * move[k, j]
             force[k, i] = total
     add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
-    if strips.lead == 1:
-        turn_roots(s, dy, state, strips, work)
     size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
-    if strips.lead == 1:
-        turn_bodies(s, strips, work)
     for i in range(own):
         raw[at + i] = g[i]
     for k in range(modes):
@@ -233,7 +229,7 @@ def improve(strips, masses, work):
 def guess_step(h, state, strips, masses, work):
     """Initial dy from velocities and accelerations."""
     poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, lead, dy = strips.own, strips.lead, work.dy
+    own, dy = strips.own, work.dy
     for i in range(poses):
         dy[i] = h * (state.rate[i] + 0.5 * h * state.push[i])
         if i % 3 == 2:
@@ -243,8 +239,8 @@ def guess_step(h, state, strips, masses, work):
         for k in range(2):
             for i in range(n):
                 work.move[s, k, i] = h * (state.velocity[s, k, i] + 0.5 * h * state.acceleration[s, k, i])
-        for i in range(lead, n - lead):
-            dy[at + 2 * (i - lead)], dy[at + 2 * (i - lead) + 1] = work.move[s, 0, i], work.move[s, 1, i]
+        for i in range(2, n - 2):
+            dy[at + 2 * i - 4], dy[at + 2 * i - 3] = work.move[s, 0, i], work.move[s, 1, i]
         for e in range(2):
             end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
             tx, ty = state.ends[s, e, 2], state.ends[s, e, 3]
@@ -261,8 +257,7 @@ def guess_step(h, state, strips, masses, work):
                 angle = 2.0 * math.atan(0.5 * dy[3 * body + 2])
                 c, d = math.cos(angle), math.sin(angle)
                 along = (c * tx - d * ty) * cx + (d * tx + c * ty) * cy
-            if lead == 2:
-                dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
+            dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
         for k in range(modes):
             dy[at + own + k] = state.y[at + own + k]
 

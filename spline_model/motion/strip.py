@@ -8,9 +8,7 @@ c = 2 tan(dphi / 2):
     P_inner - P_end = s t(phi):    d(P_inner - P_end) = mean(s) c mean(t') + ds mean(t)
 
 so that D^T times the forces on the control points is free of the clamps' reactions, and no energy is
-lost. The tangent is D^T (K T) with T = dP/d(dy) at the step's end, and (dD)^T times the forces. Where
-roots turn (``effects.RootCompliance``) P_inner is free like the points between, and a spring turns it
-(``spline_model.motion.project``).
+lost. The tangent is D^T (K T) with T = dP/d(dy) at the step's end, and (dD)^T times the forces.
 """
 
 from __future__ import annotations
@@ -39,12 +37,11 @@ def _end_frame(body, frame, reach, pose, out):
 
 
 @called()
-def _move_end(body, end, inner, lead, s0, ds, dy, e0, e1, points, move, maps):
+def _move_end(body, end, inner, s0, ds, dy, e0, e1, points, move, maps):
     """Move an end and its inner point by D dy, and fill D and T of it.
 
     A map has eight numbers: directions in which the inner point moves with s and with c, the outer one
-    with c, and mean(s). e0, e1: frames before and after; D in maps[:8], T in maps[8:]. lead: 1 if the inner
-    point is free, and not moved.
+    with c, and mean(s). e0, e1: frames before and after; D in maps[:8], T in maps[8:].
     """
     c = slope = 0.0
     ux = uy = 0.0
@@ -57,11 +54,6 @@ def _move_end(body, end, inner, lead, s0, ds, dy, e0, e1, points, move, maps):
         ux, uy = -0.5 * (e0[1] + e1[1]), 0.5 * (e0[0] + e1[0])
         move[0, end], move[1, end] = dy[3 * body] + c * ux, dy[3 * body + 1] + c * uy
     maps[12], maps[13] = -slope * e1[1], slope * e1[0]
-    if lead == 1:
-        for i in range(12):
-            maps[i] = 0.0
-        maps[4], maps[5], maps[7] = ux, uy, slope
-        return
     move[0, inner] = move[0, end] - s * c * ty + ds * tx
     move[1, inner] = move[1, end] + s * c * tx + ds * ty
     maps[0], maps[1] = tx, ty
@@ -73,22 +65,22 @@ def _move_end(body, end, inner, lead, s0, ds, dy, e0, e1, points, move, maps):
 @part()
 def move_strip(s, at, state, strips, work):
     """Control points at the step's end, their changes, and the maps of both ends, from dy and y + dy."""
-    n, lead, own = strips.mass.shape[1], strips.lead, strips.own
+    n, own = strips.mass.shape[1], strips.own
     y, dy, move, points = state.y, work.dy, work.move[s], work.points[s]
     ends = work.ends[s]
     _end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], work.pose, ends[0])
     _end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], work.pose, ends[1])
     root, tip = at + own - 2, at + own - 1
     _move_end(
-        strips.roots[s], 0, 1, lead, y[root], dy[root], dy, state.ends[s, 0], ends[0], points, move,
+        strips.roots[s], 0, 1, y[root], dy[root], dy, state.ends[s, 0], ends[0], points, move,
         work.maps[s, 0],
     )  # fmt: skip
     _move_end(
-        strips.tips[s], n - 1, n - 2, lead, y[tip], dy[tip], dy, state.ends[s, 1], ends[1], points, move,
+        strips.tips[s], n - 1, n - 2, y[tip], dy[tip], dy, state.ends[s, 1], ends[1], points, move,
         work.maps[s, 1],
     )  # fmt: skip
-    for i in range(lead, n - lead):
-        move[0, i], move[1, i] = dy[at + 2 * (i - lead)], dy[at + 2 * (i - lead) + 1]
+    for i in range(2, n - 2):
+        move[0, i], move[1, i] = dy[at + 2 * i - 4], dy[at + 2 * i - 3]
     for k in range(2):
         for i in range(n):
             points[k, i] = state.points[s, k, i] + move[k, i]
@@ -97,7 +89,7 @@ def move_strip(s, at, state, strips, work):
 @called()
 def place_strip(s, y, at, strips, points, ends):
     """Control points (2, n) and end frames (2, 4) of a strip in the state y."""
-    n, lead = strips.mass.shape[1], strips.lead
+    n = strips.mass.shape[1]
     root, tip = at + strips.own - 2, at + strips.own - 1
     _end_frame(strips.roots[s], strips.root[s], strips.reach[s, 0], y, ends[0])
     _end_frame(strips.tips[s], strips.tip[s], -strips.reach[s, 1], y, ends[1])
@@ -108,8 +100,8 @@ def place_strip(s, y, at, strips, points, ends):
             end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
             points[k, end] = y[3 * body + k] + ends[e, k] if body >= 0 else fixed
             points[k, inner] = points[k, end] + y[root if e == 0 else tip] * ends[e, 2 + k]
-        for i in range(lead, n - lead):
-            points[k, i] = y[at + 2 * (i - lead) + k]
+        for i in range(2, n - 2):
+            points[k, i] = y[at + 2 * i - 4 + k]
 
 
 @called()

@@ -21,11 +21,9 @@ from spline_model.strip.element import (
     HESSIAN_AT,
     LAST,
     MODES,
-    POINTS,
     PULL_AT,
-    SPRING,
 )
-from spline_model.strip.ends import by_roots, place_points, to_ends
+from spline_model.strip.ends import place_points, to_ends
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
 
@@ -47,8 +45,6 @@ def to_coordinates(s, v, last, strips, local):
     for i in range(first):
         g[i] = v[i]
     to_ends(v, first, local.map[s], strips.tips[s] >= 0, strips.roots[s] >= 0, g, first, last)
-    if strips.numbers[s, SPRING] > 0.0:
-        by_roots(v, first, local.nodal[s, POINTS], g)
 
 
 @part()
@@ -152,8 +148,6 @@ def _add_product(s, a, points, shape, strips, local, covector):
     _product_at(*(four(lanes, 0) + h + more + (force,) + slopes + (strain,)))
     for i in range(covector.size):
         covector[i] = 0.0
-    for i in range(2 * (strips.numbers[s, SPRING] > 0.0)):
-        covector[i] = strips.numbers[s, SPRING + i] * points[i]
     add_slopes(d1.shape[0], d1, d2, slopes, covector)
     for k in range(a.size):
         total = -strips.compliance[s, k] * a[k]
@@ -163,43 +157,38 @@ def _add_product(s, a, points, shape, strips, local, covector):
 
 
 @part()
-def _rates_of_end(s, e, at, rate, strips):
-    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift, turn of its body, turn of its root."""
+def _rates_of_end(s, e, rate, strips):
+    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
     body = strips.tips[s] if e else strips.roots[s]
-    x = y = turn = bend = 0.0
+    x = y = turn = 0.0
     if body >= 0:
         x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
-    if strips.numbers[s, SPRING] > 0.0:
-        bend = rate[at + e]
-    return x, y, turn, bend
+    return x, y, turn
 
 
 @part()
 def _move_points(s, at, own, rate, strips, local):
     """Rates of the control points of strip s, into ALONG, by those of its w, from rate[at] on, and poses."""
-    ends, points, along, first = local.map[s], local.nodal[s, POINTS], local.nodal[s, ALONG], own - 2
+    ends, along, first = local.map[s], local.nodal[s, ALONG], own - 2
     for i in range(first):
         along[i] = rate[at + i]
     for e in range(2):
         inner, outer, stick, lever, reach = first + 2 * e, first + 6 - 2 * e, 2 * e, 8 - 4 * e, at + first + e
-        x, y, turn, bend = _rates_of_end(s, e, at, rate, strips)
-        across, ahead = points[outer + 1] - points[inner + 1], points[inner] - points[outer]
-        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach] + across * bend
-        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach] + ahead * bend
+        x, y, turn = _rates_of_end(s, e, rate, strips)
+        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach]
+        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach]
         along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
 
 
 @part()
-def _turn_ends(s, at, own, last, rate, strips, local):
+def _turn_ends(s, own, last, rate, strips, local):
     """Add to g what the gradient does as the directions turn in which the ends' points move."""
     ends, along, f, g = local.map[s], local.nodal[s, ALONG], local.nodal[s, GRADIENT], local.reduced[s, LAST]
     for e in range(2):
         inner, outer, stick = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e
-        x, y, turn, bend = _rates_of_end(s, e, at, rate, strips)
+        x, y, turn = _rates_of_end(s, e, rate, strips)
         fx, fy, ux, uy = f[inner], f[inner + 1], along[inner], along[inner + 1]
-        g[own - 2 + e] += (turn + bend) * (ends[stick] * fy - ends[stick + 1] * fx)
-        if strips.numbers[s, SPRING] > 0.0:
-            g[e] += (ux - along[outer]) * fy - (uy - along[outer + 1]) * fx
+        g[own - 2 + e] += turn * (ends[stick] * fy - ends[stick + 1] * fx)
         if (strips.tips[s] if e else strips.roots[s]) >= 0:
             pose = last + 2 if e else last + 3 * (strips.tips[s] >= 0) + 2
             g[pose] += (ux - x) * fy - (uy - y) * fx
@@ -221,7 +210,7 @@ def _take_product(rate, load_rate, arrays):
         _move_points(s, at, own, rate, strips, local)
         _add_product(s, rate[at + own : at + own + modes], along, shape, strips, local, covector)
         to_coordinates(s, covector, last, strips, local)
-        _turn_ends(s, at, own, last, rate, strips, local)
+        _turn_ends(s, own, last, rate, strips, local)
 
 
 @part()

@@ -17,7 +17,7 @@ from spline_model.pivot import cross_axis_pivot
 from spline_model.reduced.many import Designs
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS, SECTION, Section, place_of
-from spline_model.strip.element import PER_U, REACH, ROOT, SPRING, STRETCHING, TIP
+from spline_model.strip.element import PER_U, REACH, ROOT, STRETCHING, TIP
 
 Array = NDArray[np.float64]
 
@@ -118,16 +118,14 @@ def designs_of(model: Reduced, base: Given, given: Given, rotation: Array) -> De
 
 
 def _numbers(model: Reduced, base: Given, given: Given, energy: Array, wide: Array) -> Array:
-    """The numbers of ``Strips`` of each design (D, S, 14 + 2 n), by its energy (D,) and length (D, 1)."""
+    """The numbers of ``Strips`` of each design (D, S, 12 + 2 n), by its energy (D,) and length (D, 1)."""
     strips, turn = model.strips, given.chord / base.chord
     force = energy[:, None] / wide * (model.length / model.energy)
     area, _, modulus = np.moveaxis(given.section / base.section, -1, 0)
-    springs = given.rigidity / base.rigidity * (base.thickness / given.thickness)
     numbers = np.repeat(strips.numbers[None], len(given.ends), axis=0)
     numbers[..., STRETCHING] *= area * modulus / force
     numbers[..., PER_U:] *= (area * np.abs(turn) / force)[..., None]
-    numbers[..., REACH:SPRING] *= (np.abs(turn) * (model.length / wide))[..., None]
-    numbers[..., SPRING:PER_U] *= (springs * (model.energy / energy)[:, None])[..., None]
+    numbers[..., REACH:PER_U] *= (np.abs(turn) * (model.length / wide))[..., None]
     for end, (place, carriers) in enumerate(((ROOT, strips.roots), (TIP, strips.tips))):
         numbers[..., place + 2] += np.angle(turn)
         for s, body in enumerate(carriers):
@@ -148,7 +146,7 @@ def _starts(model: Reduced, base: Given, given: Given, turn: NDArray[Any], wide:
         w, inner = model.places(s)[0], strip.control_points[2:-2] - base.ends[0, s, 0]
         moved = turn[:, s, None] * (inner[:, 0] + 1j * inner[:, 1])
         points = (np.stack((moved.real, moved.imag), axis=-1) + given.ends[:, s, None, 0]) / wide[..., None]
-        start[:, w.start + 2 * model.yields : w.stop - 2] = points.reshape(count, -1)
+        start[:, w.start : w.stop - 2] = points.reshape(count, -1)
         for end, carriers in enumerate((strips.roots, strips.tips)):
             if carriers[s] >= own:  # a free end is its own body
                 place = 3 * carriers[s]

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, BodyGravity, MixedStretching, RootCompliance, Stretching
+from spline_model.effects import Bending, BodyGravity, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, ends_of, shape_of, strips_of
 from spline_model.scene import Scene
-from spline_model.strip.element import SPRING, Local, Shape, Strips
+from spline_model.strip.element import Local, Shape, Strips
 from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
@@ -50,11 +50,6 @@ class Reduced:
         own, modes = 2 * len(self.shape.order) - 6, int(self.strips.compliance.shape[1])
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
-
-    @property
-    def yields(self) -> bool:
-        """Whether roots turn, by the first two of w: see ``spline_model.strip.ends``."""
-        return bool(self.strips.numbers[0, SPRING] > 0.0)
 
     @cached_property
     def drive_length(self) -> Array:
@@ -122,7 +117,7 @@ def _reduced(system: System) -> Reduced | None:
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
-    shape = shape_of(basis, points, bool(scene.of(RootCompliance)))
+    shape = shape_of(basis, points)
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
     bodies = _bodies_of(system, strips.outer * len(scene.strips))
@@ -204,7 +199,7 @@ def at_rest(model: Reduced) -> Array:
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
         w, _ = model.places(s)
-        y[w] = [*([0.0] * (2 * model.yields)), *(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
+        y[w] = [*(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
     return y
 
 
@@ -228,9 +223,6 @@ def from_unknowns(model: Reduced, z: Array) -> Array:
                 place = 3 * bodies[s]
                 y[..., place : place + 2] = points[..., outer, :]
                 y[..., place + 2] = np.arctan2(np.sin(turn), np.cos(turn))
-            if model.yields:
-                turn = turn - (y[..., 3 * bodies[s] + 2] if bodies[s] >= 0 else 0.0)
-                y[..., w.start + end] = np.arctan2(np.sin(turn), np.cos(turn))
         effects = [i for i, e in enumerate(scene.of(MixedStretching)) if e.strip == strip.name]
         forces = np.concatenate([z[..., layout.axial_modes(i)] for i in effects] or [z[..., :0]], axis=-1) * (
             model.length / model.energy

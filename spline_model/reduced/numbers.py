@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes, Bezier, SlideModes
 from spline_model.compile import System
-from spline_model.effects import Bending, Clamp, MixedStretching, RootCompliance, Stretching
+from spline_model.effects import Bending, Clamp, MixedStretching, Stretching
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
 from spline_model.strip.element import (
@@ -28,7 +28,6 @@ from spline_model.strip.element import (
     ROOT,
     SECOND,
     SPEED,
-    SPRING,
     STRAIN,
     STRETCHING,
     TIP,
@@ -84,22 +83,18 @@ def ends_of(system: System) -> Ends:
 
 
 def in_order(points: Array, shape: Shape) -> Array:
-    """Values at control points (..., n, k) in the order of elimination, zero at one on no curve."""
-    on_none = np.zeros((*points.shape[:-2], 1, points.shape[-1]))
-    return np.asarray(np.concatenate((points, on_none), axis=-2)[..., shape.order, :])
+    """Values at control points (..., n, k) in the order of elimination."""
+    return np.asarray(points[..., shape.order, :])
 
 
 @lru_cache(maxsize=64)
-def shape_of(basis: Bezier, points: int, yields: bool) -> Shape:
-    """The basis at the Gauss points; yields: with a point on no curve (``spline_model.strip.ends``)."""
+def shape_of(basis: Bezier, points: int) -> Shape:
+    """The basis at the Gauss points."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     u, weight = basis.gauss_rule(points)
     values = [basis.evaluate(u, k) for k in range(3)] + [1.0 / n - basis.areas(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
-    if yields:
-        order = np.concatenate(([n], order))
-        tables = np.concatenate((np.zeros((*tables.shape[:2], 1)), tables), axis=2)
     return Shape.of(order, tables, np.array((u, weight)))
 
 
@@ -153,10 +148,9 @@ def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: A
 
 
 def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
-    """The numbers of ``Strips``, (S, 14 + 2 n)."""
+    """The numbers of ``Strips``, (S, 12 + 2 n)."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
-    roots = {(e.strip, e.end): 1.0 / e.compliance for e in scene.of(RootCompliance)}
     mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
     consistent = {e.strip: e for e in scene.of(Stretching)}
     for row, strip in zip(numbers, scene.strips, strict=True):
@@ -171,8 +165,6 @@ def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
             row[place : place + 3] = x / length, y / length, direction
         row[REACH] = math.dist(points[1], points[0]) / length
         row[REACH + 1] = math.dist(points[-1], points[-2]) / length
-        if roots:  # a free end has a frame of its own, against which it does not turn
-            row[SPRING:PER_U] = [roots.get((name, end), energy) / energy for end in ("start", "end")]
     if system.weight.size:
         _add_dead(system, shape, numbers)
     return numbers

@@ -20,7 +20,7 @@ from spline_model.reduced.assembly import condensed, element_of, recovered
 from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.condense import SINGULAR
-from spline_model.strip.element import LAST, ROOT, SPRING, TIP
+from spline_model.strip.element import LAST, ROOT, TIP
 from spline_model.strip.ends import end_frame
 
 Array = NDArray[np.float64]
@@ -163,14 +163,13 @@ def _settle(s, at, own, y, strips, shape, local, room, tolerance, counters):
     size, least = own + strips.compliance.shape[1], np.inf
     for i in range(size):
         room.saddle[i] = room.best[i] = y[at + i]
-    end_frame(strips.roots[s], strips.numbers[s], ROOT, 0.0, y, room.place)
+    end_frame(strips.roots[s], strips.numbers[s], ROOT, y, room.place)
     for turn in range(2):
         for i in range(size):
             y[at + i] = room.saddle[i]
-        first = 2 if strips.numbers[s, SPRING] > 0.0 else 0  # behind the turns of roots
-        count = (own - first) // 2 - 1
+        count = own // 2 - 1
         for i in range(count):
-            u, place = (i + 1) / (count + 1), at + first + 2 * i
+            u, place = (i + 1) / (count + 1), at + 2 * i
             push = (1.0 - 2.0 * turn) * NUDGE * 16.0 * (u * (1.0 - u)) ** 2
             y[place] -= push * room.place[3]
             y[place + 1] += push * room.place[2]
@@ -226,9 +225,9 @@ def _parts_of(before, pose, strips, room):
         for end in range(2):
             body = strips.tips[s] if end else strips.roots[s]
             frame = TIP if end else ROOT
-            end_frame(body, strips.numbers[s], frame, 0.0, before, room.place)
+            end_frame(body, strips.numbers[s], frame, before, room.place)
             x, y = room.place[0], room.place[1]
-            end_frame(body, strips.numbers[s], frame, 0.0, pose, room.place)
+            end_frame(body, strips.numbers[s], frame, pose, room.place)
             longest = max(longest, math.hypot(room.place[0] - x, room.place[1] - y) / LONGEST_SHIFT)
     for i in range(2, pose.size, 3):
         longest = max(longest, abs(pose[i] - before[i]) / LONGEST_TURN)

@@ -196,12 +196,9 @@ def coordinates_by(model: Reduced, y: Array) -> Array:
             angle = y[3 * body + 2] if body >= 0 else 0.0
             cos, sin = np.cos(angle), np.sin(angle)
             arm = np.array([cos * px - sin * py, sin * px + cos * py])
-            turn += y[w.start + end] if model.yields else 0.0
             stick = strips.reach[s, end] * np.array([np.cos(angle + turn), np.sin(angle + turn)])
             stick *= 1.0 - 2.0 * end
             mine[inner, :, w.stop - 2 + end] = stick
-            if model.yields:
-                mine[inner, :, w.start + end] = reach[end] * np.array((-stick[1], stick[0]))
             if body >= 0:
                 for point, lever in ((outer, arm), (inner, arm + reach[end] * stick)):
                     mine[point, :, 3 * body : 3 * body + 2] += np.eye(2)

@@ -63,8 +63,8 @@ class Elements:
     y: Array
 
     def _own(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """Free control points (n - 4, 2, ...), first the turns of the roots where they yield, shares of the
-        ends' reach (2, 1, ...), axial forces (K, ...) and poses (2, 3, ...) of what carries root and tip; the
+        """Free control points (n - 4, 2, ...), shares of the ends'
+        reach (2, 1, ...), axial forces (K, ...) and poses (2, 3, ...) of what carries root and tip; the
         ground's is zero."""
         y = np.concatenate((np.moveaxis(y, -1, 0), np.zeros((3, *y.shape[:-1]))))
         w = y[self._places[0]]
@@ -94,14 +94,10 @@ class Elements:
     def _ends(self) -> tuple[Array, Array, Array]:
         """Arms from the bodies' centres to the clamped points, and sticks from there to the inner control
         points at rest, (2, 2, ...); shares of these (2, 1, ...)."""
-        free, share, _, pose = self._state
+        _, share, _, pose = self._state
         frames, angle = self.varied.frames, pose[:, 2]
         arm = turned(angle, frames[:, 0], frames[:, 1])
-        return arm, turned(angle + self._turns(free) + frames[:, 2], self.varied.reach, 0.0), share
-
-    def _turns(self, free: Array) -> Array | float:
-        """Of the free control points those that are the turns of the roots, (2, ...)."""
-        return free[0] if self.model.yields else 0.0
+        return arm, turned(angle + frames[:, 2], self.varied.reach, 0.0), share
 
     @cached_property
     def points(self) -> Array:
@@ -159,11 +155,7 @@ class Elements:
         """Bending and axial energy (P, S) of all strips [EI/L]."""
         weight = self.model.shape.weight
         bending, axial = (np.tensordot(weight, law[0], 1) for law in (self._bending, self._stretching))
-        return bending.sum(axis=0) + self._of_roots(self._state[0]), axial.sum(axis=0)
-
-    def _of_roots(self, free: Array) -> Array:
-        """1/2 k psi^2 (P, S) of the roots' turns psi, the first of ``free``."""
-        return np.asarray(0.5 * (self.varied.springs * self._turns(free) ** 2).sum(axis=(0, 1)))
+        return bending.sum(axis=0), axial.sum(axis=0)
 
     def residual(self) -> tuple[Array, Array]:
         """Derivative of the strips' energy by y (P, S, Y); force and moment of the clamps at root and tip on
@@ -177,8 +169,6 @@ class Elements:
         g = _times(shape.d1.T, first) + _times(shape.d2.T, m * _across(curve.first)) - self.varied.dead
         inner, clamped = g[n - 4 : n - 2], g[: n - 3 : -1]
         force, moment = inner + clamped, share[:, 0] * _cross(stick, inner)
-        if self.model.yields:
-            g[0] = self.varied.springs * self._turns(self._state[0]) + moment
         w, a, poses = self._places
         out = np.zeros((self.model.size + 3, *g.shape[3:]), dtype=complex)
         out[w[:-2]] = g[: n - 4].reshape(len(w) - 2, *g.shape[2:])
@@ -204,11 +194,10 @@ class Elements:
         shape, varied, curve = self.model.shape, self.varied, self.curve
         (arm, stick, share), (free, push, pull, pose) = self._ends, self._own(rate)
         spin = pose[:, 2:]
-        swing = spin + (free[0][:, None] if self.model.yields else 0.0)
         clamped = pose[:, :2] + spin * _across(arm)
-        turn = swing * _across(stick)
+        turn = spin * _across(stick)
         back = -(spin**2) * arm
-        bent = back + 2.0 * push * turn - share * swing**2 * stick
+        bent = back + 2.0 * push * turn - share * spin**2 * stick
         twice = _ordered(0.0 * free, bent, back)
         by = Curve.of(shape.d1, shape.d2, _ordered(free, clamped + push * stick + share * turn, clamped))
         by2 = Curve.of(shape.d1, shape.d2, twice)
@@ -225,7 +214,7 @@ class Elements:
             for c, by_force in zip(varied.compliance, self._forces(pull), strict=True):
                 density = density + by_force * (2.0 * v1 - c * by_force * varied.speed)
         total = np.tensordot(shape.weight, density, 1) - (varied.dead * twice).sum(axis=(0, 1))
-        return np.asarray(total.sum(axis=0) + 2.0 * self._of_roots(free))
+        return np.asarray(total.sum(axis=0))
 
 
 def _ordered(free: Array, inner: Array, clamped: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced
-from spline_model.strip.element import CURL, PER_U, SPRING
+from spline_model.strip.element import CURL
 
 Array = NDArray[np.float64]
 Numbers = NDArray[Any]
@@ -166,8 +166,8 @@ def _shape_rates(pivot: Pivot, name: str) -> tuple[Array, Array]:
 class Varied(NamedTuple):
     """What of ``Strips`` knows the design, (..., G, P, 1) each: by P parameters, the same at all states.
 
-    speed, stretching; bending, the rigidity EI, and aspect, the width over the length over that of the
-    design, which ``along`` takes; curl as in ``Strips``; springs (2, ...) of the roots; compliance (2, ...)
+    speed, stretching; bending, the rigidity EI, and aspect and slimness, width and thickness over the length
+    over those of the design, which ``along`` takes; curl as in ``Strips``; compliance (2, ...)
     of stretching and sliding; frames (2, 3, ...) of root and tip; reach (2, ...), away from the clamp;
     dead (n, 2, ...); area [m^2], second_moment [m^4]; longer: the length over that of the design. All else
     is over L and EI/L of the design.
@@ -176,8 +176,8 @@ class Varied(NamedTuple):
     speed: Numbers
     bending: Numbers
     aspect: Numbers
+    slimness: Numbers
     curl: Numbers
-    springs: Numbers
     stretching: Numbers
     compliance: Numbers
     frames: Numbers
@@ -209,8 +209,8 @@ class Varied(NamedTuple):
             speed=_spread(strips.speed.T) * longer,
             bending=_spread(rigidity) * second_moment * modulus,
             aspect=width / longer,
+            slimness=thickness / longer,
             curl=_spread(strips.along[:, 0, CURL]) * width**2 / thickness,
-            springs=_spread(strips.numbers[:, SPRING:PER_U].T) * second_moment * modulus / thickness,
             stretching=_spread(strips.stretching) * area * modulus,
             compliance=_spread(compliance) * np.stack((1.0 / area, longer**2 / second_moment)) / modulus,
             frames=frames + step * moved,
@@ -224,15 +224,18 @@ class Varied(NamedTuple):
     def along(self, model: Reduced, u: Numbers) -> tuple[Numbers, Numbers]:
         """The rigidity at small curvature and the drop of ``curl_law`` at u (Q,), (Q, G, P, 1)."""
         scene = model.system.scene
-        degree, bends = scene.strips[0].basis.degree, {e.strip: e.curl for e in scene.of(Bending)}
-        curls = [bends[strip.name] for strip in scene.strips]
-        stiffer, rate = np.ones((len(u), len(curls))), np.zeros((len(u), len(curls)))
-        for s, curl in enumerate(curls):
-            if curl is not None:
-                stiffer[:, s], rate[:, s] = curl.rigidity(degree, u), curl.rigidity_rate(degree, u)
-        plate = _spread(np.array([0.0 if curl is None else curl.poisson_ratio**2 for curl in curls]))
-        found = _spread(stiffer) + _spread(rate) * (self.aspect - 1.0)
-        return found * self.bending, 1.0 - (1.0 - plate) * found
+        degree, known = scene.strips[0].basis.degree, {e.strip: e for e in scene.of(Bending)}
+        bends = [known[strip.name] for strip in scene.strips]
+        curls = [replace(bend, roots=(0.0, 0.0)) for bend in bends]  # which roots take no part in
+        square = [0.0 if bend.curl is None else bend.curl.poisson_ratio**2 for bend in bends]
+        rigid, curled = (self._rigidity(each, degree, u) for each in (bends, curls))
+        return rigid * self.bending, 1.0 - (1.0 - _spread(np.array(square))) * curled
+
+    def _rigidity(self, bends: Sequence[Bending], degree: int, u: Numbers) -> Numbers:
+        """The rigidity of strips at u (Q,) over that of beams, (Q, G, P, 1)."""
+        rates = zip(*(each.rigidity_rates(degree, u) for each in bends), strict=True)
+        found, by_width, by_thickness = (_spread(np.stack(each, axis=1)) for each in rates)
+        return found + by_width * (self.aspect - 1.0) + by_thickness * (self.slimness - 1.0)
 
 
 def _spread(values: Numbers) -> Numbers:

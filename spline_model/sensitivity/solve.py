@@ -120,10 +120,9 @@ def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tu
     left = force[0].real.copy()
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
     at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
-    on_curve = slice(int(model.yields), None)
-    order = model.shape.order[on_curve]
+    order = model.shape.order
     given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, order] / model.length
-    apart = still.points[on_curve, ..., 0, :].real.transpose(3, 0, 1, 2) - given
+    apart = still.points[..., 0, :].real.transpose(3, 0, 1, 2) - given
     free = np.setdiff1d(np.arange(model.size), bodies.held)
     wrong = np.maximum(np.abs(left[:, free]).max(axis=1), np.abs(apart).max(axis=(1, 2, 3)))
     if not wrong.max() <= LARGEST_RESIDUAL:

@@ -32,7 +32,7 @@ WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
 SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
 """Places along a strip, ``Strips.along``."""
-STRETCHING, STRAIN, ROOT, TIP, REACH, SPRING, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12, 14
+STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
@@ -91,10 +91,9 @@ class Strips(NamedTuple):
     along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
     axial force at the Gauss points, orthonormal, of which ``split`` belong to the stretching, the others to
     the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are
-    condensed; numbers (S, 14 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
+    condensed; numbers (S, 12 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
     root and tip, three each, the clamped point in its body's frame, or on the ground, and direction at rest
-    [rad]; reach, k_A and k_B; springs of both roots in EI/L, or 0
-    (``spline_model.strip.ends``); dead load per du, two, and on the control points; roots, tips (S,) bodies
+    [rad]; reach, k_A and k_B; dead load per du, two, and on the control points; roots, tips (S,) bodies
     or GROUNDED; coupled: leading axial forces that stay beside w, where a compliance is too small to divide
     by; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
     """
@@ -153,7 +152,7 @@ class Strips(NamedTuple):
     @property
     def reach(self) -> Array:
         """k_A, k_B (S, 2)."""
-        return self.numbers[:, REACH:SPRING]
+        return self.numbers[:, REACH:PER_U]
 
     @property
     def dead(self) -> Array:

@@ -1,25 +1,20 @@
-"""Between control points of a strip and coordinates of its element: its ends and what goes with them.
-
-Where roots turn (``effects.RootCompliance``) the strips have a point more, the first in the order of
-elimination, that is on no curve: its coordinates are the turns of the root's and the tip's frame against
-their bodies, of which P_1 and P_(n-2) know alone. Springs hold them.
-"""
+"""Between control points of a strip and coordinates of its element: its ends and what goes with them."""
 
 from __future__ import annotations
 
 import math
 
 from spline_model.strip.compiled import called, part
-from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, SPRING, TIP
+from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, TIP
 
 
 @called()
-def end_frame(body, numbers, end, bend, pose, out):
+def end_frame(body, numbers, end, pose, out):
     """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y.
 
-    end: ROOT or TIP, where the end's frame stands in the strip's numbers; bend: what its root turns [rad].
+    end: ROOT or TIP, where the end's frame stands in the strip's numbers.
     """
-    px, py, turn = numbers[end], numbers[end + 1], numbers[end + 2] + bend
+    px, py, turn = numbers[end], numbers[end + 1], numbers[end + 2]
     if body < 0:
         out[0], out[1], out[4], out[5] = px, py, 0.0, 0.0
         out[2], out[3] = math.cos(turn), math.sin(turn)
@@ -52,46 +47,6 @@ def to_ends(v, at, ends, tip, root, out, first, behind):
         out[k + 2] = ends[8] * v[at] + ends[9] * v[at + 1] + ends[10] * v[at + 6] + ends[11] * v[at + 7]
 
 
-@called()
-def by_roots(v, at, points, out):
-    """Add a covector's entries at P_1 and P_(n-2), from v[at] on, in the turns of both roots to out[:2]."""
-    for e in range(2):
-        inner, outer = at + 2 * e, at + 6 - 2 * e
-        x, y = points[inner] - points[outer], points[inner + 1] - points[outer + 1]
-        out[e] += x * v[inner + 1] - y * v[inner]
-
-
-@called()
-def _add_roots(s, at, special, behind, tip, root, strips, local):
-    """Add the turns of both roots to the element coordinates of strip s, which hold their springs already."""
-    hessian, h, ends, line = local.nodal[s], local.reduced[s], local.map[s], local.scratch[16]
-    points, gradient, axial, couplings = hessian[POINTS], hessian[GRADIENT], hessian.shape[1], h.shape[1]
-    by_roots(gradient, at, points, h[LAST])
-    for e in range(2):
-        inner, outer = at + 2 * e, at + 6 - 2 * e
-        x, y = points[inner] - points[outer], points[inner + 1] - points[outer + 1]
-        fx, fy = gradient[inner], gradient[inner + 1]
-        for j in range(2, at):
-            h[e, j] += x * hessian[j, inner + 1] - y * hessian[j, inner]
-        for i in range(8):
-            line[i] = x * hessian[inner + 1, at + i] - y * hessian[inner, at + i] if i < special else 0.0
-        to_ends(line, 0, ends, tip, root, h[e], at, behind)
-        mine, pull = 2 * e, x * fx + y * fy
-        h[e, e] += x * line[mine + 1] - y * line[mine] - pull
-        if e == 0:
-            x, y = points[at + 2] - points[at + 4], points[at + 3] - points[at + 5]
-            h[0, 1] += x * line[3] - y * line[2]
-            x, y = points[inner] - points[outer], points[inner + 1] - points[outer + 1]
-        h[e, at + e] += ends[mine] * fy - ends[mine + 1] * fx
-        if e == 0 and root:
-            h[0, behind + 2 + 3 * tip] -= pull
-        if e == 1 and tip:
-            h[1, behind + 2] -= pull
-        for k in range(strips.compliance.shape[1]):
-            row = hessian[axial + k]
-            h[couplings + k, e] += x * row[inner + 1] - y * row[inner]
-
-
 @part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
@@ -100,15 +55,14 @@ def place_points(s, w, pose, strips, local):
     inner = own - 2
     for i in range(inner):
         points[i] = w[i]
-    yields = numbers[SPRING] > 0.0
-    end_frame(strips.roots[s], numbers, ROOT, w[0] if yields else 0.0, pose, frame)
+    end_frame(strips.roots[s], numbers, ROOT, pose, frame)
     kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
     points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
     points[inner + 6], points[inner + 7] = frame[0], frame[1]
     ends[0], ends[1] = kx, ky
     ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
     ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
-    end_frame(strips.tips[s], numbers, TIP, w[1] if yields else 0.0, pose, frame)
+    end_frame(strips.tips[s], numbers, TIP, pose, frame)
     kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
     points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
     points[inner + 4], points[inner + 5] = frame[0], frame[1]
@@ -186,6 +140,4 @@ def to_element(s, moving, inner, strips, local):
     _own_rows(s, at, behind, tip, root, strips, local)
     _end_rows(s, at, behind, special, tip, root, local)
     _add_turns(s, at, behind, tip, root, local)
-    if strips.numbers[s, SPRING] > 0.0:
-        _add_roots(s, at, special, behind, tip, root, strips, local)
     return behind + 3 * tip + 3 * root

@@ -26,7 +26,6 @@ from spline_model.strip.element import (
     RIGIDITY,
     SPEED,
     SPEED_AT,
-    SPRING,
     STRAIN,
     STRETCHING,
     TANGENT_AT,
@@ -223,10 +222,6 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
-    for i in range(2 * (numbers[SPRING] > 0.0)):
-        push = numbers[SPRING + i] * points[i]
-        gradient[i] += push
-        bending += 0.5 * push * points[i]
     out[0] += bending
     out[1] += axial + _add_gaps(s, a, strips, local)
     out[3] = min(out[3], slowest)
@@ -236,8 +231,5 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
 def evaluate_points(s, a, moving, shape, strips, local, out):
     """The same with upper Hessian and coupling."""
     evaluate_residual(s, a, moving, shape, strips, local, out)
-    numbers, hessian = strips.numbers[s], local.nodal[s]
-    _add_hessian(moving, shape.products, local.pairs, local.lanes[s], hessian)
-    for i in range(2 * (numbers[SPRING] > 0.0)):
-        hessian[i, i] = numbers[SPRING + i]
+    _add_hessian(moving, shape.products, local.pairs, local.lanes[s], local.nodal[s])
     _add_axial(s, a.size, moving, shape, strips, local)
