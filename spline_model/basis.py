@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -47,28 +47,41 @@ class Bezier:
 
     def evaluate(self, u: Array, derivative: int = 0) -> Array:
         """Values of the derivative of each polynomial, shape (len(u), control_points)."""
-        u = np.asarray(u, dtype=float)[:, None]
-        if derivative > self.degree:
-            return np.zeros((len(u), self.control_points))
-        values = np.ones((len(u), 1))
-        for degree in range(1, self.control_points):
-            left = np.concatenate((np.zeros_like(u), values), axis=1)
-            right = np.concatenate((values, np.zeros_like(u)), axis=1)
-            if degree <= self.degree - derivative:
-                values = u * left + (1.0 - u) * right
-            else:
-                values = degree * (left - right)
-        return values
+        return _bernstein(self.control_points, derivative, np.asarray(u, dtype=float).tobytes())
 
     def areas(self, u: Array) -> Array:
         """Integrals of the polynomials from 0 to u, (len(u), control_points)."""
-        above = Bezier(control_points=self.control_points + 1).evaluate(u)
-        return np.asarray(np.cumsum(above[:, :0:-1], axis=1)[:, ::-1] / self.control_points)
+        return _areas(self.control_points, np.asarray(u, dtype=float).tobytes())
 
     def gauss_rule(self, points: int) -> tuple[Array, Array]:
         """Points and weights of Gauss and Legendre, exact for polynomials of degree 2 * points - 1."""
         nodes, weights = gauss_legendre(points)
         return (nodes + 1.0) / 2.0, weights / 2.0
+
+
+@lru_cache(maxsize=1024)
+def _bernstein(control_points: int, derivative: int, at: bytes) -> Array:
+    """Values of ``Bezier.evaluate`` at the numbers of a buffer; kept, for many ask for the same."""
+    u = np.frombuffer(at)[:, None]
+    none = np.zeros_like(u)
+    values, highest = np.ones((len(u), 1)), control_points - 1
+    for degree in range(1, control_points):
+        left, right = np.concatenate((none, values), axis=1), np.concatenate((values, none), axis=1)
+        rising = degree <= highest - derivative
+        values = u * left + (1.0 - u) * right if rising else degree * (left - right)
+    if derivative > highest:
+        values = np.zeros_like(values)
+    values.setflags(write=False)
+    return values
+
+
+@lru_cache(maxsize=256)
+def _areas(control_points: int, at: bytes) -> Array:
+    """Values of ``Bezier.areas``; kept."""
+    above = _bernstein(control_points + 1, 0, at)
+    areas = np.ascontiguousarray(np.cumsum(above[:, :0:-1], axis=1)[:, ::-1] / control_points)
+    areas.setflags(write=False)
+    return areas
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +96,15 @@ class LegendreModes:
 
     def evaluate(self, u: Array) -> Array:
         """Their values, shape (len(u), count)."""
-        return np.asarray(legendre.legvander(2.0 * np.asarray(u) - 1.0, self.count - 1), dtype=np.float64)
+        return _legendre(self.count, np.asarray(u, dtype=float).tobytes())
+
+
+@lru_cache(maxsize=256)
+def _legendre(count: int, at: bytes) -> Array:
+    """Values of ``LegendreModes.evaluate``; kept."""
+    values = np.asarray(legendre.legvander(2.0 * np.frombuffer(at) - 1.0, count - 1), dtype=np.float64)
+    values.setflags(write=False)
+    return values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,17 +124,19 @@ class SlideModes:
         """Number of unseen strains."""
         return self.basis.degree - self.axial.count
 
-    @cached_property
-    def _coefficients(self) -> Array:
-        """Of each function in the basis of C', shape (control_points - 1, count)."""
-        slopes = Bezier(control_points=self.basis.degree)
-        u, weight = slopes.gauss_rule(self.basis.degree + self.axial.count)
-        overlap = self.axial.evaluate(u).T @ (weight[:, None] * slopes.evaluate(u))
-        return np.asarray(np.linalg.svd(overlap)[2][self.axial.count :].T)
-
     def evaluate(self, u: Array) -> Array:
         """Their values, shape (len(u), count)."""
-        return Bezier(control_points=self.basis.degree).evaluate(u) @ self._coefficients
+        slopes = Bezier(control_points=self.basis.degree)
+        return slopes.evaluate(u) @ _unseen(self.basis.degree, self.axial.count)
+
+
+@lru_cache(maxsize=64)
+def _unseen(slopes: int, axial: int) -> Array:
+    """Of each slide mode beside ``axial`` modes in the basis of C' of so many slopes, (slopes, count)."""
+    basis, modes = Bezier(control_points=slopes), LegendreModes(count=axial)
+    u, weight = basis.gauss_rule(slopes + axial)
+    overlap = modes.evaluate(u).T @ (weight[:, None] * basis.evaluate(u))
+    return np.asarray(np.linalg.svd(overlap)[2][axial:].T)
 
 
 AxialModes = LegendreModes | SlideModes

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, Bezier
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
 from spline_model.scene import Scene, Strip
 from spline_model.strip.laws import curl_factors
@@ -110,7 +109,8 @@ def _rows(
 ) -> tuple[Indices, Array, Array, Array]:
     """Rows of a group, as wide as the most control points and the most modes of the scene."""
     strip = scene.strip(effect.strip)
-    weight, basis = _tables(strip.basis, effect.gauss_points)
+    u, weight = strip.basis.gauss_rule(effect.gauss_points)
+    basis = np.array([strip.basis.evaluate(u, order) for order in (1, 2)])
     count, width = len(weight), basis.shape[2]
     place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 11))
     modes = np.zeros((count, most))
@@ -123,7 +123,6 @@ def _rows(
     numbers[:, RELAXATION] = damping.get(strip.name, 0.0)
     if isinstance(effect, Bending):
         numbers[:, CURVATURE] += effect.natural_curvature
-        u = strip.basis.gauss_rule(effect.gauss_points)[0]
         numbers[:, RIGIDITY] = effect.rigidity_at(strip.basis.degree, u)
         if effect.curl is not None:
             numbers[:, DROP] = effect.curl.drop(strip.basis.degree, u)
@@ -135,33 +134,16 @@ def _rows(
     if isinstance(axial, MixedStretching):
         numbers[:, COMPLIANCE] = axial.axial_compliance
         place[:, MODE], place[:, MODES] = mode, axial.modes.count
-        modes[:, : axial.modes.count] = _modes_at(axial.modes, strip.basis, axial.gauss_points)
+        modes[:, : axial.modes.count] = axial.modes.evaluate(u)
     if width < widest:
         basis = np.pad(basis, ((0, 0), (0, 0), (0, widest - width)))
     return place, basis, modes, numbers
 
 
 @lru_cache(maxsize=256)
-def _tables(basis: Bezier, count: int) -> tuple[Array, Array]:
-    """Weights (P,), and both derivatives of the basis (2, P, n); kept."""
-    u, weight = basis.gauss_rule(count)
-    kept = (weight, np.array([basis.evaluate(u, order) for order in (1, 2)]))
-    for array in kept:
-        array.setflags(write=False)
-    return kept
-
-
-@lru_cache(maxsize=256)
-def _modes_at(modes: AxialModes, basis: Bezier, count: int) -> Array:
-    """Values of the modes (P, M); kept."""
-    values = modes.evaluate(basis.gauss_rule(count)[0])
-    values.setflags(write=False)
-    return values
-
-
-@lru_cache(maxsize=256)
 def _rest_of(strip: Strip, count: int) -> tuple[Array, Array]:
     """Speed and curvature (P,) at rest at ``count`` Gauss points; kept."""
-    tangent, bend = _tables(strip.basis, count)[-1] @ strip.control_points
+    u = strip.basis.gauss_rule(count)[0]
+    tangent, bend = (strip.basis.evaluate(u, order) @ strip.control_points for order in (1, 2))
     speed = np.hypot(tangent[:, 0], tangent[:, 1])
     return speed, (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / speed**3

@@ -137,9 +137,10 @@ class Scene:
 
     def weight_of(self, strip: str) -> NDArray[np.float64]:
         """Weight of a strip (2,) [N], spread evenly over u."""
-        length, total = float(self.strip(strip).share_of_length().sum()), np.zeros(2)
+        total = np.zeros(2)
         for effect in self.of(StripGravity):
             if effect.strip == strip:
+                length = float(self.strip(strip).share_of_length().sum())
                 total += effect.linear_density * length * np.asarray(effect.acceleration)
         return total
 

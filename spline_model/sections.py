@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.basis import AxialModes, Bezier
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
 from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
@@ -68,7 +66,7 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     for g, strip in enumerate(strips):
         own = states[:, layout.strip(strip.name)].reshape(count, -1, 2)
         points[:, :, :count, g], points[:, :, count, g] = own.transpose(1, 2, 0), strip.control_points
-    values = _basis_at(basis, stations.tobytes())
+    values = np.concatenate([basis.evaluate(stations, order) for order in range(3)])
     curve = (values @ points.reshape(len(points), -1)).reshape(3, len(stations), *points.shape[1:])
     (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)  # (P, S + 1, G)
     square = x1 * x1 + y1 * y1
@@ -116,8 +114,7 @@ def _balanced_moments(
 ) -> Array:
     """Bending moments (P, S, G) by balance, of control points (n, 2, S, G)."""
     basis = strips[0].basis
-    values = _basis_at(basis, stations.tobytes())[: len(stations)]
-    areas = _areas_at(basis, stations.tobytes())
+    values, areas = basis.evaluate(stations), basis.areas(stations)
     by_strip = [
         balance(
             points[..., g].transpose(2, 0, 1),
@@ -145,27 +142,8 @@ def _axial_forces(
         for i, mixed in enumerate(scene.of(MixedStretching)):
             if mixed.strip == strip.name:
                 axial = states[:, system.layout.axial_modes(i)]
-                force[:, g] += axial @ _modes_at(mixed.modes, stations.tobytes())
+                force[:, g] += axial @ mixed.modes.evaluate(stations).T
     return force
-
-
-@lru_cache(maxsize=64)
-def _basis_at(basis: Bezier, stations: bytes) -> Array:
-    """The basis and its first two derivatives at stations, one above the other (3 P, n); kept."""
-    u = np.frombuffer(stations)
-    return np.concatenate([basis.evaluate(u, order) for order in range(3)])
-
-
-@lru_cache(maxsize=64)
-def _areas_at(basis: Bezier, stations: bytes) -> Array:
-    """Integrals of the basis from the root to stations (P, n); kept."""
-    return basis.areas(np.frombuffer(stations))
-
-
-@lru_cache(maxsize=64)
-def _modes_at(modes: AxialModes, stations: bytes) -> Array:
-    """All axial modes at stations (K, P); kept."""
-    return np.ascontiguousarray(modes.evaluate(np.frombuffer(stations)).T)
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:

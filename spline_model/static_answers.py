@@ -242,7 +242,9 @@ def _body_stiffness(model: Reduced, states: Array, body: str) -> Array:
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
     own, held = np.arange(at, at + 3), model.bodies.held
     tangents = model.energy * body_tangents(model, from_unknowns(model, states))
-    rest = np.setdiff1d(np.arange(tangents.shape[1]), [*own, *held[held < len(model.bodies.rest)]])
+    other = np.ones(tangents.shape[1], dtype=bool)
+    other[own] = other[held] = False
+    rest = np.flatnonzero(other)
     found = tangents[:, own[:, None], own]
     if rest.size:
         inner, beside = tangents[:, rest[:, None], rest], tangents[:, rest[:, None], own]
