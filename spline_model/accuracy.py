@@ -126,7 +126,7 @@ class Search(Generic[Found]):
         """Set the next trial: more control points, or twice the segments where those do not help."""
         (segments, points), most = self.at, max(MOST, self.trials[0][1])
         expected, may_cut = self._expected(), 2 * segments <= self.most_segments and self.error > FLOOR
-        far = expected > most if self.levels else points >= MOST_CUT
+        far = expected > most and len(self.levels) > 1 if self.levels else points >= MOST_CUT
         if points < most and not (far and may_cut):
             self.at = segments, min(expected, most)
         elif may_cut:

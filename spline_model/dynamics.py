@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import MOST
+from spline_model.accuracy import FIRST, MOST, MOST_SEGMENTS
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
@@ -45,6 +45,8 @@ INTEGRATORS: dict[str, Callable[..., Moves]] = {
 """What makes of a start what advances it."""
 MOST_IN_MOTION = 14
 """Control points at which a motion that stops is given up, where their number is left open."""
+SEGMENTS = tuple(2**k for k in range(1, MOST_SEGMENTS.bit_length()))
+"""Into which a strip is cut whose start is not reached with any number of control points."""
 STEP = 5e-5
 """Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
@@ -206,7 +208,7 @@ def checked(
 
     Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
     """
-    mechanism = mechanism.with_control_points(trajectory.control_points).in_motion()
+    mechanism = mechanism.on(trajectory.segments, trajectory.control_points).in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
         return trajectory
     task = Task(
@@ -223,14 +225,18 @@ def checked(
 def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[tuple[Mechanism, Later]]:
     """The mechanism as it swings, and the states of ``settle`` at whose end it starts.
 
-    Where its control points are left open more of them follow. ConvergenceError if statics reaches the start
-    with none of them.
+    Where its control points are left open more of them follow, and segments where none of them is enough.
+    ConvergenceError if statics reaches the start with none of them.
     """
     grid, failed, reached = mechanism.design.discretisation, None, False
-    most = grid.points if grid.control_points is not None else MOST
-    for points in sorted({*range(grid.points, most, MORE), most}):
-        chosen = mechanism if points == grid.points else mechanism.with_control_points(points)
-        chosen = chosen.in_motion()
+    tried = [(grid.segments, grid.points)]
+    if grid.control_points is None:
+        tried += [(grid.segments, points) for points in (*range(grid.points + MORE, MOST, MORE), MOST)]
+        tried += [(segments, FIRST) for segments in SEGMENTS if segments > grid.segments]
+    for segments, points in tried:
+        if reached and segments > grid.segments:
+            return
+        chosen = mechanism.on(segments, points).in_motion()
         try:
             held = settle(chosen.at_start(), start, body=body, starts=True)
         except ConvergenceError as error:

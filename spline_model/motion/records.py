@@ -207,8 +207,13 @@ class Trajectory(Tabulated):
         return self.still()
 
     @property
+    def segments(self) -> int:
+        """Segments of a strip."""
+        return int(self.settings["segments"])
+
+    @property
     def control_points(self) -> int:
-        """Control points of a strip."""
+        """Control points of a segment."""
         return int(self.settings["control_points"])
 
     @property
@@ -268,6 +273,7 @@ class Trajectory(Tabulated):
         """The trajectory of a run; a run that says why it stopped has not converged."""
         rows = run.rows
         points = max((strip.basis.control_points for strip in system.scene.strips), default=0)
+        segments = max((len(pieces) for pieces in system.scene.whole.values()), default=1)
         rest = float(system.weight @ system.rest[: system.weight.size])
         return cls(
             status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
@@ -285,6 +291,6 @@ class Trajectory(Tabulated):
             still=still,
             effects=effects,
             counters=run.counters,
-            settings={"control_points": points} | settings,
+            settings={"segments": segments, "control_points": points} | settings,
             seconds=laps.lap("recover"),
         )

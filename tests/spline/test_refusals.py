@@ -239,7 +239,7 @@ ASKED = [
     (lambda: solve_impulses(pivot(segments=2)), "segments: got 2, expected 1 for sequential impulses"),
     (
         lambda: solve_many(pivot(**ROOTED), {"thickness": [0.001, 0.002]}, rotation=0.1),
-        "design 1: t/L of strip_1: got ..., that of the mechanism, for root_compliance",
+        "design 0: t/L of strip_1: got ... that of the mechanism, for root_compliance",
     ),
     (lambda: impulse_solver(pivot()).start_at(np.full(27, np.nan)), "z: got nan, expected finite numbers"),
     (lambda: impulse_solver(pivot()).start(math.nan), "rotation: got nan"),
