@@ -12,15 +12,18 @@ from spline_model.compile import System, compile_scene
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced import pose as compiled
-from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, NEGATIVE
-from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, bear, turn
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, NEGATIVE, Arrays
+from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, bear, lead
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.path import SMALLEST_STEP
 from spline_model.reduced.states import unknowns_of
 
 Array = NDArray[np.float64]
 
+MOST_WORK = 300
+"""Newton iterations of one call before it is given up."""
+LONGEST_TURN, LONGEST_SHIFT = 0.5, 0.15
+"""Rotation [rad] and shift [lengths] of the body in one part of the way, which is halved where it fails."""
 LEAST_HELD_COMPLIANCE = 1e-9
 """Axial compliance in L^2/EI below which a strip cannot follow a pose (beyond a slenderness of 9000)."""
 
@@ -55,7 +58,7 @@ class HeldPivot:
     ``hold`` prescribes x, y and theta (a body in the hand: Eq 7 and the driven displacements),
     ``turn`` theta alone. Exact for the discretised equations to TOLERANCE, as the path with the same
     drives is; leaves out gravity and loads. A call that finds no equilibrium in a bounded number of
-    iterations leaves the state as it was and says so.
+    iterations, or held strips that buckle, leaves the state as it was and says so.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -67,8 +70,9 @@ class HeldPivot:
         self._arrays = model.arrays()
         self._y = at_rest(model)
         self._rest = self._y.copy()
-        own, modes = 2 * len(model.shape.order) - 6, model.strips.compliance.shape[1]
-        self._room = compiled.Room.of(model.size, own + modes)
+        every = np.arange(3, dtype=np.int64)
+        grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
+        self._grasped = grasped.arrays()
         self.pose = self._y[:3] * self._unit
         self._free = True  # whether the centre is where no force is needed
         self.reset()
@@ -92,52 +96,50 @@ class HeldPivot:
         """Back to a state that ``unknowns`` gave."""
         self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
         self._free = False
-        return self._state(1.0, np.zeros(3, dtype=np.int64))
+        return self._state(1.0, np.zeros(4, dtype=np.int64))
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
         """Hold the body's centre at (x, y) [m] and its rotation [rad]."""
         target = np.array([x, y, rotation])
         if not np.isfinite(target).all():
             raise InvalidParameter("pose", [x, y, rotation], "finite numbers [m, m, rad]")
-        counters = np.zeros(3, dtype=np.int64)
-        way = self._y, target / self._unit, np.zeros(3)
-        reached = compiled.hold(*way, *self._arrays[1:4], self._room, TOLERANCE, counters)
+        reached, counters = self._lead(self._grasped, target / self._unit, stable=True)
         if reached == 1.0:
             self.pose[:] = target
             self._free = False
-        return self._state(float(reached), counters)
+        return self._state(reached, counters)
 
     def turn(self, rotation: float) -> HeldState:
         """Hold the rotation [rad] only; the body's centre goes where no force is needed."""
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
-        counters = np.zeros(3, dtype=np.int64)
-        start, begin = self._y.copy(), float(self._y[2])
-        whole = rotation - begin
-        if whole == 0.0 and self._free:
-            return self._state(1.0, counters)
-        parts = max(1, math.ceil(abs(whole) / compiled.LONGEST_TURN))
-        done, step = 0.0, 1.0 / parts
+        if rotation == self._y[2] and self._free:
+            return self._state(1.0, np.zeros(4, dtype=np.int64))
+        reached, counters = self._lead(self._arrays, np.array([rotation]), stable=False)
+        self.pose[:] = self._y[:3] * self._unit
+        self._free = self._free or reached == 1.0
+        return self._state(reached, counters)
+
+    def _lead(self, arrays: Arrays, target: Array, *, stable: bool) -> tuple[float, NDArray[np.int64]]:
+        """Lead the held coordinates to ``target`` (D,), in parts; the fraction of the way that was solved, of
+        which nothing is kept but the whole, and the work."""
+        counters, rate, start = np.zeros(4, dtype=np.int64), np.empty(len(target)), self._y.copy()
+        begin = start[arrays.bodies.held]
+        whole, longest = target - begin, np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])
+        done = 0.0
+        step = 1.0 / max(1, math.ceil((np.abs(whole) / longest[arrays.bodies.held]).max()))
         while done < 1.0:
             goal = 1.0 if done + step > 1.0 - 1e-9 else done + step
-            if self._turn(begin + goal * whole, counters):
+            at = target if goal == 1.0 else begin + goal * whole
+            if lead(at, rate, stable, self._y, arrays, TOLERANCE, counters):
                 done, step = goal, 2.0 * step
                 continue
             counters[HALVED] += 1
             step *= 0.5
-            if step < SMALLEST_STEP or counters[ITERATIONS] > compiled.MOST_WORK:
+            if step < SMALLEST_STEP or counters[ITERATIONS] > MOST_WORK:
                 self._y[:] = start
-                self.pose[:] = start[:3] * self._unit
-                return self._state(done, counters)
-        self._free = True
-        return self._state(1.0, counters)
-
-    def _turn(self, rotation: float, counters: NDArray[np.int64]) -> bool:
-        """One part of the way of ``turn``, predicted by the tangent; the state stays if it fails."""
-        solved = bool(turn(rotation, np.ones(1), self._y, self._arrays, TOLERANCE, counters))
-        if solved:
-            self.pose[:] = self._y[:3] * self._unit
-        return solved
+                break
+        return done, counters
 
     def _state(self, reached: float, counters: NDArray[np.int64]) -> HeldState:
         model, space = self.model, self._arrays.space

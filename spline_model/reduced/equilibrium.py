@@ -178,23 +178,28 @@ def conjugate(held_rate, load_rate, bodies, y, space):
 
 
 @kernel()
-def turn(rotation, speed, y, arrays, tolerance, counters):
-    """Turn the body to ``rotation`` [rad], its centre free, in place; False, and y as it was, if it fails.
+def lead(target, rate, stable, y, arrays, tolerance, counters):
+    """Lead what is held to ``target`` (D,), all else in equilibrium, in place; False, and y as it was, if it
+    fails.
 
-    speed (1,): of the rotation along the way that the tangent predicts, 1.
+    rate (D,): filled with the way. stable: whether a state with negative eigenvalues counts as none.
     """
     bodies, strips = arrays.bodies, arrays.strips
     shape, space = arrays.shape, arrays.space
     own, modes, before = 2 * shape.order.size - 6, strips.compliance.shape[1], space.states[Y]
     copy(y, before)
-    # with the rotation as it is
+    # with what is held as it is
     solved = newton(y, 0.0, False, arrays, tolerance, counters)[0] >= 0
     if solved:
-        tangent(speed, 0.0, arrays)
+        for d in range(target.size):
+            rate[d] = target[d] - before[bodies.held[d]]
+        tangent(rate, 0.0, arrays)
         for i in range(y.size):
-            y[i] += (rotation - before[2]) * space.states[RATE, i]
-        y[2] = rotation
-        solved = newton(y, 0.0, False, arrays, tolerance, counters)[0] >= 0
+            y[i] += space.states[RATE, i]
+        for d in range(target.size):
+            y[bodies.held[d]] = target[d]
+        negative = newton(y, 0.0, False, arrays, tolerance, counters)[0]
+        solved = negative == 0 or (negative > 0 and not stable)
         solved = solved and space.out[SLOWEST] > SLOWEST_SPEED
     for s in range(strips.roots.size):
         behind = bodies.rest.size + s * (own + modes) + own
