@@ -225,7 +225,7 @@ class ReducedTangent:
 
     @property
     def grain(self) -> float:
-        """Round-off of an eigenvalue: of long B-splines it exceeds a thousandth of their softest mode's."""
+        """Round-off of an eigenvalue: with many segments it exceeds a thousandth of the softest mode's."""
         return float(np.finfo(float).eps * np.abs(self.stiffness).sum(axis=0).max())
 
     def eigenpair(self, number: int) -> tuple[float, Array]:

@@ -121,7 +121,7 @@ def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
     unit, energy, not_free = work.unit[:, None], work.energy, len(right) - work.count
     work.counters.factorisations += 1
     matrix = work.hessian * (unit * unit.T / energy)
-    # the transpose is as LAPACK stores it; without room for blocks a long B-spline takes three times as long
+    # the transpose is as LAPACK stores it; without room for blocks many unknowns take three times as long
     factors, pivots, failed = sytrf(matrix.T, lower=1, lwork=BLOCK * len(matrix), overwrite_a=1)
     if failed or not np.isfinite(factors).all():
         raise np.linalg.LinAlgError("the tangent is singular")
