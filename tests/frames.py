@@ -7,7 +7,7 @@ import itertools
 import math
 
 import spline_model
-from tests.table_one import TABLE_ONE
+from tests.table_one import SECTION
 
 STATIC = ("bending", "stretching")
 #: Mass and shear do not matter.
@@ -28,10 +28,21 @@ LED_TIP = 15.204414550  # deg
 HEAVY_TIPS = {3.0: -71.307634279, 5.0: -124.497920896}  # deg, by weight in EI/L^2
 
 
-def one_strip(models, effects, parameters, *, end=(LENGTH, 0.0), centre=None, mass=0.0, **settings):
-    """A straight strip of spring steel, clamped, with a body at its tip."""
-    strip = models.StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **STEEL)
-    body = models.BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=1e-6)
+def one_strip(
+    models,
+    effects,
+    parameters,
+    *,
+    end=(LENGTH, 0.0),
+    centre=None,
+    mass=0.0,
+    inertia=1e-6,
+    section=STEEL,
+    **settings,
+):
+    """A straight strip of spring steel, or of another section, clamped, with a body at its tip."""
+    strip = models.StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **section)
+    body = models.BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=inertia)
     return models.compliant_mechanism(
         strips=[strip], bodies=[body], effects=(*STATIC, *effects), parameters=parameters, **settings
     )
@@ -127,12 +138,10 @@ def opposed(models=spline_model, *, offset=0.01, **discretisation):
     Turned clockwise, both strips are pushed together alike: half a turn maps the pivot onto
     itself, until the strips buckle and the body gives way. Of splines as a pivot.
     """
-    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    section = {name: TABLE_ONE[name] for name in names}
     half = 0.05
     ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
     strips = [
-        models.StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **section)
+        models.StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **SECTION)
         for i, (start, end) in enumerate(ends, start=1)
     ]
     body = models.BodyDesign(name="body", centre=(0.0, 0.0))

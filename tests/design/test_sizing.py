@@ -78,10 +78,6 @@ def test_optimum_of_narrow_strips(own, narrow):
     assert found.solved < 20
 
 
-def _variables(task, start):
-    return task.low + task.span * task.starts(8)[start]
-
-
 @pytest.mark.parametrize("name", ["stress", "aspect", "slenderness", "stiffness", "inclination at its most"])
 def test_price_is_what_another_limit_costs(narrow, name):
     """The price of a constraint foretells the optimum with its limit changed by a thousandth."""
@@ -129,17 +125,6 @@ def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
     found = search(task, np.clip(begin + moves, 0.0, 1.0), silent)
     assert all(each.converged for each in found), [each.message for each in found]
     assert set(numbered(found)) == {1} and max(each.solved for each in found) < 60
-
-
-def test_mirror_image_answers_the_same(own):
-    """A pivot with ground and body exchanged has the same stiffness, shift and stress at every rotation."""
-    task = _task(own)
-    values = _variables(task, 2)
-    mirrored = values * (1, 1, 0, 1, 1) + (0, 0, 1.0 - values[2], 0, 0)
-    one, other = (answers(task.problem(each)).measured() for each in (values, mirrored))
-    np.testing.assert_allclose(one.shift, other.shift, rtol=1e-9, atol=1e-15)
-    np.testing.assert_allclose(one.stiffness, other.stiffness, rtol=1e-9)
-    np.testing.assert_allclose(one.stress, other.stress, rtol=1e-9, atol=1.0)
 
 
 def test_optimum_holds_in_the_finite_elements(own, narrow):

@@ -9,19 +9,14 @@ import numpy as np
 import pytest
 
 from fe_reference import Body, Model, Section, Strip, cross_axis_pivot
-from tests.table_one import TABLE_ONE
+from tests import table_one
 
 QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
 """Both elements where the interpreted forms of the second take seconds."""
 
-TABLE_1: dict[str, Any] = TABLE_ONE
+TABLE_1: dict[str, Any] = table_one.TABLE_ONE
 LENGTH = TABLE_1["length"]
-SECTION = Section(
-    **{
-        name: TABLE_1[name]
-        for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    }
-)
+SECTION = Section(**table_one.SECTION)
 EI = SECTION.flexural_rigidity
 #: Units of force, moment and rotational stiffness in which errors are given.
 FORCE, MOMENT = EI / LENGTH**2, EI / LENGTH
@@ -53,19 +48,6 @@ def with_shear_factor(model: Model, factor: float) -> Model:
 def rotation_matrix(angle: float) -> np.ndarray:
     """Return the matrix (2, 2) that turns by an angle [rad]."""
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-
-def rotated(model: Model, angle: float) -> Model:
-    """Return the same model turned as a whole about the origin by `angle` [rad], with the vectors of its
-    effects."""
-    turn, named = rotation_matrix(angle), {}
-    for name, effect in model.effects.named.items():
-        vectors = {each: getattr(effect, each, None) for each in ("acceleration", "force", "displacement")}
-        own = {each: tuple((turn @ np.array(v)).tolist()) for each, v in vectors.items() if v is not None}
-        named[name] = replace(effect, **own)
-    strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in model.strips)
-    bodies = tuple(replace(body, centre=turn @ body.centre) for body in model.bodies)
-    return replace(model, strips=strips, bodies=bodies, effects=replace(model.effects, named=named))
 
 
 def extrapolated(values: Sequence[Any]) -> Any:

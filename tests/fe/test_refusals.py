@@ -13,10 +13,8 @@ from fe_reference import (
     FREE,
     Body,
     BodyDesign,
-    ConvergenceError,
     Model,
     Section,
-    Status,
     Strip,
     StripDesign,
     compliant_mechanism,
@@ -27,15 +25,13 @@ from fe_reference import (
     solve_mechanism,
     solve_motion,
     solve_release,
-    solve_statics,
 )
-from tests.fe.cases import SECTION, TABLE_1, cantilever, flat_strip, pivot
-from tests.fe.scenes import SECTION as SIDELESS
+from tests import table_one
+from tests.fe.cases import SECTION, cantilever, flat_strip, pivot
 from tests.fe.scenes import WIDE, four_bar, free_cantilever, guide
 from tests.refusals import refused, scene
+from tests.table_one import BARE, SIDES
 
-SIDES = {"width": 0.01, "thickness": 0.005}
-BARE = {name: value for name, value in TABLE_1.items() if name not in ("area", "second_moment_of_area")}
 STILL, LIGHT = scene(("bending", "stretching")), scene(("bending", "stretching", "body_inertia"))
 ROTARY = scene(("bending", "stretching", "section_rotary_inertia"))
 TWICE = ((0.0, 1.0), (0.0, 2.0))
@@ -110,7 +106,7 @@ def bare(**given: Any) -> Model:
 
 def hung(*, bodies: tuple[str, ...] = ("plate",), strips: int = 1) -> Model:
     """Return strips of one name between ground and a plate."""
-    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="plate", **SIDELESS)
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="plate", **table_one.SECTION)
     made = [BodyDesign(name=name, centre=(0.1, 0.0)) for name in bodies]
     return compliant_mechanism(strips=[strip] * strips, bodies=made)
 
@@ -178,7 +174,7 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: Strip(section=SECTION, nodes=np.zeros((3, 2))), "coincident neighbours"),
     (lambda: Strip(section=SECTION, nodes=np.zeros(3)), "finite positions"),
     (lambda: Body(centre=np.array([np.nan, 0.0])), "centre: got nan, expected a finite number"),
-    (lambda: Section(**SIDELESS | {"density": 0.0}), "above 0"),
+    (lambda: Section(**table_one.SECTION | {"density": 0.0}), "above 0"),
     (
         lambda: Model(strips=tuple(map(flat_strip, (2, 3))), bodies=(Body(centre=np.zeros(2)),)),
         "same number of nodes",
@@ -232,53 +228,3 @@ ASKED += [(partial(pivot, **given), said) for given, said in PIVOTS]
 def test_what_makes_no_sense_is_refused(ask: Callable[[], object], said: str) -> None:
     """Bad designs, effects and requests are refused by name with the value, what is expected and the unit."""
     refused(ask, said)
-
-
-def test_sides_make_the_section() -> None:
-    """Width and thickness give area and second moment; printed ones beside them hold."""
-    section = cross_axis_pivot(**BARE, **SIDES).strips[0].section
-    assert (section.area, section.second_moment_of_area) == (0.01 * 0.005, 0.01 * 0.005**3 / 12.0)
-    rounded = cross_axis_pivot(**TABLE_1, **SIDES).strips[0].section
-    assert rounded.flexural_rigidity == cross_axis_pivot(**TABLE_1).strips[0].section.flexural_rigidity
-
-
-def test_rest_is_a_path_too() -> None:
-    """A path of no rotation stays at rest."""
-    solution = solve_statics(pivot(elements=4), rotation=0.0, increments=2)
-    assert solution.status is Status.CONVERGED
-    assert not solution.torque.any()
-    assert np.all(solution.stiffness == solution.stiffness[0])
-
-
-def test_failed_path_keeps_what_converged() -> None:
-    """A drive of more than six turns in four increments fails; the error carries what was reached."""
-    calls: list[tuple[int, int]] = []
-    with pytest.raises(ConvergenceError, match=r"between rotation .* halvings of the increment") as failure:
-        solve_statics(
-            pivot(elements=8),
-            rotation=40.0,
-            increments=4,
-            check=False,
-            progress=lambda *call: calls.append(call),
-        )
-    solution = failure.value.solution
-    reached = len(solution.torque) - 1
-    assert calls == [(k, 4) for k in range(1, reached + 1)]
-    assert solution.status is Status.NOT_CONVERGED
-    assert solution.status.text.endswith("use more increments or a finer mesh.")
-    assert failure.value.load_factor == reached / 4.0
-    assert len(failure.value.history) > 0
-    assert solution.message in str(failure.value)
-
-
-def test_converged_path_reports_its_work() -> None:
-    """The paper's path takes twenty increments of at most four iterations, and says so."""
-    solution = solve_statics(pivot(), rotation=np.pi / 2.0)
-    assert solution.status is Status.CONVERGED
-    assert solution.message == ""
-    assert solution.counters["increments"] == 20
-    assert solution.counters["halvings"] == 0
-    assert solution.counters["newton_iterations"] == sum(len(norms) - 1 for norms in solution.history) <= 80
-    assert solution.stations.shape == (21,)
-    assert solution.shape.shape == (21, 2, 21, 2)
-    assert solution.clamp_reactions.shape == (21, 2, 2, 3)

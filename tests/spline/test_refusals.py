@@ -25,10 +25,8 @@ from spline_model import (
 from tests.frames import opposed
 from tests.refusals import refused, scene
 from tests.spline.test_batch_of_mechanisms import linkage
-from tests.table_one import SIX, TABLE_ONE
+from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 
-BARE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
-SIDES = {"width": 0.01, "thickness": 0.005}
 CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
 PRINTED = {"measure": "printed", "stretch": "consistent"}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
