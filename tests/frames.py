@@ -3,7 +3,6 @@
 `models` is the package that makes the mechanism: `spline_model` or `fe_reference`.
 """
 
-import itertools
 import math
 
 import spline_model
@@ -91,29 +90,6 @@ def toggle(models=spline_model, *, rise=0.386, load=60.0, **discretisation):
         parameters={"applied_force": {"body": "apex", "force": (0.0, -load)}},
         **discretisation,
     )
-
-
-def lees_frame(*, load=3.0, area=6.0, **discretisation):
-    """Lee, Manuel and Rossow's frame (1968): two members of 120 cm at a right angle, pinned ends.
-
-    A = 6 cm^2, I = 2 cm^4, E = 720 t/cm^2 (in print also 7.06e6 N/cm^2); ``load`` [t] down at 24 cm from the
-    corner. The law is the extensible, shear-rigid elastica. A pin is a body without mass.
-    """
-    section = {"area": area, "second_moment_of_area": 2.0, "youngs_modulus": 720.0, "density": 1.0}
-    joints = {"foot": (0.0, 0.0), "corner": (0.0, 120.0), "loaded": (24.0, 120.0), "far": (120.0, 120.0)}
-    names = list(joints)
-    strips = [
-        spline_model.StripDesign(name=f"{a}_{b}", start=joints[a], end=joints[b], root=a, tip=b, **section)
-        for a, b in itertools.pairwise(names)
-    ]
-    frame = spline_model.compliant_mechanism(
-        strips=strips,
-        bodies=[spline_model.BodyDesign(name=name, centre=place) for name, place in joints.items()],
-        effects=(*STATIC, "applied_force"),
-        parameters={"applied_force": {"body": "loaded", "force": (0.0, -load)}},
-        **discretisation,
-    )
-    return frame.pinned("foot", "far")
 
 
 def column(models=spline_model, *, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):

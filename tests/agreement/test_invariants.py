@@ -128,7 +128,6 @@ FORMS = [
     {"stretch": "inextensible"},
     {"stretch": "consistent", "measure": "spatial", "control_points": 4},
     {"crossing_ratio": 0.2, "inclination": np.radians(30), "centre_offset": (0.01, 0.02)},
-    {"stretch": "consistent"},
 ]
 NUMBERS = [
     {"control_points": n, "method": m} for n in (6, 4, 8, 10, 12) for m in ("condensed", "multipliers")

@@ -8,14 +8,7 @@ import pytest
 
 from studies.cases.effects import Effects
 from studies.design import task as questions
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    STATIONS,
-    VARIATION,
-    PathEnds,
-    answers,
-    by_elements,
-)
+from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIATION, answers, by_elements
 from studies.design.optimise import best, numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
 from studies.design.sizing import ANGLE, GRADE, LENGTH, toleranced
@@ -230,14 +223,3 @@ def test_gradients_with_sections_and_roots(own):
     """The optimiser's gradients are those of answers with every effect of the third dimension assembled."""
     start = with_sections(replace(own[0], increments=2))
     gates.check("sizing_gradients", gradient_error(_task((start, answers(start))), variables_of(start)))
-
-
-def test_a_load_that_buckles_a_design_leaves_it_without_an_answer(own):
-    """A design that buckles before or while the body turns is outside, as one whose path ends."""
-    table_one, _ = own
-    force = Effects(
-        names=(*table_one.effects.names, "applied_force"),
-        tables={"applied_force": {"force": (0.0, -1e6)}},
-    )
-    with pytest.raises(PathEnds):
-        answers(replace(table_one, effects=force, rotation=0.1, increments=2))

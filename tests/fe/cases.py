@@ -1,7 +1,6 @@
 """What the tests of the finite elements share: the paper's pivot, a cantilever, limits of refinement."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -18,8 +17,8 @@ TABLE_1: dict[str, Any] = table_one.TABLE_ONE
 LENGTH = TABLE_1["length"]
 SECTION = Section(**table_one.SECTION)
 EI = SECTION.flexural_rigidity
-#: Units of force, moment and rotational stiffness in which errors are given.
-FORCE, MOMENT = EI / LENGTH**2, EI / LENGTH
+#: Unit of moment and rotational stiffness in which errors are given.
+MOMENT = EI / LENGTH
 
 
 def pivot(**changes: Any) -> Model:
@@ -37,12 +36,6 @@ def cantilever(*, elements: int, element: str = "corotational", section: Section
     """Return a horizontal strip, clamped on the left, with a massless body as its tip."""
     strip = flat_strip(elements, section)
     return Model(strips=(strip,), bodies=(Body(centre=np.array([LENGTH, 0.0])),), element=element)
-
-
-def with_shear_factor(model: Model, factor: float) -> Model:
-    """Return the model with another shear factor in all strips."""
-    section = replace(model.strips[0].section, shear_factor=factor)
-    return replace(model, strips=tuple(replace(strip, section=section) for strip in model.strips))
 
 
 def rotation_matrix(angle: float) -> np.ndarray:

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    InvalidParameter,
-    natural_frequencies,
-)
+from fe_reference import DEFAULT_EFFECTS, InvalidParameter, natural_frequencies
 from tests.fe.cases import MOMENT, TABLE_1, pivot
 from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
 from tests.gates import hold

@@ -3,22 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_reference import (
-    ELEMENTS,
-    BodyDesign,
-    StripDesign,
-    compliant_mechanism,
-    solve_motion,
-)
-from tests.fe.scenes import (
-    GUIDE,
-    PARAMETERS,
-    SECTION,
-    SIDED_SCENE,
-    THICK,
-    four_bar,
-    free_cantilever,
-)
+from fe_reference import ELEMENTS, BodyDesign, StripDesign, compliant_mechanism, solve_motion
+from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, SIDED_SCENE, THICK, four_bar, free_cantilever
 from tests.gates import hold
 
 EXPLICIT, IMPLICIT = "central-difference", "generalised-alpha"
@@ -46,12 +32,9 @@ def test_impulse_of_a_load() -> None:
     force = {"force": (30.0, -20.0), "history": history}
 
     def error(step: float = 1e-6) -> float:
+        ends = {"start": (0.0, 0.0), "end": (GUIDE, 0.0), "root": None, "tip": "body"}
         model = compliant_mechanism(
-            strips=[
-                StripDesign(
-                    name="strip", start=(0.0, 0.0), end=(GUIDE, 0.0), root=None, tip="body", **SECTION
-                )
-            ],
+            strips=[StripDesign(name="strip", **ends, **SECTION)],
             bodies=[BodyDesign(name="body", centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)],
             effects=("bending", "stretching", "strip_inertia", "body_inertia", "applied_force"),
             parameters={"applied_force": force},

@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 
 from fe_reference import solve_loads, solve_mechanism, solve_statics
-from tests.fe.cases import (
-    EI,
-    QUICK_ELEMENTS,
-    extrapolated,
-    pivot,
-)
-from tests.fe.scenes import GUIDE, PARAMETERS, WIDE, four_bar, free_cantilever
+from tests.fe.cases import EI, QUICK_ELEMENTS, extrapolated, pivot
+from tests.fe.scenes import GUIDE, PARAMETERS, WIDE, four_bar, free_cantilever, guide
 from tests.gates import hold
 
 STATIC = {name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain")}
@@ -51,7 +46,7 @@ def test_roots_do_not_turn_where_there_is_no_stress(element: str) -> None:
 
 
 def test_named_loads_are_those_of_load_control() -> None:
-    """Named force and moment do what `solve_loads` does with them, and act beside a driven rotation."""
+    """Named loads do what `solve_loads` does with them, beside a driven rotation too, and so named drives."""
     named = {"applied_force": {"force": (200.0, -300.0)}, "applied_moment": {"moment": 50.0}}
     model = pivot(effects=(*pivot().effects.names, *named), parameters=named)
     one = solve_loads(model)
@@ -62,6 +57,9 @@ def test_named_loads_are_those_of_load_control() -> None:
     held = solve_statics(model, rotation=float(one.rotation[-1]))
     assert abs(held.torque[-1]) < 1e-12 * 50.0
     assert np.allclose(held.centre[-1], one.centre[-1], rtol=1e-9)
+    led = {"displacement": (4e-3, -1e-4)}
+    named_led = solve_mechanism(guide({"driven_displacement": led}), rotation=0.0)
+    assert np.array_equal(named_led.states, solve_mechanism(guide(), rotation=0.0, **led).states)
 
 
 def all_static(**discretisation: Any) -> Any:

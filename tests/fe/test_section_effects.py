@@ -5,14 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference import (
-    DEFAULT_EFFECTS,
-    ELEMENTS,
-    cross_axis_pivot,
-    solve_loads,
-    solve_statics,
-    strip_fields,
-)
+from fe_reference import DEFAULT_EFFECTS, ELEMENTS, cross_axis_pivot, solve_loads, solve_statics, strip_fields
 from tests.fe.scenes import SIDED, WIDE, guide
 from tests.gates import hold
 from tests.table_one import BARE

@@ -8,13 +8,7 @@ import numpy as np
 import pytest
 
 import spline_model
-from spline_model import (
-    ConvergenceError,
-    Status,
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-)
+from spline_model import ConvergenceError, Status, cross_axis_pivot, solve_mechanism, solve_statics
 from tests import gates
 from tests.frames import one_strip
 from tests.table_one import TABLE_ONE
@@ -101,7 +95,13 @@ def test_default_answer_is_right():
 
 @pytest.mark.parametrize(
     "how",
-    [{"rotation": 0.3}, {"rotation": -0.5, "order": "together"}, {}, {"control": "arc-length"}],
+    [
+        {"rotation": 0.3},
+        {"rotation": 0.0},
+        {"rotation": -0.5, "order": "together"},
+        {},
+        {"control": "arc-length"},
+    ],
     ids=str,
 )
 def test_any_mechanism_has_an_estimate(how):

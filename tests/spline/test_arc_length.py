@@ -3,8 +3,17 @@
 import numpy as np
 
 from spline_model import solve_loads, solve_mechanism
+from studies.answers.models import put
+from studies.answers.settings import SplineSettings
+from studies.published.case import published
 from tests import gates
-from tests.frames import lees_frame
+
+
+def lees_frame(control_points):
+    """Lee's frame of the published problems, its load of 3 t at load factor 1."""
+    frame = published("lees_frame").frame()
+    posed = put(frame.design, SplineSettings(control_points=control_points))
+    return posed.modelled.pinned(*frame.pins)
 
 
 def test_a_load_that_turns_round_keeps_its_sign():

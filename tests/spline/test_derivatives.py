@@ -1,4 +1,4 @@
-"""Hessian against gradient, for every operator, at a crooked state."""
+"""Gradient against energy and Hessian against gradient, for every operator, at crooked states."""
 
 import numpy as np
 import pytest
@@ -68,7 +68,23 @@ def hessian_error(step=2e-4, **settings):
     )
 
 
+def gradient_error(step=2e-4, **settings):
+    """Largest error of the gradient's rows without multipliers, over its largest entry."""
+    operator = Operator(settings)
+    operator.y[operator.system.layout.multiplier_start :] = 0.0  # psi is no part of the energy
+    gradient, rows = operator.evaluate(operator.y)[1], operator.system.layout.coordinate_count
+    found = [fourth_order(lambda y: operator.evaluate(y)[0], operator.y, i, step) for i in range(rows)]
+    return np.abs(np.array(found) - gradient[:rows]).max() / np.abs(gradient[:rows]).max()
+
+
 @pytest.mark.parametrize("form", FORMS)
 def test_hessian_is_the_gradients_derivative(form):
     """Requirement: the tangent of every operator is consistent, also of the printed forces."""
     gates.hold("spline_hessian", lambda **coarse: hessian_error(**FORMS[form] | coarse))
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form != "printed"])
+def test_gradient_is_the_energys_derivative(form):
+    """Requirement: the forces of every energy are its exact gradient, the printed ones are not."""
+    gates.check("spline_gradient", gradient_error(**FORMS[form]))
+    gates.refuse("spline_gradient", gradient_error)

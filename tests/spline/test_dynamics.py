@@ -7,11 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import (
-    ConvergenceError,
-    cross_axis_pivot,
-    solve_release,
-)
+from spline_model import ConvergenceError, cross_axis_pivot, solve_release
 from tests import gates
 from tests.spline.swings import drift, pivot
 from tests.table_one import TABLE_ONE

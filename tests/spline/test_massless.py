@@ -7,12 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import (
-    cross_axis_pivot,
-    natural_frequencies,
-    solve_motion,
-    solve_release,
-)
+from spline_model import cross_axis_pivot, natural_frequencies, solve_motion, solve_release
 from tests import gates
 from tests.spline.swings import drift, pivot, total
 from tests.table_one import SIX, TABLE_ONE

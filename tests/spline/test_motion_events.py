@@ -6,12 +6,7 @@ from functools import cache, partial
 import numpy as np
 import pytest
 
-from spline_model import (
-    DrivenRotation,
-    InvalidParameter,
-    solve_motion,
-    solve_release,
-)
+from spline_model import DrivenRotation, InvalidParameter, solve_motion, solve_release
 from tests import gates
 from tests.spline import swings
 from tests.table_one import TABLE_ONE

@@ -8,13 +8,7 @@ import pytest
 
 from spline_model import cross_axis_pivot, sensitivities, solve_statics
 from tests import gates
-from tests.spline.differences import (
-    QUANTITIES,
-    by_differences,
-    exact,
-    random_design,
-    value_of,
-)
+from tests.spline.differences import QUANTITIES, by_differences, exact, random_design, value_of
 from tests.table_one import BARE, SIX, TABLE_ONE
 
 #: Keywords of a pivot that its statics depend on, and the sides of its section.
