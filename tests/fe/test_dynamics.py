@@ -1,4 +1,4 @@
-"""Motion after release: what a run tells of itself, steps that are too long, stability of both integrators."""
+"""Motion after release: what a run tells of itself, steps that are too long, stable and unstable ones."""
 
 import numpy as np
 import pytest
