@@ -3,11 +3,10 @@
 `models` is the package that makes the mechanism: `spline_model` or `fe_reference`.
 """
 
-import itertools
 import math
 
 import spline_model
-from tests.table_one import TABLE_ONE
+from tests.table_one import SECTION
 
 STATIC = ("bending", "stretching")
 #: Mass and shear do not matter.
@@ -28,10 +27,21 @@ LED_TIP = 15.204414550  # deg
 HEAVY_TIPS = {3.0: -71.307634279, 5.0: -124.497920896}  # deg, by weight in EI/L^2
 
 
-def one_strip(models, effects, parameters, *, end=(LENGTH, 0.0), centre=None, mass=0.0, **settings):
-    """A straight strip of spring steel, clamped, with a body at its tip."""
-    strip = models.StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **STEEL)
-    body = models.BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=1e-6)
+def one_strip(
+    models,
+    effects,
+    parameters,
+    *,
+    end=(LENGTH, 0.0),
+    centre=None,
+    mass=0.0,
+    inertia=1e-6,
+    section=STEEL,
+    **settings,
+):
+    """A straight strip of spring steel, or of another section, clamped, with a body at its tip."""
+    strip = models.StripDesign(name="strip", start=(0.0, 0.0), end=end, tip="tip", **section)
+    body = models.BodyDesign(name="tip", centre=centre or end, mass=mass, moment_of_inertia=inertia)
     return models.compliant_mechanism(
         strips=[strip], bodies=[body], effects=(*STATIC, *effects), parameters=parameters, **settings
     )
@@ -82,29 +92,6 @@ def toggle(models=spline_model, *, rise=0.386, load=60.0, **discretisation):
     )
 
 
-def lees_frame(*, load=3.0, area=6.0, **discretisation):
-    """Lee, Manuel and Rossow's frame (1968): two members of 120 cm at a right angle, pinned ends.
-
-    A = 6 cm^2, I = 2 cm^4, E = 720 t/cm^2 (in print also 7.06e6 N/cm^2); ``load`` [t] down at 24 cm from the
-    corner. The law is the extensible, shear-rigid elastica. A pin is a body without mass.
-    """
-    section = {"area": area, "second_moment_of_area": 2.0, "youngs_modulus": 720.0, "density": 1.0}
-    joints = {"foot": (0.0, 0.0), "corner": (0.0, 120.0), "loaded": (24.0, 120.0), "far": (120.0, 120.0)}
-    names = list(joints)
-    strips = [
-        spline_model.StripDesign(name=f"{a}_{b}", start=joints[a], end=joints[b], root=a, tip=b, **section)
-        for a, b in itertools.pairwise(names)
-    ]
-    frame = spline_model.compliant_mechanism(
-        strips=strips,
-        bodies=[spline_model.BodyDesign(name=name, centre=place) for name, place in joints.items()],
-        effects=(*STATIC, "applied_force"),
-        parameters={"applied_force": {"body": "loaded", "force": (0.0, -load)}},
-        **discretisation,
-    )
-    return frame.pinned("foot", "far")
-
-
 def column(models=spline_model, *, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):
     """A cantilever column of length 1 and EI = 1 along x; ``load`` [EI/L^2] pushes its tip back to the root.
 
@@ -127,12 +114,10 @@ def opposed(models=spline_model, *, offset=0.01, **discretisation):
     Turned clockwise, both strips are pushed together alike: half a turn maps the pivot onto
     itself, until the strips buckle and the body gives way. Of splines as a pivot.
     """
-    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    section = {name: TABLE_ONE[name] for name in names}
     half = 0.05
     ends = (((-half, -offset), (half, -offset)), ((half, offset), (-half, offset)))
     strips = [
-        models.StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **section)
+        models.StripDesign(name=f"strip_{i}", start=start, end=end, tip="body", **SECTION)
         for i, (start, end) in enumerate(ends, start=1)
     ]
     body = models.BodyDesign(name="body", centre=(0.0, 0.0))

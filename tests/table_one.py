@@ -17,3 +17,11 @@ TABLE_ONE = {
 
 #: The same as a spline of six control points.
 SIX = TABLE_ONE | {"control_points": 6}
+
+#: Of a strip alone; its material and the body without the section, which width and thickness then give.
+SECTION = {
+    name: TABLE_ONE[name]
+    for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
+}
+BARE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
+SIDES = {"width": 0.01, "thickness": 0.005}

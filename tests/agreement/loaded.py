@@ -1,6 +1,6 @@
 """A pivot and mechanisms under loads, put to both models: what the tests of loads ask and compare."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -168,11 +168,6 @@ def differences(one: State, other: State) -> dict[str, float]:
     }
 
 
-def turned(asked: Design, by: float) -> Design:
-    """Return the design driven further by an angle [rad]."""
-    return replace(asked, rotation=asked.rotation + by)
-
-
 @cache
 def spline(effect: str, rotation: float | None, control_points: int = 10) -> State:
     """Return the state of the loaded design by the spline."""
@@ -183,8 +178,3 @@ def spline(effect: str, rotation: float | None, control_points: int = 10) -> Sta
 def elements(effect: str, rotation: float | None, count: int = 20) -> State:
     """Return the same by the finite elements."""
     return state(design(effect, rotation), FeSettings(elements=count))
-
-
-def with_increments(asked: Design, increments: int) -> Design:
-    """Return the design on a path of so many increments."""
-    return replace(asked, increments=increments)

@@ -199,27 +199,12 @@ def _led(rng: Random) -> Mechanism:
     design = _mechanism(rng, _scale(rng), strips, {"body": (1.0, 0.0)}, None, most=0.5)
     length = design.strips[0].end[0]
     drawn, aside = rng.uniform(0.0, 0.1) * length, rng.uniform(-0.3, 0.3) * length
-    led = {
-        STIFF: {
-            "displacement": (-float(drawn), float(aside)),
-        }
-    }
+    led = {STIFF: {"displacement": (-float(drawn), float(aside))}}
     names = (*design.effects.names, STIFF)
     return replace(design, effects=Effects(names=names, tables=dict(design.effects.tables) | led))
 
 
-KINDS = (
-    _pivot,
-    _guide,
-    _column,
-    _pivot,
-    _four_bar,
-    _cantilever,
-    _pivot,
-    _three_strips,
-    _led,
-    _cantilever,
-)
+KINDS = (_pivot, _guide, _column, _pivot, _four_bar, _cantilever, _pivot, _three_strips, _led, _cantilever)
 
 
 def scene(seed: int) -> Design:

@@ -9,27 +9,10 @@ import pytest
 import fe_reference
 import spline_model
 from tests import gates
-from tests.fe.cases import extrapolated
-from tests.frames import HEAVY_TIPS, LED_TIP, column, heavy, led, strained, tip
+from tests.frames import HEAVY_TIPS, LED_TIP, column, heavy, led, strained, tip, toggle
+from tests.models import BOTH, held, refined, short
 
 EULER = math.pi**2 / 4
-BOTH = pytest.mark.parametrize("models", [spline_model, fe_reference], ids=lambda each: each.__name__)
-
-
-def short(models):
-    """Name of a model in its gates."""
-    return models.__name__.partition("_")[0]
-
-
-def refined(ask, elements=None, **grid):
-    """Return what `ask` finds, of finite elements the limit over meshes."""
-    return ask(**grid) if elements is None else extrapolated([ask(elements=count) for count in elements])
-
-
-def held(gate, models, error, control_points=10, elements=(10, 20, 40)):
-    """Hold an error of both models' discretisations against the model's gate."""
-    grid = {"elements": elements} if models is fe_reference else {"control_points": control_points}
-    gates.hold(gate, lambda **coarse: float(error(**grid | coarse)))
 
 
 @BOTH
@@ -44,12 +27,7 @@ def test_a_column_buckles_at_its_critical_load(models):
         assert (point.kind, point.inertia) == ("bifurcation", 1)
         return 4.0 * point.load_factor
 
-    held(
-        f"{short(models)}_euler_load",
-        models,
-        lambda **grid: abs(refined(found, **grid) / exact - 1),
-        control_points=8,
-    )
+    held(f"{short(models)}_euler_load", models, lambda **grid: abs(refined(found, **grid) / exact - 1), 8)
 
 
 def led_ends(models, increments, late=0, **grid):
@@ -113,13 +91,8 @@ def test_a_heavy_column_sinks_to_its_stable_side(models):
                 ends.append(math.copysign(1.0, offset) * tip(answer, 0))
         return np.array(ends)
 
-    right = np.repeat(list(HEAVY_TIPS.values()), 2)
-    held(
-        f"{short(models)}_heavy_column",
-        models,
-        lambda **grid: np.abs(refined(found, **grid) - right).max(),
-        12,
-    )
+    right, gate = np.repeat(list(HEAVY_TIPS.values()), 2), f"{short(models)}_heavy_column"
+    held(gate, models, lambda **grid: np.abs(refined(found, **grid) - right).max(), 12)
 
 
 @pytest.mark.parametrize(
@@ -145,13 +118,24 @@ def test_a_strip_pre_strained_beyond_euler_says_so(gate, models, element):
         assert "the last state is unstable" in answer.message
         return 0.8 * float(re.search(r" at ([\d.]+) % of ", answer.message).group(1))
 
-    held(
-        gate,
-        models,
-        lambda **grid: abs(refined(found, **grid) / (4 * math.pi**2) - 1),
-    )
+    held(gate, models, lambda **grid: abs(refined(found, **grid) / (4 * math.pi**2) - 1))
     fine = {"elements": 40} if models is fe_reference else {"control_points": 10}
     assert asked(41.0, **fine).inertia.min() == 1
     sound = asked(39.0, **fine)
     assert sound.inertia.max() == 0
     assert "bifurcation" not in sound.message and "buckle" not in sound.message
+
+
+@BOTH
+def test_a_path_that_ends_at_a_limit_point_says_so(models):
+    """Requirement: load control of a toggle stops where it snaps, for any increments, and names it."""
+    made = toggle(models, **{"elements": 10} if models is fe_reference else {"control_points": 8})
+    found = []
+    for increments in (7, 20):
+        answer = models.solve_mechanism(made, increments=increments, raise_on_failure=False)
+        (limit,) = answer.critical_points
+        assert (answer.status.value, limit.kind) == ("not_converged", "limit point")
+        assert "limit point" in answer.message
+        found.append(limit.load_factor)
+    assert found[0] == pytest.approx(found[1], rel=1e-8)
+    assert found[0] == pytest.approx(33.9 / 60.0, rel=0.02)

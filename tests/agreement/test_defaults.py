@@ -5,15 +5,16 @@ import pytest
 
 from studies.answers.models import put
 from studies.answers.response import Response
-from studies.answers.settings import SplineSettings
+from studies.answers.settings import FeSettings, SplineSettings
 from tests.agreement.random_scenes import scene
+from tests.fe.cases import extrapolated
 
 #: The default promises 1e-4; the estimate may be somewhat optimistic.
 LIMIT, BODY_LIMIT = 2e-4, 3e-4
 REFINED = 17
 #: Parts of a length, of a moment and of a modulus that are round-off.
 NOTHING = 1e-9
-QUICK, MANY = 6, 200
+QUICK, FEW, MANY = 6, 24, 200
 
 
 def solved(design, **how):
@@ -41,8 +42,18 @@ def body_error(found, good):
     return np.nanmax(np.abs(found - good) / (size[:, :, None] * size[:, None, :]), initial=0.0)
 
 
-def judged(seed):
-    """Errors by name of the default answer to a random scene; None where it, or the refined one, remarks."""
+def by_elements(design):
+    """The same by finite elements, in the limit of two meshes."""
+    paths = [put(design, FeSettings(elements=count)) for count in (40, 80)]
+    found = [quantities(Response.of(path, path.static_path())) for path in paths]
+    return {name: extrapolated([each[name] for each in found]) for name in ("trajectory", "torque")}
+
+
+def judged(seed, right_of=None):
+    """Errors by name of the default answer to a random scene; None where it, or the refined one, remarks.
+
+    right_of: what gives the right quantities of a design, if not splines that are refined.
+    """
     design = scene(seed)
     found = solved(design)
     if not found.converged or found.message or found.resolution:
@@ -50,7 +61,8 @@ def judged(seed):
     good = solved(design, control_points=REFINED, accuracy=1.0)
     if not good.converged or len(good.load_factor) != len(found.load_factor):
         return None
-    mine, right, strip = quantities(found), quantities(good), design.strips[0]
+    mine, right = quantities(found), quantities(good) if right_of is None else right_of(design)
+    strip = design.strips[0]
     moment = strip.youngs_modulus * strip.second_moment_of_area / strip.length
     least = {name: NOTHING * moment for name in ("torque", "stiffness")}
     least |= {"trajectory": NOTHING * strip.length, "stress": NOTHING * strip.youngs_modulus * 1e-2}
@@ -64,9 +76,9 @@ def judged(seed):
     return errors
 
 
-def checked(seeds):
+def checked(seeds, **how):
     """Judge scenes; most of them must have an answer without a remark."""
-    verdicts = {seed: judged(seed) for seed in seeds}
+    verdicts = {seed: judged(seed, **how) for seed in seeds}
     silent = {seed: errors for seed, errors in verdicts.items() if errors is not None}
     for seed, errors in silent.items():
         for name, error in errors.items():
@@ -83,3 +95,9 @@ def test_a_few_random_designs_meet_their_accuracy():
 def test_many_random_designs_meet_their_accuracy():
     """Requirement: the same of 200 loaded pivots and mechanisms, or they have a remark."""
     assert checked(range(MANY)) > MANY // 2
+
+
+@pytest.mark.slow
+def test_default_answers_are_those_of_elements():
+    """Requirement: places and torque of the default are as near to finite elements, which share nothing."""
+    assert checked(range(FEW), right_of=by_elements) > FEW // 2

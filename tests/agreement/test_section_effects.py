@@ -9,9 +9,9 @@ import fe_reference
 import spline_model
 from spline_model import swinging_slide_stiffness
 from tests import gates
-from tests.table_one import TABLE_ONE
+from tests.models import refined
+from tests.table_one import BARE
 
-DESIGN = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
 PLAIN = ("bending", "stretching", "strip_inertia", "body_inertia")
 EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
 #: Width and thickness [m]: Table 1's, and a wide thin strip that flattens as it bends.
@@ -35,15 +35,11 @@ def scene(section, effects):
 def difference(section, effects, *, control_points=14):
     """Largest difference of torques to a quarter turn, over the largest, of the elements in the limit."""
     given, path = scene(section, effects), {"rotation": np.pi / 2, "increments": INCREMENTS}
-    spline = spline_model.cross_axis_pivot(**DESIGN, **given, control_points=control_points)
-    coarse, fine = (
-        fe_reference.solve_statics(
-            fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements), **path
-        ).torque
-        for elements in (20, 40)
-    )
-    limit = (4.0 * fine - coarse) / 3.0
-    found = spline_model.solve_statics(spline, **path).torque
+
+    def torque(models=fe_reference, **grid):
+        return models.solve_statics(models.cross_axis_pivot(**BARE, **given, **grid), **path).torque
+
+    limit, found = refined(torque, (20, 40)), torque(spline_model, control_points=control_points)
     return float(np.abs(found - limit).max() / np.abs(limit).max())
 
 
@@ -61,7 +57,7 @@ def swing_difference(effects, *, control_points=8):
     given, release = scene("table 1", effects), {"start": 1.0, "duration": 4e-3}
     slide = swinging_slide_stiffness(control_points)
     spline = spline_model.cross_axis_pivot(
-        **DESIGN, **given, control_points=control_points, slide_stiffness=slide
+        **BARE, **given, control_points=control_points, slide_stiffness=slide
     )
     found = spline_model.solve_release(
         spline, **release, step=1e-6, records=40, integrator="leapfrog", check=False
@@ -69,7 +65,7 @@ def swing_difference(effects, *, control_points=8):
     assert found.status.value == "converged", found.message
     coarse, fine = (
         fe_reference.solve_release(
-            fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements),
+            fe_reference.cross_axis_pivot(**BARE, **given, elements=elements),
             **release,
             step=step,
             samples=40,
@@ -90,15 +86,12 @@ def test_models_swing_alike(effects):
 def test_roots_of_a_turned_pivot_vibrate_alike():
     """Requirement: about a large rotation both models give roots the same modes, those of the strips too."""
     given, about = scene("table 1", ("root_compliance",)), {"rotation": 1.0, "count": 3}
-    coarse, fine = (
-        fe_reference.natural_frequencies(
-            fe_reference.cross_axis_pivot(**DESIGN, **given, elements=elements), **about
-        ).frequency
-        for elements in (10, 20)
-    )
-    limit = (4.0 * fine - coarse) / 3.0
+
+    def frequency(models=fe_reference, **grid):
+        return models.natural_frequencies(models.cross_axis_pivot(**BARE, **given, **grid), **about).frequency
+
+    limit = refined(frequency, (10, 20))
     for segments, apart in ((1, 5e-3), (4, 5e-4)):  # higher modes bend where a root's polynomial is coarse
-        spline = spline_model.cross_axis_pivot(**DESIGN, **given, control_points=8, segments=segments)
-        found = spline_model.natural_frequencies(spline, **about).frequency
+        found = frequency(spline_model, control_points=8, segments=segments)
         assert found[0] == pytest.approx(limit[0], rel=5e-4)
         assert found == pytest.approx(limit, rel=apart)

@@ -8,6 +8,8 @@ import spline_model
 from fe_reference import ELEMENTS
 from spline_model import DEFAULT_EFFECTS
 from tests import gates
+from tests.models import BOTH
+from tests.table_one import BARE, SIDES, TABLE_ONE
 
 #: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
 KNOWN = [
@@ -27,12 +29,15 @@ ASHWELL = [
     (50.0, 1.0826, 1.0908),
     (1000.0, 1.0953, 1.0971),
 ]
-SLOW = pytest.mark.slow
+SLOW, YOUNGS_MODULUS = pytest.mark.slow, 2e11
+#: Width over length and Poisson ratio of clamped strips.
+WIDER = (0.5, 0.45), (2.0, 0.25)
+ROOTS = ("root_compliance",)
 
 
 def strips(models, width, thickness, places=(0.0,), effects=(), parameters=None, nu=0.3, **grid):
     """A stage on parallel strips of unit length at these places."""
-    section = {"width": width, "thickness": thickness, "youngs_modulus": 2e11, "poisson_ratio": nu}
+    section = {"width": width, "thickness": thickness, "youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": nu}
     made = [
         models.StripDesign(
             name=f"strip at {y}", start=(0.0, y), end=(1.0, y), tip="stage", density=1.0, **section
@@ -105,8 +110,73 @@ def test_pure_bending_flattens_a_wide_strip(gate, models, grid):
             thickness = 0.3**2 * 0.5 / flatness
             made = strips(models, 0.3, thickness, effects=("anticlastic",), nu=poisson_ratio, **grid)
             path = models.solve_mechanism(made, rotation=0.5, increments=4)
-            rigidity = 2e11 * 0.3 * thickness**3 / 12.0
+            rigidity = YOUNGS_MODULUS * 0.3 * thickness**3 / 12.0
             found.append((path.torque[-1] / (0.5 * rigidity), path.stiffness[-1] / rigidity))
         return np.abs(np.array(found) - np.array(ASHWELL)[:, 1:]).max()
 
     gates.hold(gate, error)
+
+
+#: Both models, the elements of either law.
+ALL = pytest.mark.parametrize(
+    ("name", "models", "grid"),
+    [
+        ("spline", spline_model, {"control_points": 12}),
+        *((each, fe_reference, {"element": each}) for each in ELEMENTS),
+    ],
+    ids=["spline", *ELEMENTS],
+)
+
+
+@ALL
+@pytest.mark.parametrize("shape", [(0.1, 0.3), *(pytest.param(each, marks=SLOW) for each in WIDER)], ids=str)
+def test_clamped_pivots_are_as_stiff_as_their_plates(name, models, grid, shape):
+    """Requirement: at rest a pivot has sum EI/L (f_b + 12 (r - 1/2)^2 f_s) of its plates at any crossing."""
+    length, plate = BARE["length"], models.plate_factors(*shape)
+    sides = {"width": shape[0] * length, "thickness": 1e-3 * length, "poisson_ratio": shape[1]}
+
+    def error(effects=("clamped_width",), **coarse):
+        gaps = []
+        for crossing in (0.5, 0.2, 0.9):
+            given = BARE | sides | {"crossing_ratio": crossing, "effects": (*DEFAULT_EFFECTS, *effects)}
+            pivot = models.cross_axis_pivot(**given | grid | coarse)
+            beams = given["youngs_modulus"] * sides["width"] * sides["thickness"] ** 3 / 6.0 / length
+            known = beams * (plate.constant + 12.0 * (crossing - 0.5) ** 2 * plate.linear)
+            gaps.append(models.solve_statics(pivot, rotation=1e-4, increments=1).stiffness[0] / known - 1.0)
+        return np.abs(gaps).max()
+
+    gates.hold(f"{name}_clamped_width", error)
+
+
+@ALL
+def test_roots_are_springs_at_both_clamps(name, models, grid):
+    """Requirement: a strip that is bent to a half turn between two roots turns as one that is longer by c t
+    at either, its ends turn from the bodies by the moment over the springs, and the energy is the work."""
+    fields = spline_model.static_fields if models is spline_model else fe_reference.strip_fields
+    made = strips(models, 0.1, 0.05, (0.0,), ROOTS, {"root_compliance": {"root": 0.416}}, **grid)
+    rigidity, spring = YOUNGS_MODULUS * 0.1 * 0.05**3 / 12.0, 0.416 * 0.05
+
+    def error(turn=3.0):
+        bent = models.solve_mechanism(made, rotation=turn, increments=5)
+        moment = rigidity * 3.0 / (1.0 + 2.0 * spring)
+        turns = fields(made, bent.states[-1:]).rotation[0, 0, [0, -1]]
+        known = moment, 1.5 * moment, spring * moment / rigidity, 3.0 - spring * moment / rigidity
+        apart = np.divide((bent.torque[-1], bent.bending_energy[-1], *turns), known) - 1.0
+        return max(np.abs(apart).max(), np.finfo(float).eps)
+
+    gates.hold("roots", error)
+
+
+@BOTH
+def test_sides_make_the_section(models):
+    """Requirement: sides give A = b t and I = b t^3 / 12; printed ones beside them count, rounded."""
+
+    def section(**given):
+        pivot = models.cross_axis_pivot(**given)
+        return pivot.strips[0].section if models is fe_reference else pivot.design.strips[0]
+
+    made = section(**BARE, **SIDES)
+    assert made.area == 0.01 * 0.005
+    assert made.second_moment_of_area == pytest.approx(0.01 * 0.005**3 / 12.0, rel=1e-15)
+    both = section(**TABLE_ONE, **SIDES)
+    assert both.second_moment_of_area == TABLE_ONE["second_moment_of_area"]

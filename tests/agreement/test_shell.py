@@ -12,6 +12,7 @@ from numpy.polynomial import Legendre, Polynomial
 from numpy.polynomial.legendre import leggauss
 
 import spline_model
+from tests.agreement.test_section_laws import YOUNGS_MODULUS, strips
 
 NU, ALONG, ACROSS = 0.3, 10, 7
 CLAMPED, BOTH = ("clamped_width",), ("clamped_width", "anticlastic")
@@ -61,25 +62,10 @@ def shell_factor(ratio, flatness):
 
 def strip_factor(ratio, flatness, effects):
     """The same of a strip of the spline model, whose tip is turned by one radian."""
-    sides = {"width": ratio, "thickness": ratio**2 / flatness}
-    strip = spline_model.StripDesign(
-        name="strip",
-        start=(0, 0),
-        end=(1, 0),
-        tip="tip",
-        youngs_modulus=1e9,
-        density=1.0,
-        poisson_ratio=NU,
-        **sides,
-    )
-    made = spline_model.compliant_mechanism(
-        strips=[strip],
-        bodies=[spline_model.BodyDesign(name="tip", centre=(1, 0))],
-        effects=(*spline_model.DEFAULT_EFFECTS, *effects),
-        control_points=12,
-    )
+    thickness = ratio**2 / flatness
+    made = strips(spline_model, ratio, thickness, effects=effects, nu=NU, control_points=12)
     path = spline_model.solve_mechanism(made, rotation=1.0, increments=4)
-    return path.bending_energy[-1] / (0.5 * strip.flexural_rigidity)
+    return path.bending_energy[-1] / (YOUNGS_MODULUS * ratio * thickness**3 / 24.0)
 
 
 @pytest.mark.parametrize(

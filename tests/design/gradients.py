@@ -3,6 +3,7 @@
 import numpy as np
 
 from studies.design.programme import Programme
+from tests.fe.cases import extrapolated
 
 #: First step of differences, of a variable's bounds, and how often it is halved.
 STEP, LEVELS = 0.01, 4
@@ -28,14 +29,7 @@ def gradient_error(task, values, levels=LEVELS):
                 for each in (y + step, y - step)
             )
             found.append((up - down) / (2.0 * step[i]))
-        errors[:, i] = np.abs(exact[:, i] - _limit(found))
+        errors[:, i] = np.abs(exact[:, i] - extrapolated(found))
     names = np.array([*programme.row_names(), "stiffness"])
     parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
     return float(max(error / largest for error, largest in parts if largest > 0.0))
-
-
-def _limit(row):
-    """Return the limit of differences whose steps are halved, by Richardson's extrapolation."""
-    for order in range(1, len(row)):
-        row = [(4**order * row[i + 1] - row[i]) / (4**order - 1) for i in range(len(row) - 1)]
-    return row[0]

@@ -15,7 +15,7 @@ from tests import gates
 from tests.exchange.test_data_page import described
 
 FINDS = Path(__file__).parent.parent / "suite" / "finds"
-CASE = str(FOLDER / "cross_axis_pivot.toml")
+CASE = "cross_axis_pivot"
 QUICK = ("--objective", "centre-shift", "--rotation-deg", "45", "--aspect", "0.5", "--starts", "1")
 
 
@@ -77,61 +77,40 @@ def test_every_start_has_a_row_and_an_end_in_words(capsys):
     assert "beyond the model: b/L 1: clamps over the whole width" in out
 
 
-GUIDE, LINKAGE = "parallel_strip_guide", ("four_bar_of_flexures", "--objective", "stress")
+ASKED, LINKAGE = f"{CASE} {' '.join(QUICK)}", "four_bar_of_flexures --objective stress"
+HINGE, GUIDE = "living_hinge --objective", "parallel_strip_guide --objective"
+#: Words, and what the one line must say.
+WORDS = {
+    CASE: "size: the following arguments are required: --objective",
+    f"{ASKED} --width-mm 20:5": "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",
+    f"{ASKED} --length-mm 40 --width-mm 30": "got at least 30, expected no more than 20, --aspect",
+    f"{ASKED} --thickness-mm 6": "got at least 6, expected no more than 4.998, the case's",
+    f"{ASKED} --crossing-ratio 0.5:1.5": "LOW:HIGH with 0 < LOW <= HIGH < 1",
+    f"{ASKED} --safety-factor 2": "--safety-factor: got 2 without a yield strength, expected",
+    f"{ASKED} --safety-factor 2 --max-stress-MPa 9": "got 2 beside --max-stress-MPa, expected one of them",
+    f"{ASKED} --out /nowhere/x.toml": "/nowhere/x.toml: cannot be written",
+    f"{ASKED} --rotation-deg 0": "drive.rotation_deg: got 0, expected a range to size for",
+    f"{HINGE} stress --free section.thickness_m=1e-9:1": "--free: section.thickness_m at its bound of 1: ",
+    f"{HINGE} stiffness-variation --free section.width_m": "expected what is not zero already: its stiffness",
+    f"{HINGE} centre-shift": "got centre-shift, expected stress or",
+    LINKAGE: "--free: got none, expected a number of the mechanism's file",
+    f"{LINKAGE} --free section.depth_m": "--free: got section.depth_m, expected a number of",
+    f"{LINKAGE} --free strips.rocker_ground.end_m.x": "without bounds, expected strips.rock",
+    f"{LINKAGE} --free section.width_m=2:1": "expected KEY=LOW:HIGH with LOW",
+    f"{LINKAGE} --free bodies.crank.mass_kg": "expected a number of sections, moduli",
+    f"{LINKAGE} --free section.width_m --travel-mm 1": "--travel-mm: got it for four_bar",
+    f"{LINKAGE} --free section.width_m --width-mm 9": "--width-mm: got it for four_bar",
+    f"{CASE} --objective stress": "--objective: got stress, expected centre-shift or",
+    f"{CASE} --objective centre-shift --free x": "--free: got it for cross_axis",
+    f"{GUIDE} stiffness-variation --free section.width_m": "expected stress of what follows its loads",
+}
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ([CASE], "size: the following arguments are required: --objective"),
-        (
-            [CASE, *QUICK, "--width-mm", "20:5"],
-            "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",
-        ),
-        (
-            [CASE, *QUICK, "--length-mm", "40", "--width-mm", "30"],
-            "--width-mm: got at least 30, expected no more than 20, --aspect times the length, which is",
-        ),
-        (
-            [CASE, *QUICK, "--thickness-mm", "6"],
-            "--thickness-mm: got at least 6, expected no more than 4.998, the case's thickness to the length",
-        ),
-        (
-            ["living_hinge", "--objective", "stress", "--free", "section.thickness_m=1e-9:1"],
-            "--free: section.thickness_m at its bound of 1: ",
-        ),
-        (
-            ["living_hinge", "--objective", "stiffness-variation", "--free", "section.width_m"],
-            "expected what is not zero already: its stiffness does not vary",
-        ),
-        ([CASE, *QUICK, "--crossing-ratio", "0.5:1.5"], "LOW:HIGH with 0 < LOW <= HIGH < 1"),
-        ([CASE, *QUICK, "--safety-factor", "2"], "--safety-factor: got 2 without a yield strength, expected"),
-        (
-            ["titanium_pivot", *QUICK, "--safety-factor", "2", "--max-stress-MPa", "9"],
-            "--safety-factor: got 2 beside --max-stress-MPa, expected one of them",
-        ),
-        ([CASE, *QUICK, "--out", "/nowhere/x.toml"], "/nowhere/x.toml: cannot be written"),
-        ([CASE, *QUICK, "--rotation-deg", "0"], "drive.rotation_deg: got 0, expected a range to size for"),
-        ([*LINKAGE], "--free: got none, expected a number of the mechanism's file"),
-        ([*LINKAGE, "--free", "section.depth_m"], "--free: got section.depth_m, expected a number of"),
-        ([*LINKAGE, "--free", "strips.rocker_ground.end_m.x"], "without bounds, expected strips.rock"),
-        ([*LINKAGE, "--free", "section.width_m=2:1"], "expected KEY=LOW:HIGH with LOW"),
-        ([*LINKAGE, "--free", "bodies.crank.mass_kg"], "expected a number of sections, moduli"),
-        ([*LINKAGE, "--free", "section.width_m", "--travel-mm", "1"], "--travel-mm: got it for four_bar"),
-        ([*LINKAGE, "--free", "section.width_m", "--width-mm", "9"], "--width-mm: got it for four_bar"),
-        ([CASE, "--objective", "stress"], "--objective: got stress, expected centre-shift or"),
-        ([CASE, *QUICK[:2], "--free", "x"], "--free: got it for cross_axis"),
-        (["living_hinge", *QUICK[:2]], "got centre-shift, expected stress or"),
-        (
-            [GUIDE, "--objective", "stiffness-variation", "--free", "section.width_m"],
-            "--objective: got stiffness-variation, expected stress of what follows its loads",
-        ),
-    ],
-)
-def test_bad_input_in_one_line(arguments, message, refused):
+@pytest.mark.parametrize("words", WORDS)
+def test_bad_input_in_one_line(words, refused):
     """Every bad input ends with code 2 and one line: numbers that a mechanism has not or has no gradients
     for, and what only the other kind of design has, among them."""
-    refused("size", *arguments, says=message)
+    refused("size", *words.split(), says=WORDS[words])
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """What the tests of the finite elements share: the paper's pivot, a cantilever, limits of refinement."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -9,22 +8,17 @@ import numpy as np
 import pytest
 
 from fe_reference import Body, Model, Section, Strip, cross_axis_pivot
-from tests.table_one import TABLE_ONE
+from tests import table_one
 
 QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
 """Both elements where the interpreted forms of the second take seconds."""
 
-TABLE_1: dict[str, Any] = TABLE_ONE
+TABLE_1: dict[str, Any] = table_one.TABLE_ONE
 LENGTH = TABLE_1["length"]
-SECTION = Section(
-    **{
-        name: TABLE_1[name]
-        for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    }
-)
+SECTION = Section(**table_one.SECTION)
 EI = SECTION.flexural_rigidity
-#: Units of force, moment and rotational stiffness in which errors are given.
-FORCE, MOMENT = EI / LENGTH**2, EI / LENGTH
+#: Unit of moment and rotational stiffness in which errors are given.
+MOMENT = EI / LENGTH
 
 
 def pivot(**changes: Any) -> Model:
@@ -44,28 +38,9 @@ def cantilever(*, elements: int, element: str = "corotational", section: Section
     return Model(strips=(strip,), bodies=(Body(centre=np.array([LENGTH, 0.0])),), element=element)
 
 
-def with_shear_factor(model: Model, factor: float) -> Model:
-    """Return the model with another shear factor in all strips."""
-    section = replace(model.strips[0].section, shear_factor=factor)
-    return replace(model, strips=tuple(replace(strip, section=section) for strip in model.strips))
-
-
 def rotation_matrix(angle: float) -> np.ndarray:
     """Return the matrix (2, 2) that turns by an angle [rad]."""
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-
-def rotated(model: Model, angle: float) -> Model:
-    """Return the same model turned as a whole about the origin by `angle` [rad], with the vectors of its
-    effects."""
-    turn, named = rotation_matrix(angle), {}
-    for name, effect in model.effects.named.items():
-        vectors = {each: getattr(effect, each, None) for each in ("acceleration", "force", "displacement")}
-        own = {each: tuple((turn @ np.array(v)).tolist()) for each, v in vectors.items() if v is not None}
-        named[name] = replace(effect, **own)
-    strips = tuple(replace(strip, nodes=strip.nodes @ turn.T) for strip in model.strips)
-    bodies = tuple(replace(body, centre=turn @ body.centre) for body in model.bodies)
-    return replace(model, strips=strips, bodies=bodies, effects=replace(model.effects, named=named))
 
 
 def extrapolated(values: Sequence[Any]) -> Any:

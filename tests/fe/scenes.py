@@ -3,16 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from fe_reference import DEFAULT_EFFECTS, BodyDesign, Model, StripDesign, compliant_mechanism
-from tests.fe.cases import TABLE_1
+from tests.table_one import SECTION
 
 Parameters = Mapping[str, Mapping[str, Any]]
-SECTION: dict[str, float] = {
-    name: TABLE_1[name]
-    for name in ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-}
 #: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
 GUIDE, APART, LINK = 0.1, 0.05, 0.06
 #: Effects of bodies on strips without inertia.
@@ -32,16 +26,6 @@ SIDED: dict[str, dict[str, Any]] = {"clamped_width": {}, "anticlastic": {}, "roo
 BARE = {name: value for name, value in SECTION.items() if name not in ("area", "second_moment_of_area")}
 WIDE, THICK = BARE | {"width": 0.02, "thickness": 0.001}, BARE | {"width": 0.02, "thickness": 0.004}
 SIDED_SCENE = {name: given for name, given in PARAMETERS.items() if name != "pre_strain"} | SIDED
-#: The same effects with nothing in them.
-NOTHING: dict[str, dict[str, Any]] = {
-    "gravity": {"acceleration": (0.0, 0.0)},
-    "strip_damping": {"relaxation_time": 0.0},
-    "strip_drag": {"rate": 0.0},
-    "body_damping": {"translation": 0.0, "rotation": 0.0},
-    "applied_force": {"force": (0.0, 0.0), "body": "coupler"},
-    "applied_moment": {"moment": 0.0, "body": "crank"},
-    "pre_strain": {"curvature": 0.0, "strain": 0.0},
-}
 
 
 def free_cantilever(
@@ -115,14 +99,3 @@ def four_bar(
     return compliant_mechanism(
         strips=strips, bodies=bodies, effects=(*effects, *given), parameters=given, **discretisation
     )
-
-
-def decay_and_frequency(motion: np.ndarray, step: float) -> tuple[float, float]:
-    """Return damping rate [1/s] and circular frequency [rad/s] of one damped vibration about zero.
-
-    Samples of such a motion obey x_{n+1} = 2 e^{-rh} cos(wh) x_n - e^{-2rh} x_{n-1}.
-    """
-    rows = np.column_stack([motion[1:-1], -motion[:-2]])
-    middle, square = np.linalg.lstsq(rows, motion[2:], rcond=None)[0]
-    rate = -0.5 * np.log(square) / step
-    return float(rate), float(np.arccos(0.5 * middle / np.sqrt(square)) / step)

@@ -1,92 +1,13 @@
-"""Motion after release: both integrators, their orders, attachments and refusals."""
-
-from functools import cache
-from typing import Any
+"""Motion after release: what a run tells of itself, steps that are too long, stable and unstable ones."""
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
-from fe_reference import (
-    ConvergenceError,
-    Status,
-    Trajectory,
-    natural_frequencies,
-    solve_release,
-)
-from tests.fe.cases import LENGTH, observed_order, pivot
+from fe_reference import ConvergenceError, Status, solve_release
+from tests.fe.cases import pivot
 from tests.gates import hold
 
 QUARTER = np.pi / 2.0
-
-
-@cache
-def release(duration: float, integrator: str = "central-difference", **settings: Any) -> Trajectory:
-    return solve_release(
-        pivot(), start=QUARTER, duration=duration, integrator=integrator, samples=200, **settings
-    )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("integrator", ["central-difference", "generalised-alpha"])
-def test_order_of_the_integrators(integrator: str) -> None:
-    """The rotation over 0.0048 s converges with the second power of the step."""
-
-    def error(step: float = 5e-7) -> float:
-        runs = [
-            solve_release(
-                pivot(elements=6),
-                start=QUARTER,
-                duration=0.0048,
-                step=k * step,
-                integrator=integrator,
-                samples=50,
-                raise_on_failure=False,
-                check=False,
-            )
-            for k in (4, 2, 1)
-        ]
-        if any(run.status is not Status.CONVERGED for run in runs):
-            return np.inf
-        return abs(observed_order([run.rotation for run in runs]) - 2.0)
-
-    hold(f"fe_order_{integrator.replace('-', '_')}", error)
-
-
-@pytest.mark.slow
-def test_small_release_swings_at_the_linear_frequency() -> None:
-    """Let go from 0.001 rad the pivot swings at the first frequency of the linearised lumped system."""
-    linear = natural_frequencies(pivot(), count=1, mass="lumped").frequency[0]
-
-    def error(amplitude: float = 1e-3) -> float:
-        motion = solve_release(pivot(), start=amplitude, duration=0.06)
-
-        def misfit(frequency: float) -> float:
-            phase = 2.0 * np.pi * frequency * motion.time
-            basis = np.column_stack([np.cos(phase), np.sin(phase)])
-            return float(np.linalg.lstsq(basis, motion.rotation, rcond=None)[1][0])
-
-        span = (0.98 * linear, 1.02 * linear)
-        best = minimize_scalar(misfit, bounds=span, method="bounded", options={"xatol": 1e-9 * linear})
-        return float(abs(best.x / linear - 1.0))
-
-    hold("fe_small_release_frequency", error)
-
-
-@pytest.mark.parametrize("integrator", ["central-difference", "generalised-alpha"])
-def test_attachments_hold_exactly(integrator: str) -> None:
-    """Clamped ends stay and the plate keeps its length at every instant: constraints are eliminated."""
-
-    def error(stretch: float = 0.0) -> float:
-        motion = release(0.001, integrator)
-        ends = (1.0 + stretch) * motion.shape[:, :, -1]
-        plate = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        assert np.all(motion.shape[:, :, 0] == motion.shape[0, :, 0])
-        return float(
-            max(np.abs(plate - 0.06).max(), np.abs(ends.mean(axis=1) - motion.centre).max()) / LENGTH
-        )
-
-    hold("fe_attachments", error)
 
 
 def test_run_is_described() -> None:
@@ -101,13 +22,6 @@ def test_run_is_described() -> None:
     assert motion.kinetic_energy[0] == 0.0
     assert motion.settings["step_s"] <= 0.9 * motion.settings["critical_step_s"]
     assert motion.counters["steps"] * motion.settings["step_s"] == pytest.approx(1e-4, rel=1e-12)
-
-
-def test_start_out_of_reach_is_refused_with_evidence() -> None:
-    """A start that statics does not reach is refused with the static path until there."""
-    with pytest.raises(ConvergenceError) as failure:
-        solve_release(pivot(elements=8), start=40.0, duration=1e-4, increments=2)
-    assert failure.value.load_factor < 1.0
 
 
 def test_implicit_step_without_solution_ends_the_run() -> None:
@@ -148,18 +62,6 @@ def test_explicit_is_stable_and_keeps_its_energy() -> None:
         return motion.energy_error if motion.status is Status.CONVERGED else np.inf
 
     hold("fe_explicit_energy", error)
-
-
-def test_explicit_is_unstable_beyond_the_limit() -> None:
-    """At 1.1 of the estimate the motion blows up at once; it is stopped, and says when and what to do."""
-    with pytest.raises(
-        ConvergenceError, match=r"the energy grew from .* use a smaller time step\."
-    ) as failure:
+    with pytest.raises(ConvergenceError, match=r"the energy grew from .* use a smaller time step") as failure:
         solve_release(pivot(), start=QUARTER, duration=0.002, safety=1.1)
-    motion = failure.value.solution
-    assert motion.status is Status.UNSTABLE
-    assert np.isfinite(motion.rotation).all()
-    assert failure.value.load_factor < 0.5
-    sound = solve_release(pivot(), start=QUARTER, duration=0.002, safety=0.9)
-    assert sound.status is Status.CONVERGED
-    assert sound.time[-1] == pytest.approx(0.002, rel=1e-12)
+    assert failure.value.solution.status is Status.UNSTABLE

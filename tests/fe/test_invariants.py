@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from fe_reference import ELEMENTS, solve_statics
-from tests.fe.cases import LENGTH, SECTION, pivot
-from tests.gates import hold
+from tests.fe.cases import SECTION, pivot
 
 QUARTER = np.pi / 2.0
 
@@ -22,19 +21,3 @@ def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
     turned = replace(model, strips=model.strips[::-1])
     one, other = (solve_statics(each, rotation=0.5, increments=4).stiffness for each in (model, turned))
     assert one[1:] == pytest.approx(other[1:], rel=1e-12)
-
-
-def test_section_forces_are_in_balance_along_the_strip() -> None:
-    """The end values of M, N and V are the clamp reactions, and dM/ds = -(1 + eps) V between the nodes."""
-
-    def error(elements: int = 80) -> float:
-        answer = solve_statics(pivot(elements=elements, crossing_ratio=0.35), rotation=QUARTER, increments=5)
-        moment = answer.bending_moment[1:]
-        strain = answer.axial_force[1:] / SECTION.axial_rigidity
-        load = (1.0 + strain) * answer.shear_force[1:]
-        gain = np.diff(moment, axis=-1) + LENGTH / elements * 0.5 * (load[..., 1:] + load[..., :-1])
-        assert np.allclose(moment[..., 0], -answer.clamp_reactions[1:, :, 0, 2], rtol=1e-12)
-        assert np.allclose(moment[..., -1], answer.clamp_reactions[1:, :, 1, 2], rtol=1e-12)
-        return float(np.abs(gain).max() * elements / np.abs(moment).max())
-
-    hold("fe_section_force_balance", error)

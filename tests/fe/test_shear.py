@@ -1,7 +1,8 @@
 """The shear-deformable element against Timoshenko's cantilever, whose shear rigidity is written out here."""
 
-from fe_reference import StripDesign, compliant_mechanism, solve_mechanism
+from fe_reference import solve_mechanism
 from tests.fe.cases import extrapolated
+from tests.fe.scenes import free_cantilever
 from tests.gates import hold
 
 LENGTH, DEPTH, WIDTH, YOUNGS_MODULUS, POISSON_RATIO, FORCE = 0.05, 0.01, 0.008, 2e9, 0.3, 1e-3
@@ -9,24 +10,11 @@ LENGTH, DEPTH, WIDTH, YOUNGS_MODULUS, POISSON_RATIO, FORCE = 0.05, 0.01, 0.008, 
 
 def deflection(elements: int) -> float:
     """Return the deflection of the tip of a stubby strip under a force so small that it is linear [m]."""
-    strip = StripDesign(
-        name="strip",
-        start=(0.0, 0.0),
-        end=(LENGTH, 0.0),
-        tip=None,
-        area=WIDTH * DEPTH,
-        second_moment_of_area=WIDTH * DEPTH**3 / 12.0,
-        youngs_modulus=YOUNGS_MODULUS,
-        poisson_ratio=POISSON_RATIO,
-        density=1.0,
-    )
-    model = compliant_mechanism(
-        strips=[strip],
-        effects=("bending", "stretching", "tip_force"),
-        parameters={"tip_force": {"strip": "strip", "force": (0.0, FORCE)}},
-        elements=elements,
-        element="reissner",
-    )
+    section = {"area": WIDTH * DEPTH, "second_moment_of_area": WIDTH * DEPTH**3 / 12.0, "density": 1.0}
+    section |= {"youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": POISSON_RATIO}
+    load = {"tip_force": {"strip": "strip", "force": (0.0, FORCE)}}
+    how = {"elements": elements, "element": "reissner"}
+    model = free_cantilever(length=LENGTH, section=section, parameters=load, **how)
     return float(solve_mechanism(model, increments=1).shape[-1, 0, -1, 1])
 
 

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 import fe_reference
-from fe_reference import (
-    Model,
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-)
+from fe_reference import Model, cross_axis_pivot, solve_mechanism, solve_statics
 from tests.fe.cases import extrapolated, pivot
 from tests.frames import heavy
 from tests.gates import hold

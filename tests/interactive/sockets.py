@@ -44,6 +44,12 @@ def answer(socket, kind="state"):
             return message
 
 
+def told(socket, **event):
+    """The state that answers an event."""
+    say(socket, **event)
+    return answer(socket)
+
+
 def closing(socket):
     """Code and reason that the server closes with."""
     with pytest.raises(ConnectionClosed) as caught:

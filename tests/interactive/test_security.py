@@ -18,7 +18,7 @@ from studies.commands import interactive
 from studies.errors import BadInput
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
-from tests.interactive.sockets import answer, closing, emptied, get, opened, say
+from tests.interactive.sockets import answer, closing, emptied, get, opened, say, told
 
 
 def test_page_is_served_with_its_headers(server):
@@ -118,8 +118,7 @@ def test_malformed_messages_close_their_socket_only(server, message, text):
             socket.send(message)
             code, reason = closing(socket)
             assert (code, text in reason, "\n" in reason) == (4400, True, False)
-        say(other, do="pose", pose=[0, 0, 0.1])
-        assert answer(other)["pose"][2] == pytest.approx(0.1)
+        assert told(other, do="pose", pose=[0, 0, 0.1])["pose"][2] == pytest.approx(0.1)
 
 
 def test_too_large_messages_are_refused(server):
@@ -163,8 +162,7 @@ def test_sockets_without_the_token_take_no_place(server):
         for _ in range(2 * protocol.MOST_SOCKETS):
             stack.enter_context(opened(server, hello=False))
         with opened(server) as socket:
-            say(socket, do="pose", pose=[0, 0, 0.1])
-            assert answer(socket)["pose"][2] == pytest.approx(0.1)
+            assert told(socket, do="pose", pose=[0, 0, 0.1])["pose"][2] == pytest.approx(0.1)
 
 
 #: An address of this machine that is not its usual one, for a network of one's own.

@@ -14,7 +14,7 @@ from studies.interactive.recording import Recorder, mark, replay
 from studies.interactive.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
-from tests.interactive.sockets import answer, opened, say
+from tests.interactive.sockets import answer, opened, say, told
 
 
 def test_bad_numbers_are_answered_and_change_nothing(server):
@@ -22,24 +22,21 @@ def test_bad_numbers_are_answered_and_change_nothing(server):
     with opened(server) as socket:
         say(socket, do="parameter", name="length", value=7.0)
         assert "length: got 7000, expected 40 to 120 mm" in answer(socket, "error")["text"]
-        say(socket, do="pose", pose=[0, 0, 0.2])
-        assert answer(socket)["pose"][2] == pytest.approx(0.2)
+        assert told(socket, do="pose", pose=[0, 0, 0.2])["pose"][2] == pytest.approx(0.2)
 
 
 def test_failing_solver_keeps_the_last_state(server, monkeypatch):
     """Requirement: an arithmetic fault of the solver, or a number that is not finite, is answered by a
     sentence; the next event is answered as ever."""
     with opened(server) as socket:
-        say(socket, do="pose", pose=[0, 0, 0.2])
-        answer(socket)
+        told(socket, do="pose", pose=[0, 0, 0.2])
         for fault in (lambda *_: 1 / 0, lambda *_: {"pose": [math.nan]}):
             with monkeypatch.context() as patch:
                 patch.setattr(Session, "feed", fault)
                 say(socket, do="pose", pose=[0, 0, 0.3])
                 text = answer(socket, "error")["text"]
                 assert text.startswith("The solver failed, the last good state is kept")
-        say(socket, do="tick")
-        assert answer(socket)["pose"][2] == pytest.approx(0.2)
+        assert told(socket, do="tick")["pose"][2] == pytest.approx(0.2)
 
 
 def test_released_body_runs_by_itself(server):
@@ -89,8 +86,7 @@ def test_session_is_replayed_by_itself(server):
         stamped = {**event, "t": 0.02 * k}
         recorder.write(stamped, session.feed(stamped))
     with opened(server) as socket:
-        say(socket, do="pose", pose=[0, 0, 0.1])
-        own = answer(socket)
+        own = told(socket, do="pose", pose=[0, 0, 0.1])
         upload(socket, protocol.REPLAY, "".join(recorder.lines))
         states = []
         while (message := json.loads(socket.recv(5)))["kind"] != "replayed":
@@ -101,8 +97,7 @@ def test_session_is_replayed_by_itself(server):
         assert [mark(plain_state(state)) for state in states] == [
             json.loads(line)["mark"] for line in recorder.lines
         ]
-        say(socket, do="tick")
-        assert answer(socket)["pose"] == own["pose"]
+        assert told(socket, do="tick")["pose"] == own["pose"]
         upload(socket, protocol.REPLAY, "no session")
         assert "line 1: got no JSON" in answer(socket, "error")["text"]
 
@@ -130,16 +125,14 @@ def test_design_is_saved_and_opened(server, tmp_path):
     """Requirement: the design is a case file that the commands read; opened, it is the same design; a text
     that is no case is named in one line."""
     with opened(server) as socket:
-        say(socket, do="parameter", name="thickness", value=7e-4)
-        values = answer(socket)["values"]
+        values = told(socket, do="parameter", name="thickness", value=7e-4)["values"]
         say(socket, do="save")
         text = answer(socket, "case")["text"]
         (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
         problem = named_case(tmp_path / "mine.toml")
         assert (problem.width, problem.thickness) == pytest.approx((0.01, 7e-4))
         assert problem.effects.parameters()["strip_damping"] == {"relaxation_time": 2e-3}
-        say(socket, do="preset", name="table-1")
-        answer(socket)
+        told(socket, do="preset", name="table-1")
         upload(socket, protocol.DESIGN, text)
         state = answer(socket)
         same = {**state["values"], "time_scale": values["time_scale"]}
@@ -155,13 +148,11 @@ def test_curve_of_every_design_is_sent(server):
         say(socket, do="parameter", name="thickness", value=2e-3)
         assert answer(socket, "curve")["text"].startswith("does not yield up to ")
         curve = answer(socket, "curve")
-        say(socket, do="drive", by="rotation")
-        answer(socket)
+        told(socket, do="drive", by="rotation")
         at, moment = curve["yields"]
         states = []
         for angle in (curve["rotation"][6], 0.99 * at, 1.01 * at):
-            say(socket, do="pose", pose=[0, 0, angle])
-            states.append(answer(socket))
+            states.append(told(socket, do="pose", pose=[0, 0, angle]))
         assert states[0]["force"][2] == pytest.approx(curve["moment"][6], rel=1e-9)
         assert states[1]["force"][2] < moment < states[2]["force"][2]
         assert states[1]["stress"]["of_yield"] < 1.0 < states[2]["stress"]["of_yield"]
@@ -173,11 +164,9 @@ def test_record_file_replays():
     lines = []
     with Server(Settings(camera="none", keep=lines.append)) as hosted, opened(hosted) as socket:
         with opened(hosted) as second:
-            say(second, do="pose", pose=[0, 0, 0.3])
-            answer(second)
+            told(second, do="pose", pose=[0, 0, 0.3])
         for k in range(5):
-            say(socket, do="pose", pose=[0, 0, 0.1 * k])
-            answer(socket)
+            told(socket, do="pose", pose=[0, 0, 0.1 * k])
     same = [good for _, good in replay(lines)]
     assert len(same) == 7
     assert all(same)

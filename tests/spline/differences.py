@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from spline_model import cross_axis_pivot, sensitivities, solve_statics
+from tests.fe.cases import extrapolated
 from tests.table_one import TABLE_ONE
 
 QUANTITIES = (
@@ -83,11 +83,4 @@ def by_differences(
         for quantity in QUANTITIES:
             change = getattr(up, quantity).value - getattr(down, quantity).value
             rows[quantity].append(change / (2.0 * step))
-    return {quantity: limit(row) for quantity, row in rows.items()}
-
-
-def limit(row: list[np.ndarray]) -> np.ndarray:
-    """The limit of differences whose steps are halved."""
-    for order in range(1, len(row)):
-        row = [(4**order * fine - coarse) / (4**order - 1) for coarse, fine in pairwise(row)]
-    return row[0]
+    return {quantity: extrapolated(row) for quantity, row in rows.items()}

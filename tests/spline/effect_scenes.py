@@ -22,20 +22,9 @@ def scene_with(*names, parameters=None, **settings):
     pivot = cross_axis_pivot(**SIX, width=0.01, thickness=0.005).design
     strips = list(pivot.strips)
     if "tip_force" in names:
-        strips.append(
-            StripDesign(
-                name="free",
-                start=(0.03, 0.06),
-                end=(0.03, 0.12),
-                root="body",
-                area=5e-6,
-                second_moment_of_area=1e-12,
-                width=3.2275e-3,
-                thickness=1.5492e-3,
-                youngs_modulus=206e9,
-                density=7800.0,
-            )
-        )
+        section = {"area": 5e-6, "second_moment_of_area": 1e-12, "width": 3.2275e-3, "thickness": 1.5492e-3}
+        section |= {"youngs_modulus": 206e9, "density": 7800.0}
+        strips.append(StripDesign(name="free", start=(0.03, 0.06), end=(0.03, 0.12), root="body", **section))
     given = PARAMETERS if parameters is None else parameters
     effects = tuple(n for n in DEFAULT_EFFECTS if not (n == "stretching" and "inextensible" in names))
     return compliant_mechanism(

@@ -7,17 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import (
-    BodyDesign,
-    ConvergenceError,
-    Status,
-    StripDesign,
-    compliant_mechanism,
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-)
+import spline_model
+from spline_model import ConvergenceError, Status, cross_axis_pivot, solve_mechanism, solve_statics
 from tests import gates
+from tests.frames import one_strip
 from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2
@@ -102,7 +95,13 @@ def test_default_answer_is_right():
 
 @pytest.mark.parametrize(
     "how",
-    [{"rotation": 0.3}, {"rotation": -0.5, "order": "together"}, {}, {"control": "arc-length"}],
+    [
+        {"rotation": 0.3},
+        {"rotation": 0.0},
+        {"rotation": -0.5, "order": "together"},
+        {},
+        {"control": "arc-length"},
+    ],
     ids=str,
 )
 def test_any_mechanism_has_an_estimate(how):
@@ -149,14 +148,7 @@ ALONE = {
 def test_an_estimate_is_that_of_its_largest_part(part):
     """Requirement: turns, shear forces and stresses count in the estimate where they alone are far off."""
     loads, quantity, unit = ALONE[part]
-    strip = StripDesign(name="bar", start=(0.0, 0.0), end=(0.1, 0.0), tip="tip", **BAR)
-    bar = compliant_mechanism(
-        strips=[strip],
-        bodies=[BodyDesign(name="tip", centre=(0.1, 0.0))],
-        effects=("bending", "stretching", *loads),
-        parameters=loads,
-        control_points=4,
-    )
+    bar = one_strip(spline_model, loads, loads, section=BAR, control_points=4)
     solution = solve_mechanism(bar, increments=4, accuracy=0.9)
     assert solution.estimate.trials == (4,)
     four, seven = (

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 from mpmath import ellipk, mp
 
-from spline_model import (
-    cross_axis_pivot,
-    solve_mechanism,
-    solve_statics,
-)
+from spline_model import cross_axis_pivot, solve_mechanism, solve_statics
 from tests import gates
 from tests.frames import column, opposed
 from tests.table_one import SIX, TABLE_ONE

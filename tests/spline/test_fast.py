@@ -57,15 +57,6 @@ def test_failed_designs_are_rows():
     assert np.array_equal(batch.torque[0], batch.torque[2], equal_nan=True)
 
 
-def test_columns_are_the_same_as_rows():
-    """Requirement: designs as columns, with numbers for what they share, give the answers of a list."""
-    designs = many(5)
-    varied = ("crossing_ratio", "inclination", "second_moment_of_area")
-    columns = TABLE_ONE | {name: np.array([d[name] for d in designs]) for name in varied}
-    rows = solve_many(designs, rotation=1.0, increments=5)
-    assert np.array_equal(solve_many(columns, rotation=1.0, increments=5).torque, rows.torque)
-
-
 def strain_error(depth=4e-3):
     """Largest strain of three designs in a batch, by a depth, against the section forces of single solves."""
     designs = many(3)
@@ -87,14 +78,3 @@ def strain_error(depth=4e-3):
 def test_strain_of_a_batch_follows_from_the_section_forces():
     """Requirement: a batch's largest strain, on paths of its designs' own, is that of single solves."""
     gates.hold("spline_batch_strain", strain_error)
-
-
-def test_rotations_of_a_batch_may_differ():
-    """Requirement: designs with rotations of their own get the paths that they have one by one."""
-    designs, turns = many(3), (1.0, -0.5, 0.7)
-    batch = solve_many(designs, rotation=turns, increments=5)
-    for i, turn in enumerate(turns):
-        assert np.array_equal(
-            batch.torque[i], solve_many([designs[i]], rotation=turn, increments=5).torque[0]
-        )
-    assert np.isnan(batch.strain).all()

@@ -1,22 +1,14 @@
 """The leapfrog: energy, agreement with the energy-consistent scheme, scenes of all kinds."""
 
-import math
 from functools import cache
 
 import numpy as np
 import pytest
 
-from spline_model import Status, cross_axis_pivot, solve_release, swinging_slide_stiffness
+from spline_model import Status, cross_axis_pivot, solve_release
 from tests import gates
+from tests.spline.swings import QUARTER, drift, pivot
 from tests.table_one import TABLE_ONE
-
-QUARTER = math.pi / 2
-
-
-def pivot(control_points=6, **more):
-    """Table 1 as it swings."""
-    slide = swinging_slide_stiffness(control_points)
-    return cross_axis_pivot(**TABLE_ONE, control_points=control_points, slide_stiffness=slide, **more)
 
 
 def swing(step, duration=0.004, integrator="leapfrog", **more):
@@ -50,9 +42,7 @@ def test_leapfrog_agrees_with_the_energy_consistent_scheme():
 
 def energy_oscillation(step):
     """Largest change of the energy over 0.05 s in parts of the initial one."""
-    run = swing(step, duration=0.05)
-    energy = run.kinetic_energy + run.strain_energy
-    return np.abs(energy / energy[0] - 1).max()
+    return drift(swing(step, duration=0.05))
 
 
 def test_energy_does_not_drift():
@@ -111,8 +101,7 @@ def energy_of_inextensible(step=5e-6):
     stiff = cross_axis_pivot(**TABLE_ONE, control_points=6, stretch="inextensible")
     run = solve_release(stiff, duration=0.01, start=1.0, step=step, integrator="leapfrog", check=False)
     assert run.status is Status.CONVERGED
-    energy = run.kinetic_energy + run.strain_energy
-    return np.abs(energy / energy[0] - 1.0).max()
+    return drift(run)
 
 
 def test_inextensible_strips_keep_energy():

@@ -1,31 +1,20 @@
 """Sudden events in a motion, the energy monitor, restart, bounded work and what a step leaves unresolved."""
 
 import math
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
 
-from spline_model import (
-    DrivenRotation,
-    InvalidParameter,
-    cross_axis_pivot,
-    solve_motion,
-    solve_release,
-    swinging_slide_stiffness,
-)
+from spline_model import DrivenRotation, InvalidParameter, solve_motion, solve_release
 from tests import gates
+from tests.spline import swings
 from tests.table_one import TABLE_ONE
 
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 
-def pivot(control_points=4, **settings):
-    """Table 1 in motion."""
-    slide = swinging_slide_stiffness(control_points)
-    return cross_axis_pivot(**TABLE_ONE, control_points=control_points, slide_stiffness=slide, **settings)
-
-
+pivot = partial(swings.pivot, control_points=4)
 #: A moment that sets in between two steps, and one that grows all the time.
 SUDDEN, GROWING = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0)), ((0.0, 0.0), (4e-3, 1.0))
 
@@ -98,7 +87,7 @@ def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
     run = solve_release(pivot(), duration=0.02, step=5e-5)
     assert run.status.value == "not_converged"
     assert "the energy grows by more than 1e-06 of itself" in run.message
-    stored = run.kinetic_energy + run.strain_energy
+    stored = swings.total(run)
     assert (stored <= stored[0] * (1 + 1e-6)).all()
 
 
@@ -115,13 +104,12 @@ def test_halving_is_bounded():
         "body_mass": 0.2 * (length / TABLE_ONE["length"]) ** 3,
         "body_moment_of_inertia": 0.002 * (length / TABLE_ONE["length"]) ** 5,
     }
-    design = cross_axis_pivot(**soft, control_points=6, slide_stiffness=swinging_slide_stiffness(6))
-    run = solve_release(design, start=1.9748, duration=600.0, step=60.0)
+    run = solve_release(swings.pivot(soft), start=1.9748, duration=600.0, step=60.0)
     assert run.counters["halved_steps"] < 2_500  # 500 and 150 for each of ten steps
     assert run.status.value == "converged" or "halved too often" in run.message or "folds" in run.message
 
 
 def test_a_long_step_names_the_mode_that_it_leaves_out():
     """Requirement: a step too long for a mode that has energy names the mode, and the step that it takes."""
-    run = solve_release(pivot(6), duration=2e-4, step=2e-4)
+    run = solve_release(pivot(control_points=6), duration=2e-4, step=2e-4)
     assert "mode 2 (bending, 850 Hz" in run.resolution and "take 5.9e-05 s or less" in run.resolution

@@ -15,14 +15,10 @@ from spline_model import (
 )
 from spline_model.compile import compile_scene
 from spline_model.path import follow
+from tests.frames import STEEL
+from tests.spline.test_sensitivity_mechanism import BODIES, STRIPS
 from tests.table_one import TABLE_ONE
 
-STEEL = {
-    "area": 5e-6,
-    "second_moment_of_area": 1.0416667e-13,
-    "youngs_modulus": 206e9,
-    "density": 7800.0,
-}
 FORMS = {
     "mixed": {},
     "inextensible": {"stretch": "inextensible"},
@@ -37,7 +33,7 @@ FACTORS = (0.25, 0.5, 0.75, 1.0)
 
 def strip(name, start, end, **more):
     """A strip of spring steel, 10 mm x 0.5 mm."""
-    return StripDesign(name=name, start=start, end=end, **STEEL, **more)
+    return StripDesign(name=name, start=start, end=end, **STEEL | {"density": 7800.0}, **more)
 
 
 def stretching(form):
@@ -81,15 +77,8 @@ def arc(form):
 def chain(form):
     """Three strips in a row: from the ground to a body, between two bodies, and back to the ground."""
     return compliant_mechanism(
-        strips=[
-            strip("a", (0, 0), (0.1, 0), tip="b"),
-            strip("c", (0.12, 0.01), (0.2, 0.05), root="b", tip="d"),
-            strip("e", (0.22, 0.06), (0.25, 0.0), root="d", tip="ground"),
-        ],
-        bodies=[
-            BodyDesign(name="b", centre=(0.11, 0.0), mass=0.1),
-            BodyDesign(name="d", centre=(0.21, 0.05), mass=0.1),
-        ],
+        strips=STRIPS[:3],
+        bodies=BODIES,
         effects=("bending", stretching(form), "applied_moment", "gravity"),
         parameters={"applied_moment": {"body": "b", "moment": 0.1}},
         **form,

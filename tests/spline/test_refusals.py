@@ -25,10 +25,8 @@ from spline_model import (
 from tests.frames import opposed
 from tests.refusals import refused, scene
 from tests.spline.test_batch_of_mechanisms import linkage
-from tests.table_one import SIX, TABLE_ONE
+from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 
-BARE = {name: value for name, value in TABLE_ONE.items() if name not in ("area", "second_moment_of_area")}
-SIDES = {"width": 0.01, "thickness": 0.005}
 CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
 PRINTED = {"measure": "printed", "stretch": "consistent"}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
@@ -66,10 +64,7 @@ PIVOTS = [
     (SIDES | more(root_compliance={"root": -1.0}), f"root: got -1.0, {ROOT}"),
     (more(root_compliance={"root": 0.4}), "thickness of strip_1: got None, expected width and"),
     (SIDES | CURLED | SPATIAL, "measure: got 'spatial', expected material for anticlastic"),
-    (
-        SIDES | more(clamped_width={}, pre_strain={"curvature": 1.0}),
-        "natural curvature of pre_strain: got 1",
-    ),
+    (SIDES | more(clamped_width={}, pre_strain={"curvature": 1.0}), "natural curvature of pre_strain: got 1"),
 ]
 
 
@@ -122,6 +117,11 @@ def pivot(**given):
 def release(integrator="energy", given=None, **options):
     """Release the pivot, given other things as well."""
     return solve_release(pivot(**given or {}), integrator=integrator, **options)
+
+
+def accurate(**given):
+    """Solve the pivot to an accuracy."""
+    return solve_statics(pivot(**given), rotation=1.5, accuracy=1e-3)
 
 
 def impulses(**options):
@@ -185,28 +185,16 @@ ASKED = [
     (lambda: linked({"crank.length": 1.0}), "values: got 'crank.length', expected one of area"),
     (lambda: linked({"thickness": [1e-4, -1.0]}), "design 1: thickness: got -1.0, expected a finite num"),
     (lambda: linked({}, control_points=12), "none beside a mechanism, which has its own"),
-    (
-        lambda: solve_many(clamped_pivot(), {"strip_1.width": [0.01, 0.02]}, rotation=0.1),
-        "design 1: b/L of strip_1: got ... that of the mechanism",
-    ),
+    (lambda: solve_many(clamped_pivot(), {"strip_1.width": [0.01, 0.02]}, rotation=0.1), "design 1: b/L of"),
     (lambda: solve_statics(pivot(), rotation=1e-13), "rotation: got 1e-13, expected 0, or legs of 1e-12"),
-    (
-        lambda: solve_statics(pivot(axial_modes=3), rotation=1.5, accuracy=1e-3),
-        "axial_modes: got 3, expected none beside accuracy",
-    ),
-    (
-        lambda: solve_statics(pivot(gauss_points=9), rotation=1.5, accuracy=1e-3),
-        "gauss_points: got 9, expected none beside accuracy",
-    ),
+    (lambda: accurate(axial_modes=3), "axial_modes: got 3, expected none beside accuracy"),
+    (lambda: accurate(gauss_points=9), "gauss_points: got 9, expected none beside accuracy"),
     # which of both is up to round-off: a drive against inextensible strips that cannot give way
     (lambda: solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1), "tangent"),
     (lambda: natural_frequencies(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
     (lambda: solve_release(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
     (lambda: solve_impulses(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
-    (
-        lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(),
-        f"{UNSTEADY}: printed forces are of static paths alone",
-    ),
+    (lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(), f"{UNSTEADY}: printed"),
     (lambda: release(step=1.0), "step: got 1.0, expected at most the duration"),
     (lambda: release(**LONG), WITHIN),
     (lambda: release(records=0), "records: got 0, expected an integer >= 1"),
@@ -219,10 +207,7 @@ ASKED = [
         (partial(release, accuracy=wrong), f"accuracy: got {wrong}, expected a finite number > 0 [rad]")
         for wrong in (0.0, -1.0, math.nan, math.inf)
     ),
-    (
-        lambda: solve_motion(pivot(**STILL), start=0.5),
-        "strip_inertia, section_rotary_inertia, body_inertia",
-    ),
+    (lambda: solve_motion(pivot(**STILL), start=0.5), "strip_inertia, section_rotary_inertia, b"),
     (lambda: impulses(form="euler"), "form: got 'euler', expected one of printed, stable"),
     (lambda: impulses(sweeps=30), "sweeps: got 30, expected none of the stable form"),
     (lambda: impulses(sweeps=0), "sweeps: got 0, expected an integer >= 1"),

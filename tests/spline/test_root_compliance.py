@@ -15,9 +15,8 @@ from spline_model import (
     solve_statics,
 )
 from tests import gates
-from tests.table_one import SIX, TABLE_ONE
+from tests.table_one import SIDES, SIX, TABLE_ONE
 
-SIDES = {"width": 0.01, "thickness": 0.005}
 ROOTS = (*DEFAULT_EFFECTS, "root_compliance")
 
 

@@ -16,7 +16,7 @@ from spline_model import (
     swinging_slide_stiffness,
 )
 from tests import gates
-from tests.spline.impulses import POLYMER, QUARTER, pivot, total
+from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, total
 from tests.table_one import TABLE_ONE
 
 # ---- order and agreement ----
@@ -130,17 +130,8 @@ def tumbling(form, step):
         BodyDesign(name=name, centre=(x, 0.0), mass=mass, moment_of_inertia=1e-4)
         for name, x, mass in (("left", 0.0, 0.2), ("right", 0.1, 0.3))
     ]
-    strip = StripDesign(
-        name="strip",
-        start=(0.0, 0.0),
-        end=(0.1, 0.0),
-        root="left",
-        tip="right",
-        area=8e-6,
-        second_moment_of_area=4e-13,
-        youngs_modulus=2e9,
-        density=1100.0,
-    )
+    ends = {"start": (0.0, 0.0), "end": (0.1, 0.0), "root": "left", "tip": "right"}
+    strip = StripDesign(name="strip", **ends, **SECTION)
     free = compliant_mechanism(
         strips=[strip], bodies=bodies, control_points=5, slide_stiffness=swinging_slide_stiffness(5)
     )

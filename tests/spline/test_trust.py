@@ -13,7 +13,7 @@ from spline_model import (
     solve_mechanism,
     solve_statics,
 )
-from tests.table_one import SIX, TABLE_ONE
+from tests.table_one import SECTION, SIX, TABLE_ONE
 
 METHODS = ("condensed", "multipliers")
 
@@ -60,8 +60,7 @@ def test_what_few_gauss_points_make_up_is_no_critical_point(gauss_points, false_
 
 def weighed(control_points):
     """Moment defect of a cantilever that hangs far down under its own weight."""
-    names = ("area", "second_moment_of_area", "youngs_modulus", "poisson_ratio", "density")
-    strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **{n: TABLE_ONE[n] for n in names})
+    strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **SECTION)
     made = compliant_mechanism(
         strips=[strip],
         effects=("bending", "stretching", "gravity"),

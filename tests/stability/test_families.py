@@ -5,12 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_static
-from studies.answers.models import put
-from studies.cases.problem import named_case
 from studies.record.store import Store
 from studies.registry import STUDIES
-from studies.stability.verdict import DEFAULT, PAPER, PATHS, SIX, VARIED
+from studies.stability.verdict import DEFAULT, PAPER, VARIED
 from tests import gates
 
 FAMILIES = [name for name in STUDIES if name.startswith("stability/")]
@@ -69,26 +66,6 @@ def test_slender_strips_tend_to_inextensible_ones():
     assert iterations.max() <= 1.2 * iterations.min()
     assert table["constant"].max() / table["constant"].min() < 1.01  # the error goes with (L/t)^-2
     gates.hold("stability_slender_digits", lambda column="lost_digits": table[column].max())
-
-
-def increments_error(relative=0.0):
-    """Largest change of torque by the number of increments, and between there and back.
-
-    Torques of each path are made larger by `relative` times its increments.
-    """
-    given, errors = named_case(), []
-    torque = answer_static(given, PATHS[SIX]).torque[-1]
-    for count in (1, 2, 5, 20, 200):
-        path = put(given, PATHS[SIX]).static_path(rotation=[given.rotation, 0.0], increments=count)
-        torques = path.torque * (1.0 + relative * count)
-        there, back = torques[: count + 1], torques[count:][::-1]
-        errors += [abs(there[-1] / torque - 1.0), float(np.abs(there - back).max() / abs(torque))]
-    return max(errors)
-
-
-def test_increments_do_not_matter():
-    """Requirement: 1 to 200 increments, and the way back, give the same torque."""
-    gates.hold("stability_increments", increments_error)
 
 
 def energy_gain(model=DEFAULT):

@@ -156,16 +156,6 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
     assert levels[0].energy_error == 0.0
 
 
-@pytest.mark.parametrize("settings", [SplineSettings(control_points=4), FeSettings(elements=4)], ids=str)
-def test_solve_time_is_a_part_of_the_wall_time(settings):
-    """The increments or steps alone take some time, and less than the whole answer."""
-    problem = dataclasses.replace(TABLE_1, rotation=0.2, increments=3)
-    path = answer_static(problem, settings, repeat=2)
-    assert 0.0 < path.solve_s < path.wall_s
-    motion = answer_release(problem, settings, duration=1e-3)
-    assert motion.solve_s > 0.0
-
-
 def test_a_motion_by_impulses_is_a_neutral_answer():
     """A trajectory of impulses becomes the neutral motion of the other integrators."""
     asked = put(TABLE_1, SplineSettings(control_points=6), moving=True)

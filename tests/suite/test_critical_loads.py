@@ -10,7 +10,6 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import as_toml, read_design
-from tests import gates
 from tests.goldens.answers import document_of
 
 FINDS = Path(__file__).parent / "finds"
@@ -69,44 +68,12 @@ def test_few_elements_are_not_physics():
 
 #: The drive of its file, and what stands in its place.
 DRIVES = {"held": "rotation_deg = 0", "turned": "rotation_deg = 0.01", "free": ""}
-SPLINE = ["--control-points", "12"]
 
 
 def pressed(drive):
     """Return the case file of the pressed pivot under a drive."""
     text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
     return text.replace(DRIVES["held"], DRIVES[drive])
-
-
-def asked(command, tmp_path, drive, model, how):
-    """First critical load factor and the message, as the command writes them in JSON; what it prints."""
-    case = tmp_path / "pressed.toml"
-    case.write_text(pressed(drive))
-    words = ["solve", case, "--model", model, *how]
-    document = json.loads(command(*words, "--json", "-").out)
-    printed = command(*words)
-    return document["critical_points"][0]["load_factor"], document["message"], printed.out + printed.err
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("drive", DRIVES)
-def test_both_models_say_where_a_pressed_pivot_gives_way(command, tmp_path, drive):
-    """Held at 0 and 0.01 deg and free, both find one first critical load, name it and what buckles later."""
-
-    def said(model, how):
-        load, message, printed = asked(command, tmp_path, drive, model, how)
-        assert "buckle" in message  # later, and named with its load
-        assert re.search(rf"(limit point|bifurcation): load factor {load:.6g}", printed)
-        return load
-
-    spline = said("spline", SPLINE)
-
-    def error(elements=40):
-        return abs(spline / said("fe", ["--elements", elements]) - 1.0)
-
-    gates.check("pressed_pivot", error())
-    if drive == "free":
-        gates.refuse("pressed_pivot", error)
 
 
 @pytest.mark.slow

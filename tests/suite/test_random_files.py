@@ -9,49 +9,11 @@ from studies.__main__ import main
 from studies.cases.problem import FOLDER
 
 #: What may stand in place of a value: wrong types, numbers at the ends of their range, and beyond it.
-VALUES = (
-    *(
-        "0",
-        "-1",
-        "1e-12",
-        "1e-3",
-        "1",
-        "7",
-        "1e3",
-        "1e9",
-        "1e150",
-        "1e-150",
-        "1e308",
-        "5e-324",
-        "nan",
-        "inf",
-        "-inf",
-    ),
-    *(
-        '"1"',
-        '""',
-        '"ground"',
-        '"free"',
-        "true",
-        "[]",
-        "[0]",
-        "[0, 0]",
-        "[1, nan]",
-        "[[0, 1], [1, 0]]",
-        "{}",
-        "1979-05-27",
-    ),
-    *(
-        f"1{'0' * 400}",
-        "180",
-        "-170",
-        "90",
-        "0.5",
-        '"steel"',
-        '["+gravity"]',
-        '["+root_compliance", "+anticlastic"]',
-    ),
-)
+NUMBERS = ("0", "-1", "1e-12", "1e-3", "0.5", "1", "7", "90", "180", "-170", "1e3", "1e9", f"1{'0' * 400}")
+LIMITS = ("1e150", "1e-150", "1e308", "5e-324", "nan", "inf", "-inf")
+TEXTS = ('"1"', '""', '"ground"', '"free"', '"steel"', "true", "1979-05-27")
+LISTS = ("[]", "[0]", "[0, 0]", "[1, nan]", "[[0, 1], [1, 0]]", "{}", '["+gravity"]')
+VALUES = (*NUMBERS, *LIMITS, *TEXTS, *LISTS, '["+root_compliance", "+anticlastic"]')
 LINE = re.compile(r"^(\w+) *= *(.*?)( *#.*)?$")
 COMMANDS = (
     ("solve",),

@@ -15,21 +15,11 @@ from studies.cases.design import named_design
 from studies.cases.problem import named_case
 
 TABLE_1, SIX = named_case("cross_axis_pivot"), SplineSettings(control_points=6)
-YIELD = 500e6
 
 
 def yielding(limit):
     """Table 1 of a material of that yield strength."""
     return replace(TABLE_1, yield_strength=limit)
-
-
-def test_the_range_ends_where_the_stress_is_that_of_yield():
-    """Requirement: a path to the rotation from which on the material yields ends at its yield strength."""
-    design = yielding(YIELD)
-    found = strength(answer_static(design, SIX))
-    assert found.safety == pytest.approx(YIELD / found.stress)
-    there = answer_static(replace(TABLE_1, rotation=found.yields.rotation), SIX)
-    assert there.max_stress[-1] == pytest.approx(YIELD, rel=1e-6)
 
 
 def test_every_strip_has_its_own_yield_strength():
