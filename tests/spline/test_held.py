@@ -98,7 +98,7 @@ def test_a_pose_in_which_strips_buckle_is_refused():
     pivot = cross_axis_pivot(**(SIX | THIN | ROBUST))
     solver = HeldPivot(pivot)
     known = solver.unknowns
-    far, near = (solver.hold(*(pivot.centre + (0.0, shift)), 0.0) for shift in (-0.004, -4e-6))
+    far, near = (solver.hold(pivot.centre[0], pivot.centre[1] + shift, 0.0) for shift in (-0.004, -4e-6))
     assert not far.solved
     assert 0.0 <= far.reached < 1.0
     assert near.solved
