@@ -125,7 +125,7 @@ def main(arguments: argparse.Namespace) -> int:
     failed = (
         f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
     )
-    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed) or None)
+    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed))
 
 
 def _document(found: Sequence[_Compared]) -> dict[str, Any]:

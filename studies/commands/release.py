@@ -67,6 +67,8 @@ RIGID = 3
 #: Duration of what has no first frequency [s].
 USUAL = 0.05
 
+#: Energies of a motion: the first two of any, the others where more than the usual effects act.
+ENERGIES = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
 #: Lines of the table, beside the release itself.
 LINES = 20
 
@@ -109,8 +111,7 @@ def main(arguments: argparse.Namespace) -> int:
         **options,
     )
     failure = None if answer.converged else answer.message
-    tell.pictured(arguments, answer)
-    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure)
+    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure, answers=[answer])
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -155,39 +156,25 @@ def _last_time(design: Design) -> float:
 
 
 def _document(answer: Motion) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all.
-
-    The energies of gravity, loads and damping are there where more than the usual effects act.
-    """
+    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
     pivot, estimate = isinstance(answer.design, Problem), answer.estimate
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
-    place = {
-        "rotation_rad": answer.rotation,
-        "com_x_m": answer.centre[:, 0],
-        "com_y_m": answer.centre[:, 1],
-    }
-    energies = {
-        "gravity_J": answer.gravity_energy,
-        "work_J": answer.work,
-        "dissipated_J": answer.dissipated,
-    }
+    few = pivot and set(answer.effects) <= {*DEFAULT, "inextensible"}
     return {
         **tell.headed(answer),
-        "rotation_error_rad": answer.rotation_error,
-        "displacement_error_m": answer.displacement_error,
+        **tell.keyed(answer, "rotation_error_rad", "displacement_error_m"),
         "frequency_Hz": answer.swing.value,
         "frequency_reason": answer.swing.reason,
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
-        **(place if pivot else {"bodies": tell.places(answer.bodies)}),
-        "kinetic_J": answer.kinetic_energy,
-        "strain_J": answer.strain_energy,
-        **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
+        **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
+        **{
+            f"{name.removesuffix('_energy')}_J": getattr(answer, name) for name in ENERGIES[: 2 if few else 5]
+        },
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
-        "counters": answer.counters,
-        "wall_s": answer.wall_s,
+        **tell.keyed(answer, "counters", "wall_s"),
     }
 
 

@@ -2,7 +2,7 @@
 are written in, by name: each a function from fields to files by name."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.fields import Fields
-from studies.answers.quantities import QUANTITIES, quantities_of
+from studies.answers.quantities import ALONG, QUANTITIES, quantities_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
@@ -38,12 +38,7 @@ COLUMNS = {
     "displacement_x_m": "from rest [m]",
     "displacement_y_m": "from rest [m]",
     "rotation_rad": "of the section or of the body from rest, counter-clockwise [rad]",
-    "curvature_per_m": "of the deformed strip, by its length at rest [1/m]",
-    "stretch": "length over length at rest [1]",
-    "axial_force_N": "tension positive [N]",
-    "shear_force_N": "of the part beyond on the part before, along the normal to the left [N]",
-    "bending_moment_Nm": "positive for counter-clockwise curvature from root to tip [N m]",
-    "extreme_fibre_stress_Pa": "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
+    **{key: meaning for key, (_, meaning) in ALONG.items()},
     "mass_kg": "of the body [kg]",
     "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
     "force_x_N": "of what the end is on, on the strip [N]",
@@ -55,105 +50,89 @@ COLUMNS = {
 }
 
 
+PLACES = ("x_m", "y_m", "displacement_x_m", "displacement_y_m", "rotation_rad")
+MODES = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
+
+
 def tables(fields: Fields) -> dict[str, pd.DataFrame]:
     """Return `states`, `strips`, `bodies` and `reactions`; a design without bodies has no table of them."""
     found = {"states": _states(fields), "strips": _strips(fields), "reactions": _reactions(fields)}
     return found | ({"bodies": _bodies(fields)} if fields.blocks else {})
 
 
+def _table(fields: Fields, shape: tuple[int, ...], columns: Mapping[str, Any]) -> pd.DataFrame:
+    """Return columns of arrays that go over the rows of a shape, states first, behind what runs over the
+    states and their numbers, which modes have as it is.
+
+    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
+    """
+    running = {fields.series: fields.values, "state": np.arange(len(fields.values))}
+    if fields.series == "mode":
+        running = {"mode": fields.values.astype(np.int64)}
+    first = {name: values.reshape(-1, *(1 for _ in shape[1:])) for name, values in running.items()}
+    given = (first | dict(columns)).items()
+    return pd.DataFrame({name: np.broadcast_to(array, shape).ravel() for name, array in given})
+
+
+def _parts(names: Iterable[str], arrays: np.ndarray | None) -> dict[str, np.ndarray]:
+    """Return the last axis of arrays by names, as many as it has; nothing of nothing."""
+    return {} if arrays is None else dict(zip(names, np.moveaxis(arrays, -1, 0), strict=False))
+
+
 def _states(fields: Fields) -> pd.DataFrame:
     """One row a state: what runs, and what the state has as a whole, by the names of `solve --csv`."""
-    columns = _running(fields, 1)
+    columns: dict[str, Any] = {}
     if fields.frequency is not None:
-        return pd.DataFrame(columns | {"frequency_Hz": fields.frequency})
-    if len(fields.blocks) == 1:
-        com_x, com_y, turn = fields.bodies[:, 0].T
-        columns |= {"rotation_rad": turn, "com_x_m": com_x, "com_y_m": com_y}
-    if fields.analysis == "static":
-        return pd.DataFrame(columns | {each.key: values for each, values in quantities_of(fields)})
-    kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
-    return pd.DataFrame(columns | kept | {"max_stress_Pa": fields.max_stress})
+        columns["frequency_Hz"] = fields.frequency
+    else:
+        if len(fields.blocks) == 1:
+            columns |= _parts(("rotation_rad", "com_x_m", "com_y_m"), np.roll(fields.bodies[:, 0], 1, axis=1))
+        if fields.analysis == "static":
+            columns |= {each.key: values for each, values in quantities_of(fields)}
+        else:
+            columns |= {f"{name}_J": energy for name, energy in fields.energies.items()}
+            columns["max_stress_Pa"] = fields.max_stress
+    return _table(fields, fields.values.shape, columns)
+
+
+def _placed(place: np.ndarray, rest: np.ndarray, turn: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the places (..., 2) and turns of points or bodies."""
+    return _parts(PLACES, np.concatenate((place, place - rest, turn[..., None]), axis=-1))
 
 
 def _strips(fields: Fields) -> pd.DataFrame:
     """One row a state, strip and station."""
-    states, strips, stations = fields.rotation.shape
     columns = {
-        **_running(fields, strips * stations),
-        "strip": np.tile(np.repeat([part.name for part in fields.parts], stations), states),
-        "arc_length_m": np.tile(fields.arc_length.ravel(), states),
+        "strip": np.array([part.name for part in fields.parts])[:, None],
+        "arc_length_m": fields.arc_length,
+        **_placed(fields.shape, fields.rest_shape, fields.rotation),
+        **{key: getattr(fields, name) for key, (name, _) in ALONG.items()},
+        **_parts(MODES, fields.mode_shape),
     }
-    per_point = {
-        "x_m": fields.shape[..., 0],
-        "y_m": fields.shape[..., 1],
-        "displacement_x_m": fields.displacement[..., 0],
-        "displacement_y_m": fields.displacement[..., 1],
-        "rotation_rad": fields.rotation,
-        "curvature_per_m": fields.curvature,
-        "stretch": fields.stretch,
-        "axial_force_N": fields.axial_force,
-        "shear_force_N": fields.shear_force,
-        "bending_moment_Nm": fields.bending_moment,
-        "extreme_fibre_stress_Pa": fields.stress,
-    }
-    if fields.mode_shape is not None:
-        per_point["mode_x_per_sqrt_kg"] = fields.mode_shape[..., 0]
-        per_point["mode_y_per_sqrt_kg"] = fields.mode_shape[..., 1]
-    return pd.DataFrame(columns | {name: array.ravel() for name, array in per_point.items()})
+    return _table(fields, fields.rotation.shape, columns)
 
 
 def _bodies(fields: Fields) -> pd.DataFrame:
     """One row a state and body."""
-    states, bodies = fields.bodies.shape[:2]
-    x, y, turn = np.moveaxis(fields.bodies, 2, 0)
-    per_body = {
-        "x_m": x,
-        "y_m": y,
-        "displacement_x_m": x - fields.rest_bodies[:, 0],
-        "displacement_y_m": y - fields.rest_bodies[:, 1],
-        "rotation_rad": turn,
+    columns = {
+        "body": np.array([block.name for block in fields.blocks]),
+        **_placed(fields.bodies[..., :2], fields.rest_bodies, fields.bodies[..., 2]),
+        **_parts(MODES, fields.mode_bodies),
+        "mass_kg": np.array([block.mass for block in fields.blocks]),
+        "moment_of_inertia_kg_m2": np.array([block.moment_of_inertia for block in fields.blocks]),
     }
-    if fields.mode_bodies is not None:
-        names = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
-        per_body |= dict(zip(names, np.moveaxis(fields.mode_bodies, 2, 0), strict=True))
-    return pd.DataFrame(
-        {
-            **_running(fields, bodies),
-            "body": np.tile([block.name for block in fields.blocks], states),
-            **{name: array.ravel() for name, array in per_body.items()},
-            "mass_kg": np.tile([block.mass for block in fields.blocks], states),
-            "moment_of_inertia_kg_m2": np.tile([block.moment_of_inertia for block in fields.blocks], states),
-        }
-    )
+    return _table(fields, fields.bodies.shape[:2], columns)
 
 
 def _reactions(fields: Fields) -> pd.DataFrame:
     """One row a state, strip and end."""
-    states, strips = fields.reactions.shape[:2]
-    on = [place or "free" for part in fields.parts for place in (part.root, part.tip)]
-    return pd.DataFrame(
-        {
-            **_running(fields, 2 * strips),
-            "strip": np.tile(np.repeat([part.name for part in fields.parts], 2), states),
-            "end": np.tile(["root", "tip"], states * strips),
-            "on": np.tile(on, states),
-            **{
-                name: fields.reactions[..., k].ravel()
-                for k, name in enumerate(("force_x_N", "force_y_N", "moment_Nm"))
-            },
-        }
-    )
-
-
-def _running(fields: Fields, rows: int) -> dict[str, np.ndarray]:
-    """Return what runs over the states, each of so many rows, and their numbers, which modes have as it is.
-
-    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
-    """
-    if fields.series == "mode":
-        return {"mode": np.repeat(fields.values.astype(np.int64), rows)}
-    states = np.arange(len(fields.values))
-    return {fields.series: np.repeat(fields.values, rows), "state": np.repeat(states, rows)}
+    columns = {
+        "strip": np.array([part.name for part in fields.parts])[:, None],
+        "end": np.array(["root", "tip"]),
+        "on": np.array([[part.root or "free", part.tip or "free"] for part in fields.parts]),
+        **_parts(("force_x_N", "force_y_N", "moment_Nm"), fields.reactions),
+    }
+    return _table(fields, fields.reactions.shape[:3], columns)
 
 
 Contents = dict[str, bytes]

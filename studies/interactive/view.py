@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.quantities import PREFIXES, fixed, power_of
 from studies.interactive.bench import SPRUNG, Bench
 from studies.interactive.design import Curve, scales
 from studies.kinds import Array
@@ -14,7 +15,6 @@ from studies.kinds import Array
 FINEST = 1e-4
 #: What lies below this part of a design's own scale is round-off, and written as nought.
 ROUND_OFF = 1e-6
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def quantity(value: float | None, unit: str, least: float = 0.0, spread: float | None = None) -> str:
@@ -38,14 +38,9 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
 
 
 def _prefix(size: float) -> tuple[float, str]:
-    if size == 0.0:
-        return 1.0, ""
-    return next((pair for pair in PREFIXES if size >= pair[0]), PREFIXES[-1])
-
-
-def fixed(value: float, places: int) -> str:
-    """Return a value with so many places, nought without a sign."""
-    return f"{round(value, places) + 0.0:.{places}f}"
+    """Return the power of ten of the prefix that suits a size, and the prefix."""
+    power = power_of(size, lowest=-9)
+    return 10.0**power, PREFIXES[power]
 
 
 def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
