@@ -58,22 +58,29 @@ def fixed(value: float, decimals: int) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """How a picture shows numbers of one kind: their heading, their unit in SI, and the power of ten of the
-    largest prefix; factor: of a unit without prefix, such as degrees for radians, 0 of one that has them."""
+    """How pictures, and the lines of `compare`, show numbers of one kind.
+
+    Attributes:
+        heading: what they are called. unit: in SI. highest: power of ten of the largest prefix.
+        factor: to a unit without prefix, such as degrees for radians; 0 of one that has them.
+    """
 
     heading: str
     unit: str = ""
     highest: int = 3
     factor: float = 0.0
 
-    def scaled(self, arrays: Iterable[Array]) -> tuple[float, str]:
-        """Return the factor to the unit that suits these values, and what an axis of them is called."""
+    def fitting(self, arrays: Iterable[Array]) -> tuple[float, str]:
+        """Return the factor to the unit that suits these values, and that unit."""
         if self.factor:
-            return self.factor, f"{self.heading} [{self.unit}]" if self.unit else self.heading
-        power = power_of(
-            max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0), self.highest
-        )
-        return 10.0**-power, f"{self.heading} [{PREFIXES[power]}{self.unit}]"
+            return self.factor, self.unit
+        largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)
+        power = power_of(largest, self.highest)
+        return 10.0**-power, PREFIXES[power] + self.unit
+
+    def named(self, unit: str) -> str:
+        """Return what an axis in that unit is called."""
+        return f"{self.heading} [{unit}]" if unit else self.heading
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +92,7 @@ class Quantity(Scale):
         meaning: what it is.
         of: its values (S,) in a neutral answer, or in fields along the strips; None where they have none.
         floor: of a design, the value that is round-off.
-        highest, digits: power of ten of the largest prefix, and significant digits, in tables.
+        digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
         column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.

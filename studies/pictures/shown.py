@@ -96,11 +96,11 @@ class Chart:
 
     def draw(self, panel: Axes) -> None:
         """Draw the chart."""
-        across, x_label = self.x.scaled(x for _, x, _ in self.curves)
-        up, y_label = self.y.scaled(y for _, _, y in self.curves)
+        across, x_unit = self.x.fitting(x for _, x, _ in self.curves)
+        up, y_unit = self.y.fitting(y for _, _, y in self.curves)
         for look, x, y in self.curves:
             panel.plot(across * x, up * y, color=look.colour, linestyle=look.line)
-        panel.set(xlabel=x_label, ylabel=y_label)
+        panel.set(xlabel=self.x.named(x_unit), ylabel=self.y.named(y_unit))
         if self.equal:
             panel.set(aspect="equal")
             panel.set_adjustable("datalim")
