@@ -122,13 +122,12 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
     """
     implicit = arguments.integrator in (None, "energy") and arguments.accuracy is None
     free = settings.model == "spline" and implicit and arguments.step is None
-    if arguments.duration is not None and not free:
-        return arguments.duration, arguments.step
-    usual, step = _usual(design, settings)
-    duration = usual if arguments.duration is None else arguments.duration
-    if not free or step is None:
-        return duration, arguments.step
-    return duration, min(step, duration)
+    duration, step = arguments.duration, arguments.step
+    if duration is None or free:
+        usual, fine = _usual(design, settings)
+        duration = usual if duration is None else duration
+        step = min(fine, duration) if free and fine is not None else step
+    return duration, step
 
 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:

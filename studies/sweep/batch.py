@@ -29,7 +29,7 @@ PLAIN = {"bending", "stretching"}
 INCREMENTS = "drive.increments"
 
 Columns = dict[str, Array]
-_KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
+_KEYS = {name: key for name, key in plan.PIVOT_KEYS.items() if key is not case_keys.NAMED}
 _PARTS = {f"{name}.{part}" for name, key in _KEYS.items() if key.rule.kind == "pair" for part in plan.PARTS}
 
 
@@ -157,25 +157,22 @@ def _paths(
     """
     from spline_model.batch import solve_many
 
-    turns, depth = given["rotation"], given["depth"]
-    designs = {name: given[name] for name in PIVOT_PARAMETERS}
-    model = model_of(settings)
     try:
         batch = solve_many(
-            designs,
-            rotation=turns,
+            {name: given[name] for name in PIVOT_PARAMETERS},
+            rotation=given["rotation"],
             increments=increments,
-            section_depth=depth,
+            section_depth=given["depth"],
             threads=1,
             **settings.keywords(),
         )
-    except model.errors.InvalidParameter:
-        return np.zeros(len(turns), dtype=bool), {}
+    except model_of(settings).errors.InvalidParameter:
+        return np.zeros(len(given["rotation"]), dtype=bool), {}
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
     stress = batch.strain * given["youngs_modulus"][:, None]
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
-    by_name = (*batch.errors.values(), shift_error(batch.errors["trajectory"], batch.centre, shift))
-    error = np.fmax.reduce(by_name)
+    shift_errs = shift_error(batch.errors["trajectory"], batch.centre, shift)
+    error = np.fmax.reduce((*batch.errors.values(), shift_errs))
     paths = Paths(
         rest=0,
         along={

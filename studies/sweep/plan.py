@@ -105,6 +105,13 @@ class Plan:
         return number * self.chunk, min((number + 1) * self.chunk, self.sample.points)
 
 
+def _dotted(rows: Iterable[Key]) -> dict[str, Key]:
+    """Return keys by their section and name."""
+    return {f"{key.section}.{key.name}": key for key in rows}
+
+
+#: Keys of a pivot as a sweep names them.
+PIVOT_KEYS = _dotted(keys.KEYS)
 SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
@@ -148,10 +155,8 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     if is_mechanism(document):
         found = _of_mechanism(document)
     else:
-        found = {f"{key.section}.{key.name}": key.rule for key in keys.KEYS}
-        found[SLENDERNESS] = positive("1")
-    for rows in keys.EFFECT_KEYS.values():
-        found |= {f"{key.section}.{key.name}": key.rule for key in rows}
+        found = {name: key.rule for name, key in PIVOT_KEYS.items()} | {SLENDERNESS: positive("1")}
+    found |= {name: key.rule for rows in keys.EFFECT_KEYS.values() for name, key in _dotted(rows).items()}
     for name, rule in list(found.items()):
         if rule.kind == "pair":
             found |= {f"{name}.{part}": number("a finite number") for part in PARTS}
@@ -166,7 +171,7 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
 def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
     shared = (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE)
-    found = {f"{key.section}.{key.name}": key.rule for key in shared}
+    found = {name: key.rule for name, key in _dotted(shared).items()}
     own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
     for section, rows in own.items():
         for part in document.get(section, []):
