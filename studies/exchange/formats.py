@@ -14,14 +14,16 @@ from studies.answers.quantities import ALONG, QUANTITIES, quantities_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
+#: Columns of points and bodies: where they are, and how a mode moves them.
+PLACES = ("x_m", "y_m", "displacement_x_m", "displacement_y_m", "rotation_rad")
+MODES = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
 #: What each column holds; the first of a table is what runs over the states.
 COLUMNS = {
     "load_factor": "part of the static path, 0 to 1 [1]",
     "time_s": "time since the release [s]",
     "mode": "number of the mode, the lowest 1",
     "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
-    "com_x_m": "of the only body, as by `solve --csv` [m]",
-    "com_y_m": "of the only body, as by `solve --csv` [m]",
+    **dict.fromkeys(("com_x_m", "com_y_m"), "of the only body, as by `solve --csv` [m]"),
     **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
     "kinetic_J": "of a motion [J]",
     "strain_J": "of a motion, of all strips [J]",
@@ -41,17 +43,11 @@ COLUMNS = {
     **{key: meaning for key, (_, meaning) in ALONG.items()},
     "mass_kg": "of the body [kg]",
     "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
-    "force_x_N": "of what the end is on, on the strip [N]",
-    "force_y_N": "of what the end is on, on the strip [N]",
+    **dict.fromkeys(("force_x_N", "force_y_N"), "of what the end is on, on the strip [N]"),
     "moment_Nm": "of what the end is on, on the strip [N m]",
-    "mode_x_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
-    "mode_y_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    **dict.fromkeys(MODES[:2], "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]"),
     "mode_rotation_per_m_sqrt_kg": "rotation of the mode at unit modal mass [rad / sqrt(kg m^2)]",
 }
-
-
-PLACES = ("x_m", "y_m", "displacement_x_m", "displacement_y_m", "rotation_rad")
-MODES = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
 
 
 def tables(fields: Fields) -> dict[str, pd.DataFrame]:
