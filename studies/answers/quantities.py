@@ -185,6 +185,14 @@ QUANTITIES = (
 )
 
 
+#: Energies of a motion, by their key: the attribute of an answer, and what they are; the first two of any.
+ENERGIES = {
+    "kinetic_J": ("kinetic_energy", "of a motion [J]"),
+    "strain_J": ("strain_energy", "of a motion, of all strips [J]"),
+    "gravity_J": ("gravity_energy", "of a motion against rest [J]"),
+    "work_J": ("work", "work of drives and loads since the first state [J]"),
+    "dissipated_J": ("dissipated", "of a motion since its start [J]"),
+}
 #: Numbers along the strips, by their key: the attribute of fields, and what they are.
 ALONG = {
     "curvature_per_m": ("curvature", "of the deformed strip, by its length at rest [1/m]"),

@@ -37,7 +37,7 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.quantities import energy_floor
+from studies.answers.quantities import ENERGIES, energy_floor
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
@@ -67,8 +67,6 @@ RIGID = 3
 #: Duration of what has no first frequency [s].
 USUAL = 0.05
 
-#: Energies of a motion: the first two of any, the others where more than the usual effects act.
-ENERGIES = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
 #: Lines of the table, beside the release itself.
 LINES = 20
 
@@ -160,6 +158,7 @@ def _document(answer: Motion) -> dict[str, Any]:
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
     few = pivot and set(answer.effects) <= {*DEFAULT, "inextensible"}
+    energies = list(ENERGIES.items())[: 2 if few else None]
     return {
         **tell.headed(answer),
         **tell.keyed(answer, "rotation_error_rad", "displacement_error_m"),
@@ -168,9 +167,7 @@ def _document(answer: Motion) -> dict[str, Any]:
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
         **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
-        **{
-            f"{name.removesuffix('_energy')}_J": getattr(answer, name) for name in ENERGIES[: 2 if few else 5]
-        },
+        **{key: getattr(answer, name) for key, (name, _) in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
         **tell.keyed(answer, "counters", "wall_s"),

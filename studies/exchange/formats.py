@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.fields import Fields
-from studies.answers.quantities import ALONG, QUANTITIES, quantities_of
+from studies.answers.quantities import ALONG, ENERGIES, QUANTITIES, quantities_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
@@ -24,11 +24,8 @@ COLUMNS = {
     "mode": "number of the mode, the lowest 1",
     "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
     **dict.fromkeys(("com_x_m", "com_y_m"), "of the only body, as by `solve --csv` [m]"),
+    **{key: meaning for key, (_, meaning) in ENERGIES.items()},
     **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
-    "kinetic_J": "of a motion [J]",
-    "strain_J": "of a motion, of all strips [J]",
-    "gravity_J": "of a motion against rest [J]",
-    "dissipated_J": "of a motion since its start [J]",
     "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
     "strip": "name of the strip",
     "body": "name of the body",
