@@ -224,6 +224,6 @@ def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> N
 def called(case: str, answer: Any) -> str:
     """Return what a picture calls an answer: its case, its model and how fine that was."""
     settings = answer.settings
-    fine = {"control_points": "control points", "elements": "elements"}
-    counts = (f", {settings[key]} {word}" for key, word in fine.items() if key in settings)
+    fine = (key for key in ("control_points", "elements") if key in settings)
+    counts = (f", {settings[key]} {key.replace('_', ' ')}" for key in fine)
     return f"{Path(case).stem}: {answer.model}{''.join(counts)}"
