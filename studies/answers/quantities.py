@@ -4,7 +4,8 @@ Tables, JSON, CSV, VTK, pictures, the columns of a sweep, `compare` and docs/dat
 entries: a new quantity is one more of them.
 """
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,16 +38,61 @@ def stress_floor(design: Design) -> float:
     return STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in design.strips)
 
 
+#: What stands for a number that there is none of.
+NOTHING = "-"
+#: Power of ten -> prefix.
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f", -18: "a"}
+
+
+def power_of(largest: float, highest: int = max(PREFIXES), lowest: int = min(PREFIXES)) -> int:
+    """Return the power of ten of the prefix that leaves a value three digits before the point at most, within
+    these; of zero the one that is nearest to none."""
+    power = 3 * math.floor(math.log10(largest) / 3.0) if largest > 0.0 else 0
+    return max(lowest, min(highest, power))
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
+
+
 @dataclass(frozen=True, kw_only=True)
-class Quantity:
+class Scale:
+    """How pictures, and the lines of `compare`, show numbers of one kind.
+
+    Attributes:
+        heading: what they are called. unit: in SI. highest: power of ten of the largest prefix.
+        factor: to a unit without prefix, such as degrees for radians; 0 of one that has them.
+    """
+
+    heading: str
+    unit: str = ""
+    highest: int = 3
+    factor: float = 0.0
+
+    def fitting(self, arrays: Iterable[Array]) -> tuple[float, str]:
+        """Return the factor to the unit that suits these values, and that unit."""
+        if self.factor:
+            return self.factor, self.unit
+        largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)
+        power = power_of(largest, self.highest)
+        return 10.0**-power, PREFIXES[power] + self.unit
+
+    def named(self, unit: str) -> str:
+        """Return what an axis in that unit is called."""
+        return f"{self.heading} [{unit}]" if unit else self.heading
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity(Scale):
     """One number of every state of a path.
 
     Attributes:
-        key: its name in files, with its unit. heading: in tables and pictures. unit: in SI.
+        key: its name in files, with its unit.
         meaning: what it is.
         of: its values (S,) in a neutral answer, or in fields along the strips; None where they have none.
         floor: of a design, the value that is round-off.
-        highest, digits: power of ten of the largest prefix, and significant digits, in tables.
+        digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
         column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
@@ -54,8 +100,6 @@ class Quantity:
     """
 
     key: str
-    heading: str
-    unit: str
     meaning: str
     of: Callable[[Any], Array | None]
     floor: Callable[[Design], float]
@@ -139,6 +183,34 @@ QUANTITIES = (
         chart=False,  # drawn with the yield strength
     ),
 )
+
+
+#: Energies of a motion, by their key: the attribute of an answer, and what they are; the first two of any.
+ENERGIES = {
+    "kinetic_J": ("kinetic_energy", "of a motion [J]"),
+    "strain_J": ("strain_energy", "of a motion, of all strips [J]"),
+    "gravity_J": ("gravity_energy", "of a motion against rest [J]"),
+    "work_J": ("work", "work of drives and loads since the first state [J]"),
+    "dissipated_J": ("dissipated", "of a motion since its start [J]"),
+}
+#: Numbers along the strips, by their key: the attribute of fields, and what they are.
+ALONG = {
+    "curvature_per_m": ("curvature", "of the deformed strip, by its length at rest [1/m]"),
+    "stretch": ("stretch", "length over length at rest [1]"),
+    "axial_force_N": ("axial_force", "tension positive [N]"),
+    "shear_force_N": (
+        "shear_force",
+        "of the part beyond on the part before, along the normal to the left [N]",
+    ),
+    "bending_moment_Nm": (
+        "bending_moment",
+        "positive for counter-clockwise curvature from root to tip [N m]",
+    ),
+    "extreme_fibre_stress_Pa": (
+        "stress",
+        "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
+    ),
+}
 
 
 def quantities_of(path: Any) -> Iterator[tuple[Quantity, Array]]:

@@ -268,22 +268,22 @@ def assembled(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in MOTION_ONLY)
 
 
-def centre_shift(crossing: Any, rotation: Array, centre: Array) -> Array:
+def centre_shift(crossing: Any, rotation: Array, centre: Array, rest: Array | None = None) -> Array:
     """Return the displacement of the body's point that lies at the strips' crossing at rest.
 
     With x_c the crossing point at rest, g the centre of mass and R the rotation of the body,
-    shift = g + R (x_c - g_0) - x_c, where g_0 is the centre at rest, the first state.
+    shift = g + R (x_c - g_0) - x_c, where g_0 is the centre at rest.
 
     Args:
         crossing: x_c (..., 2) [m], of one path or side by side of several.
         rotation: (..., S) [rad].
-        centre: (..., S, 2) [m].
+        centre: (..., S, 2) [m]; rest: g_0 (..., 1, 2) [m], that of the first state by default.
 
     Returns:
         (..., S, 2) [m].
     """
     crossing = np.asarray(crossing)[..., None, :]
-    arm = crossing - centre[..., :1, :]
+    arm = crossing - (centre[..., :1, :] if rest is None else rest)
     cosine, sine = np.cos(rotation), np.sin(rotation)
     turned = np.stack(
         (cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]), axis=-1

@@ -61,20 +61,16 @@ def _document(
     found: pd.DataFrame, told: Sequence[str], judged: Sequence[str], error: float
 ) -> dict[str, Any]:
     """Return the advice as the JSON object of the command."""
-    rows = [
-        {
-            "model": row["group"],
-            "setting": row["setting"],
-            "meets": row["meets"],
-            **{f"error_{name}": row.get(name, math.nan) for name in told},
-            "reference_uncertainty": _uncertainty(row, judged),
-            **{f"reference_uncertainty_{name}": row[f"uncertainty_{name}"] for name in told[2:]},
-            **{name: row[name] for name in ("whole_s", "solve_s")},
-            "message": row["message"],
-        }
-        for row in found.to_dict("records")
-    ]
-    return {"accuracy": error, "models": rows}
+    named = {
+        **{"group": "model", "setting": "setting", "meets": "meets"},
+        **{name: f"error_{name}" for name in told},
+        "largest": "reference_uncertainty",
+        **{f"uncertainty_{name}": f"reference_uncertainty_{name}" for name in told[2:]},
+        **{name: name for name in ("whole_s", "solve_s", "message")},
+    }
+    largest = [_uncertainty(row, judged) for row in found.to_dict("records")]
+    table = found.assign(largest=largest).reindex(columns=list(named)).rename(columns=named)
+    return {"accuracy": error, "models": table.to_dict("records")}
 
 
 def _uncertainty(row: Mapping[Any, Any], judged: Sequence[str]) -> float:

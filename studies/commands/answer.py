@@ -4,7 +4,7 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,17 +26,6 @@ if TYPE_CHECKING:
 
 NOT_CONVERGED = 3
 
-#: What a static answer prints, and the names by which models estimate its error.
-PRINTED = {
-    "places": PLACES,
-    "centre shift": ("centre_shift",),
-    "torque": ("torque",),
-    "stiffness": ("stiffness",),
-    "stiffness of the body": ("body_stiffness",),
-    "energy": ("energy", "strain_energy"),
-    "stress": ("stress", "largest_stress"),
-}
-
 
 def deliver(
     arguments: argparse.Namespace,
@@ -44,19 +33,23 @@ def deliver(
     table: Iterable[str],
     *,
     failure: str | None,
+    answers: Sequence[Answered] = (),
     frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
-    """Print `table`, and write `document` where `--json` says and `frame` where `--csv` does; return the exit
-    code. What goes to the output stream goes there alone.
+    """Draw what there is of `answers` where `--plot` says, print `table`, and write `document` where `--json`
+    says and `frame` where `--csv` does; return the exit code. What goes to the output stream stands alone.
 
     Args:
         arguments: of the command.
         document: the answer as a JSON object; its arrays and tuples are lists there, and null is what is no
             finite number.
         table: the answer in lines to read.
-        failure: why the answer is not complete; None when it is.
+        failure: why the answer is not complete; None, or nothing, when it is.
         frame: makes the answer as a table of numbers, of a command that has `--csv`.
     """
+    if answers and arguments.plot is not None:
+        shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
+        draw(arguments, shown, arguments.plot)
     csv = getattr(arguments, "csv", None)
     if STREAM not in (arguments.json, csv):
         print("\n".join(table))
@@ -64,7 +57,7 @@ def deliver(
         _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
         _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
-    return 0 if failure is None else not_converged(failure)
+    return not_converged(failure) if failure else 0
 
 
 def _put(target: Path, text: str, form: str) -> None:
@@ -86,6 +79,17 @@ def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
     names = ("status", "message", "resolution", "model", "settings", "effects")
     return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+
+
+def keyed(answer: Any, *keys: str) -> dict[str, Any]:
+    """Return what an answer knows by the keys of JSON: names of its attributes, most with their unit."""
+    return {key: getattr(answer, key if hasattr(answer, key) else key.rpartition("_")[0]) for key in keys}
+
+
+def pose(answer: Solved) -> dict[str, Array]:
+    """Return how the only body moves, as files have it."""
+    x, y = answer.centre.T
+    return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
 
 
 def described(answer: Answered) -> str:
@@ -112,16 +116,19 @@ def estimated(answer: Answered) -> Iterator[str]:
 
 def _not_estimated(answer: Response, errors: set[str]) -> Iterator[str]:
     """Yield what a static answer prints whose error is not among those that are estimated."""
-    there = {
-        "places": bool(answer.bodies),
-        "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
-        "torque": bool(np.isfinite(answer.torque).any()),
-        "stiffness": bool(np.isfinite(answer.stiffness).any()),
-        "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
-        "energy": True,
-        "stress": True,
-    }
-    yield from (name for name, names in PRINTED.items() if there[name] and not errors & set(names))
+    body = answer.body is not None
+    shifts = answer.crossing is not None and np.any(answer.centre_shift)
+    for name, names, printed in (
+        ("places", PLACES, answer.bodies),
+        ("centre shift", ("centre_shift",), shifts),
+        ("torque", ("torque",), np.isfinite(answer.torque).any()),
+        ("stiffness", ("stiffness",), np.isfinite(answer.stiffness).any()),
+        ("stiffness of the body", ("body_stiffness",), body and np.isfinite(answer.body_stiffness).any()),
+        ("energy", ("energy", "strain_energy"), True),
+        ("stress", ("stress", "largest_stress"), True),
+    ):
+        if printed and not errors & set(names):
+            yield name
 
 
 def ending(answer: Solved | Spectrum) -> str:
@@ -161,22 +168,11 @@ def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
 
 def strength_document(found: Strength) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
-    yields = None
-    if found.yields is not None:
-        yields = {
-            "load_factor": found.yields.load_factor,
-            "rotation_rad": found.yields.rotation,
-            "relative_error": found.yields.error,
-        }
+    error = found.yields and {"relative_error": found.yields.error}
     return {
         "max_stress_Pa": found.stress,
-        "strip": found.strip,
-        "station": found.station,
-        "load_factor": found.load_factor,
-        "rotation_rad": found.rotation,
-        "yield_strength_Pa": found.yield_strength,
-        "safety": found.safety,
-        "yields_from": yields,
+        **keyed(found, "strip", "station", "load_factor", "rotation_rad", "yield_strength_Pa", "safety"),
+        "yields_from": error and keyed(found.yields, "load_factor", "rotation_rad") | error,
     }
 
 
@@ -199,13 +195,6 @@ def _plain(value: Any) -> Any:
 
 def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def pictured(arguments: argparse.Namespace, *answers: Answered) -> None:
-    """Draw what there is of the answers to a design where --plot says, and say where it is."""
-    if arguments.plot is not None:
-        shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
-        draw(arguments, shown, arguments.plot)
 
 
 def shown_of(case: str, answer: Answered) -> "Shown":
@@ -235,6 +224,6 @@ def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> N
 def called(case: str, answer: Any) -> str:
     """Return what a picture calls an answer: its case, its model and how fine that was."""
     settings = answer.settings
-    fine = {"control_points": "control points", "elements": "elements"}
-    counts = (f", {settings[key]} {word}" for key, word in fine.items() if key in settings)
+    fine = (key for key in ("control_points", "elements") if key in settings)
+    counts = (f", {settings[key]} {key.replace('_', ' ')}" for key in fine)
     return f"{Path(case).stem}: {answer.model}{''.join(counts)}"

@@ -11,13 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Power of ten -> prefix.
-PREFIXES = {6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n", -12: "p", -15: "f", -18: "a"}
+from studies.answers.quantities import NOTHING, PREFIXES, fixed, power_of
+
 #: Digits of the largest value of a column.
 DIGITS = 7
 #: Decimals of angles at least, which have no prefix, and what no solver resolves [rad].
 ANGLE_DECIMALS, ANGLE_FLOOR = 3, 1e-10
-NOTHING = "-"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,10 +79,8 @@ def prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndarr
 
     Of the largest value it leaves three digits before the point at most.
     """
-    largest, power = _largest(values), min(highest, 0)
-    if largest > 0.0:
-        power = max(min(PREFIXES), min(highest, 3 * math.floor(math.log10(largest) / 3.0)))
-    return PREFIXES[power] + unit, values / 10.0**power
+    power = power_of(_largest(values), highest)
+    return PREFIXES[power].replace("µ", "u") + unit, values / 10.0**power
 
 
 def angle(radians: ArrayLike, *, group: str = "") -> Column:
@@ -97,11 +94,6 @@ def angle(radians: ArrayLike, *, group: str = "") -> Column:
 def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:
     """Return a column of texts."""
     return Column(name=name, unit=unit, cells=tuple(cells))
-
-
-def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
-    return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
 
 
 def significant(value: float, digits: int = DIGITS) -> str:

@@ -16,20 +16,21 @@ input; 3: one did not, and is told up to where it came.
 import argparse
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
-from studies.answers.quantities import QUANTITIES, STANDING, quantities_of
+from studies.answers.quantities import NOTHING, QUANTITIES, STANDING, Scale, quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.commands import arguments as take
 from studies.commands.answer import called, deliver, draw, headed, shown_of
-from studies.commands.columns import NOTHING, plain, prefixed, significant, table
+from studies.commands.columns import plain, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
 from studies.pictures.shown import LETTERS, Shown
@@ -46,23 +47,23 @@ PLOT_MODES = Argument(
 )
 
 
-#: Lines of the table: name there, key in JSON, unit, and power of ten of the largest prefix.
-ROWS = (
-    ("rotation, end", "rotation_rad", "deg", 0),
-    *((f"{q.heading}, {q.standing}", q.key, q.unit, q.highest) for q in QUANTITIES if q.standing),
-    ("stiffness, begin", "stiffness_begin_Nm_per_rad", "N m/rad", 0),
-    ("stiffness, end", "stiffness_end_Nm_per_rad", "N m/rad", 0),
-    ("stiffness, variation", "stiffness_variation", "", 0),
-    ("centre shift, largest", "largest_centre_shift_m", "m", -3),
-    ("safety to yield", "safety", "", 0),
-    ("yields from", "yield_rotation_rad", "deg", 0),
-    ("first frequency", "first_frequency_Hz", "Hz", 0),
-)
+#: Lines of the table by their key in JSON.
+ROWS = {
+    "rotation_rad": Scale(heading="rotation, end", unit="deg", factor=180.0 / math.pi),
+    **{q.key: replace(q, heading=f"{q.heading}, {q.standing}") for q in QUANTITIES if q.standing},
+    "stiffness_begin_Nm_per_rad": Scale(heading="stiffness, begin", unit="N m/rad", highest=0),
+    "stiffness_end_Nm_per_rad": Scale(heading="stiffness, end", unit="N m/rad", highest=0),
+    "stiffness_variation": Scale(heading="stiffness, variation", factor=1.0),
+    "largest_centre_shift_m": Scale(heading="centre shift, largest", unit="m", highest=-3),
+    "safety": Scale(heading="safety to yield", factor=1.0),
+    "yield_rotation_rad": Scale(heading="yields from", unit="deg", factor=180.0 / math.pi),
+    "first_frequency_Hz": Scale(heading="first frequency", unit="Hz", highest=0),
+}
 
 
 class _Compared(NamedTuple):
     """One design by one model: its case, the answer, its path and its modes as pictures show them, None of
-    what has no state, and its numbers by the keys of `ROWS`, those that it has."""
+    what has no state, and its numbers by the keys of `ROWS`, NaN of those that it has not."""
 
     case: str
     answer: Response
@@ -70,12 +71,8 @@ class _Compared(NamedTuple):
     modes: Shown | None
     values: dict[str, float]
 
-    def value(self, key: str) -> float:
-        """Return a number, NaN where it has none."""
-        return self.values.get(key, math.nan)
 
-
-def _values(answer: Response, shown: Shown) -> dict[str, float]:
+def _values(answer: Response, shown: Shown) -> dict[str, Any]:
     """Return the numbers of a path by their keys."""
     fields, limits = shown.fields, strength(answer)
     found: dict[str, Any] = {
@@ -92,7 +89,7 @@ def _values(answer: Response, shown: Shown) -> dict[str, float]:
         found["stiffness_variation"] = variation if variation > ROUND_OFF else 0.0
     if shown.shift is not None:
         found["largest_centre_shift_m"] = shown.shift.max()
-    return {key: float(value) for key, value in found.items() if value is not None}
+    return found
 
 
 @command(
@@ -125,7 +122,7 @@ def main(arguments: argparse.Namespace) -> int:
     failed = (
         f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
     )
-    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed) or None)
+    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed))
 
 
 def _document(found: Sequence[_Compared]) -> dict[str, Any]:
@@ -137,7 +134,7 @@ def _document(found: Sequence[_Compared]) -> dict[str, Any]:
                 "case": Path(each.case).name,
                 **headed(each.answer),
                 "estimate": each.answer.estimate,
-                **{key: each.value(key) for _, key, _, _ in ROWS},
+                **each.values,
             }
             for each in found
         ]
@@ -148,14 +145,13 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Co
     design = take.driven(read_design(case, changes=arguments.effects), arguments)
     answer = answer_static(design, settings, accuracy=arguments.accuracy)
     spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
-    shown, modes, values = None, None, {}
-    if len(answer.load_factor):
-        shown = shown_of(case, answer)
-        values = _values(answer, shown)
-    if len(spectrum.frequency):
-        modes = shown_of(case, spectrum)
-        values["first_frequency_Hz"] = float(spectrum.frequency[0])
-    return _Compared(case, answer, shown, modes, values)
+    shown = shown_of(case, answer) if len(answer.load_factor) else None
+    modes = shown_of(case, spectrum) if len(spectrum.frequency) else None
+    found = _values(answer, shown) if shown else {}
+    if modes:
+        found["first_frequency_Hz"] = spectrum.frequency[0]
+    known = {key: float(value) for key, value in found.items() if value is not None}
+    return _Compared(case, answer, shown, modes, dict.fromkeys(ROWS, math.nan) | known)
 
 
 def _readable(found: Sequence[_Compared]) -> Iterator[str]:
@@ -165,11 +161,13 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
         told = (each.answer.status.replace("_", " "), *_remarks(each.answer))
         yield f"{letter}: {called(each.case, each.answer)}, {'; '.join(told)}"
     rows = []
-    for name, key, unit, highest in ROWS:
-        values = [each.value(key) for each in found]
+    for key, scale in ROWS.items():
+        values = np.array([each.values[key] for each in found])
         if np.isfinite(values).any():
-            shown, texts = _cells(unit, highest, values)
-            rows.append([f"{name:<22}", shown, *texts, *(_ratio(each, values[0]) for each in values[1:])])
+            factor, unit = scale.fitting([values])
+            cells = (significant(value, DIGITS) for value in factor * values)
+            ratios = (_ratio(value, values[0]) for value in values[1:])
+            rows.append([f"{scale.heading:<22}", unit.replace("µ", "u"), *cells, *ratios])
     heads = ["", "unit", *letters, *(f"{letter}/A" for letter in letters[1:])]
     columns = [plain(head, cells) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]
     yield from (line for line in table(columns) if line.strip())
@@ -180,14 +178,6 @@ def _remarks(answer: Response) -> Iterator[str]:
     error = answer.largest_error
     yield f"estimated error {error:.1e}" if math.isfinite(error) else "errors not estimated"
     yield from filter(None, [answer.resolution])
-
-
-def _cells(unit: str, highest: int, values: list[float]) -> tuple[str, list[str]]:
-    """Return the unit of a row, with its prefix, and its numbers."""
-    shown = np.degrees(values) if unit == "deg" else np.array(values)
-    if unit not in ("", "deg"):
-        unit, shown = prefixed(unit, shown, highest)
-    return unit, [significant(value, DIGITS) for value in shown]
 
 
 def _ratio(value: float, first: float) -> str:

@@ -26,14 +26,7 @@ from studies.commands import arguments as take
 from studies.commands.answer import not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import command, reads
-from studies.convergence.sweep import (
-    FINEST,
-    drawn,
-    element_sweep,
-    reaching,
-    spline_row,
-    with_orders,
-)
+from studies.convergence.sweep import FINEST, drawn, element_sweep, reaching, spline_row, with_orders
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.files import require_writable_folder, write_whole
@@ -76,15 +69,8 @@ def main(arguments: argparse.Namespace) -> int:
     problem = take.turned_design(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points
-    settings = [
-        SplineSettings(
-            control_points=n,
-            segments=arguments.segments,
-            measure=arguments.measure,
-            stretch=arguments.stretch,
-        )
-        for n in range(first, last + 1)
-    ]
+    form = {name: getattr(arguments, name) for name in ("segments", "measure", "stretch")}
+    settings = [SplineSettings(control_points=count, **form) for count in range(first, last + 1)]
     output = arguments.out or ROOT / "results" / "designs" / Path(arguments.case).stem
     require_writable_folder(output)
     try:
@@ -174,7 +160,6 @@ def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:
             cell(row[f"error_{name}"], 13, ".3e") + cell(row[f"order_{name}"], 8, ".2f")
             for name in QUANTITIES
         )
-        ended = f"{row['status'].replace('_', ' ')}"
-        if row["status"] != "converged":
-            ended += f" beyond {math.degrees(row['reached_rad']):.4g} deg"
+        stopped = f" beyond {math.degrees(row['reached_rad']):.4g} deg" * (row["status"] != "converged")
+        ended = f"{row['status'].replace('_', ' ')}{stopped}"
         yield f"{row[count]:>6}{cells}  {ended}"

@@ -53,10 +53,10 @@ def main(arguments: argparse.Namespace) -> int:
     for settings in every:
         with Bar(f"critical-load {settings.model}"):
             found.append(critical_load(design, settings, **how))
-    stopped = [f"{each.model}: {each.message}" for each in found if not each.converged]
+    stopped = "; ".join(f"{each.model}: {each.message}" for each in found if not each.converged)
     every_one = [_document(each) for each in found]
     document = every_one[0] if len(found) == 1 else {"answers": every_one}
-    return deliver(arguments, document, _readable(found), failure="; ".join(stopped) or None)
+    return deliver(arguments, document, _readable(found), failure=stopped)
 
 
 def _document(found: CriticalLoad) -> dict[str, Any]:

@@ -50,22 +50,16 @@ def main(arguments: argparse.Namespace) -> int:
     settings = take.chosen_settings(arguments)[0]
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
     answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
-    failure = (
-        None if answer.converged else f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
-    )
-    tell.pictured(arguments, answer)
-    return tell.deliver(arguments, _document(answer), _readable(answer, arguments.count), failure=failure)
+    reached = f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
+    table, failure = _readable(answer, arguments.count), None if answer.converged else reached
+    return tell.deliver(arguments, _document(answer), table, failure=failure, answers=[answer])
 
 
 def _document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         **tell.headed(answer),
-        "rotation_rad": answer.rotation,
-        "held": answer.held,
-        "frequency_Hz": answer.frequency,
-        "body_shapes": answer.body_shapes,
-        "slide_frequency_Hz": answer.slide_frequency,
+        **tell.keyed(answer, "rotation_rad", "held", "frequency_Hz", "body_shapes", "slide_frequency_Hz"),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "wall_s": answer.wall_s,
     }
@@ -75,16 +69,12 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     """Yield the lines of a short table."""
     yield tell.described(answer)
     yield "displacement of the body at unit modal mass"
+    shapes = zip(("x", "y", "rotation"), SHAPE_UNITS, answer.body_shapes.T, strict=True)
     yield from table(
         [
-            plain("mode", (str(mode) for mode in range(1, len(answer.frequency) + 1))),
+            plain("mode", map(str, range(1, len(answer.frequency) + 1))),
             plain("frequency", (significant(f) if f else "rigid" for f in answer.frequency), "Hz"),
-            *(
-                plain(name, map(significant, _above_noise(shape)), unit)
-                for name, unit, shape in zip(
-                    ("x", "y", "rotation"), SHAPE_UNITS, answer.body_shapes.T, strict=True
-                )
-            ),
+            *(plain(name, map(significant, _above_noise(shape)), unit) for name, unit, shape in shapes),
         ]
     )
     if rigid := int((answer.frequency == 0.0).sum()):

@@ -160,11 +160,7 @@ def _published(store: Store) -> Iterator[str]:
 
 
 def _stored(store: Store, study: str, name: str) -> pd.DataFrame:
-    """Return one stored table of a study.
-
-    Raises:
-        BadInput: the study was never run.
-    """
+    """Return one stored table of a study; BadInput if it was never run."""
     try:
         return store.load_tables(study)[name]
     except FileNotFoundError:
@@ -285,31 +281,19 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _rewritten(path: Path, store: Store) -> str:
-    """Return the text of a file of `BLOCKS` with what stands between its marks made anew from `store`.
-
-    Raises:
-        BadInput: the marks are missing, or a study was never run.
-    """
+    """Return the text of a file of `BLOCKS` with what stands between its marks made anew from `store`;
+    BadInput where the marks are missing, or a study was never run."""
     text = path.read_text(encoding="utf-8")
     for name, made in BLOCKS[path].items():
-        text = _between(text, name, made(store), path.name)
+        begin, end = _marks(name)
+        head, found_begin, rest = text.partition(begin)
+        _, found_end, tail = rest.partition(end)
+        if not (found_begin and found_end):
+            raise BadInput(f"{path.name}: got no marks, expected {begin} and {end}")
+        text = "\n".join([f"{head}{begin}", "", *made(store), "", f"{end}{tail}"])
     return text
 
 
 def _marks(name: str) -> tuple[str, str]:
     """Return the marks before and after the block of this name."""
     return f"<!-- {name}: written by `python -m studies readme` -->", f"<!-- end of {name} -->"
-
-
-def _between(text: str, name: str, made: Iterable[str], where: str) -> str:
-    """Return `text` with `made` in place of what stands between the marks of the block `name`.
-
-    Raises:
-        BadInput: the marks are missing; `where` is the file that the message names.
-    """
-    begin, end = _marks(name)
-    head, found_begin, rest = text.partition(begin)
-    _, found_end, tail = rest.partition(end)
-    if not (found_begin and found_end):
-        raise BadInput(f"{where}: got no marks, expected {begin} and {end}")
-    return "\n".join([f"{head}{begin}", "", *made, "", f"{end}{tail}"])

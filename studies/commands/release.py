@@ -37,7 +37,7 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.quantities import energy_floor
+from studies.answers.quantities import ENERGIES, energy_floor
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
@@ -109,8 +109,7 @@ def main(arguments: argparse.Namespace) -> int:
         **options,
     )
     failure = None if answer.converged else answer.message
-    tell.pictured(arguments, answer)
-    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure)
+    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure, answers=[answer])
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -121,13 +120,12 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
     """
     implicit = arguments.integrator in (None, "energy") and arguments.accuracy is None
     free = settings.model == "spline" and implicit and arguments.step is None
-    if arguments.duration is not None and not free:
-        return arguments.duration, arguments.step
-    usual, step = _usual(design, settings)
-    duration = usual if arguments.duration is None else arguments.duration
-    if not free or step is None:
-        return duration, arguments.step
-    return duration, min(step, duration)
+    duration, step = arguments.duration, arguments.step
+    if duration is None or free:
+        usual, fine = _usual(design, settings)
+        duration = usual if duration is None else duration
+        step = min(fine, duration) if free and fine is not None else step
+    return duration, step
 
 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -155,39 +153,24 @@ def _last_time(design: Design) -> float:
 
 
 def _document(answer: Motion) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all.
-
-    The energies of gravity, loads and damping are there where more than the usual effects act.
-    """
+    """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
     pivot, estimate = isinstance(answer.design, Problem), answer.estimate
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
-    place = {
-        "rotation_rad": answer.rotation,
-        "com_x_m": answer.centre[:, 0],
-        "com_y_m": answer.centre[:, 1],
-    }
-    energies = {
-        "gravity_J": answer.gravity_energy,
-        "work_J": answer.work,
-        "dissipated_J": answer.dissipated,
-    }
+    few = pivot and set(answer.effects) <= {*DEFAULT, "inextensible"}
+    energies = list(ENERGIES.items())[: 2 if few else None]
     return {
         **tell.headed(answer),
-        "rotation_error_rad": answer.rotation_error,
-        "displacement_error_m": answer.displacement_error,
+        **tell.keyed(answer, "rotation_error_rad", "displacement_error_m"),
         "frequency_Hz": answer.swing.value,
         "frequency_reason": answer.swing.reason,
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
-        **(place if pivot else {"bodies": tell.places(answer.bodies)}),
-        "kinetic_J": answer.kinetic_energy,
-        "strain_J": answer.strain_energy,
-        **({} if pivot and set(answer.effects) <= {*DEFAULT, "inextensible"} else energies),
+        **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
+        **{key: getattr(answer, name) for key, (name, _) in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
-        "counters": answer.counters,
-        "wall_s": answer.wall_s,
+        **tell.keyed(answer, "counters", "wall_s"),
     }
 
 

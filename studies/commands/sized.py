@@ -145,10 +145,9 @@ def readable(task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimu
     yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(task)}"
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
         share = each.objective / own.quantities[task.objective]
-        line = (
-            f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}  {_line(task, task.values(each.at))}"
-        )
-        yield f"{line}  {_ended(number, each)}".replace(" nan ", " -   ")
+        begun = f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}"
+        line = f"{begun}  {_line(task, task.values(each.at))}  {_ended(number, each)}"
+        yield line.replace(" nan ", " -   ")
 
 
 def _ended(number: int, outcome: Outcome) -> str:
@@ -169,14 +168,12 @@ def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
     yield _gain(case[task.objective] / spline[task.objective])
-    told = (
+    errs = ", ".join(
         f"{name} {error:.1e}" if math.isfinite(error) else f"{name} not estimated"
         for name, error in errors.items()
     )
-    points = found.answers.control_points
-    yield f"estimated error of the splines, sized, {points} control points: {', '.join(told)}"
-    missed = [name for name, error in errors.items() if error > DEFAULT]
-    if missed:
+    yield f"estimated error of the splines, sized, {found.answers.control_points} control points: {errs}"
+    if missed := [name for name, error in errors.items() if error > DEFAULT]:
         yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
 
 
@@ -209,8 +206,7 @@ def _dimensioned(task: Sizing, found: Outcome) -> Iterator[str]:
     active = ", ".join(f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
     yield f"held back by, with prices: {active or 'nothing'}"
     spans = zip(task.variables, task.span, strict=True)
-    held = [_said(task, name) for name, span in spans if span == 0.0]
-    if held:
+    if held := [_said(task, name) for name, span in spans if span == 0.0]:
         yield f"held as asked: {', '.join(held)}"
 
 

@@ -29,6 +29,7 @@ import argparse
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,15 +90,9 @@ def main(arguments: argparse.Namespace) -> int:
     for settings in every:
         with Bar(f"solve {settings.model}") as bar:
             answers.append(answer_static(design, settings, progress=bar, **how))
-    stopped = [_stopped(answer) for answer in answers if not answer.converged]
-    tell.pictured(arguments, *answers)
-    return tell.deliver(
-        arguments,
-        _document(answers),
-        _table(answers),
-        failure="; ".join(stopped) or None,
-        frame=lambda: _frame(answers),
-    )
+    stopped = "; ".join(_stopped(answer) for answer in answers if not answer.converged)
+    table, frame = _table(answers), partial(_frame, answers)
+    return tell.deliver(arguments, _document(answers), table, failure=stopped, answers=answers, frame=frame)
 
 
 def _stopped(answer: Response) -> str:
@@ -155,8 +150,7 @@ def _arrays(answer: Response) -> dict[str, Array]:
     """Return what is one number in every state, by names with units."""
     found, pivot = {"load_factor": answer.load_factor}, answer.crossing is not None
     if pivot:
-        found |= {"rotation_rad": answer.rotation}
-        found |= dict(zip(("com_x_m", "com_y_m"), answer.centre.T, strict=True))
+        found |= tell.pose(answer)
         found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
     found |= {each.key: values for each, values in quantities_of(answer) if not (pivot and each.mechanisms)}
     if answer.body is not None:
@@ -193,8 +187,7 @@ def _document_of(answer: Response) -> dict[str, Any]:
         "strength": tell.strength_document(strength(answer)),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
-        "counters": answer.counters,
-        "wall_s": answer.wall_s,
+        **tell.keyed(answer, "counters", "wall_s"),
     }
 
 
@@ -203,12 +196,8 @@ def _critical(answer: Response) -> list[dict[str, Any]]:
     acting = answer.design.effects.parameters().get("applied_force")
     force = math.hypot(*acting["force"]) if acting and "applied_force" in answer.effects else None
     return [
-        {
-            "kind": point.kind,
-            "load_factor": point.load_factor,
-            "rotation_rad": point.rotation,
-            **({} if force is None else {"force_N": force * point.load_factor}),
-        }
+        tell.keyed(point, "kind", "load_factor", "rotation_rad")
+        | ({} if force is None else {"force_N": force * point.load_factor})
         for point in answer.critical_points
     ]
 

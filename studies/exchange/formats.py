@@ -2,7 +2,7 @@
 are written in, by name: each a function from fields to files by name."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,23 +10,22 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.fields import Fields
-from studies.answers.quantities import QUANTITIES, quantities_of
+from studies.answers.quantities import ALONG, ENERGIES, QUANTITIES, quantities_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
+#: Columns of points and bodies: where they are, and how a mode moves them.
+PLACES = ("x_m", "y_m", "displacement_x_m", "displacement_y_m", "rotation_rad")
+MODES = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
 #: What each column holds; the first of a table is what runs over the states.
 COLUMNS = {
     "load_factor": "part of the static path, 0 to 1 [1]",
     "time_s": "time since the release [s]",
     "mode": "number of the mode, the lowest 1",
     "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
-    "com_x_m": "of the only body, as by `solve --csv` [m]",
-    "com_y_m": "of the only body, as by `solve --csv` [m]",
+    **dict.fromkeys(("com_x_m", "com_y_m"), "of the only body, as by `solve --csv` [m]"),
+    **{key: meaning for key, (_, meaning) in ENERGIES.items()},
     **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
-    "kinetic_J": "of a motion [J]",
-    "strain_J": "of a motion, of all strips [J]",
-    "gravity_J": "of a motion against rest [J]",
-    "dissipated_J": "of a motion since its start [J]",
     "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
     "strip": "name of the strip",
     "body": "name of the body",
@@ -38,19 +37,12 @@ COLUMNS = {
     "displacement_x_m": "from rest [m]",
     "displacement_y_m": "from rest [m]",
     "rotation_rad": "of the section or of the body from rest, counter-clockwise [rad]",
-    "curvature_per_m": "of the deformed strip, by its length at rest [1/m]",
-    "stretch": "length over length at rest [1]",
-    "axial_force_N": "tension positive [N]",
-    "shear_force_N": "of the part beyond on the part before, along the normal to the left [N]",
-    "bending_moment_Nm": "positive for counter-clockwise curvature from root to tip [N m]",
-    "extreme_fibre_stress_Pa": "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
+    **{key: meaning for key, (_, meaning) in ALONG.items()},
     "mass_kg": "of the body [kg]",
     "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
-    "force_x_N": "of what the end is on, on the strip [N]",
-    "force_y_N": "of what the end is on, on the strip [N]",
+    **dict.fromkeys(("force_x_N", "force_y_N"), "of what the end is on, on the strip [N]"),
     "moment_Nm": "of what the end is on, on the strip [N m]",
-    "mode_x_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
-    "mode_y_per_sqrt_kg": "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]",
+    **dict.fromkeys(MODES[:2], "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]"),
     "mode_rotation_per_m_sqrt_kg": "rotation of the mode at unit modal mass [rad / sqrt(kg m^2)]",
 }
 
@@ -61,99 +53,79 @@ def tables(fields: Fields) -> dict[str, pd.DataFrame]:
     return found | ({"bodies": _bodies(fields)} if fields.blocks else {})
 
 
+def _table(fields: Fields, shape: tuple[int, ...], columns: Mapping[str, Any]) -> pd.DataFrame:
+    """Return columns of arrays that go over the rows of a shape, states first, behind what runs over the
+    states and their numbers, which modes have as it is.
+
+    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
+    """
+    running = {fields.series: fields.values, "state": np.arange(len(fields.values))}
+    if fields.series == "mode":
+        running = {"mode": fields.values.astype(np.int64)}
+    first = {name: values.reshape(-1, *(1 for _ in shape[1:])) for name, values in running.items()}
+    given = (first | dict(columns)).items()
+    return pd.DataFrame({name: np.broadcast_to(array, shape).ravel() for name, array in given})
+
+
+def _parts(names: Iterable[str], arrays: np.ndarray | None) -> dict[str, np.ndarray]:
+    """Return the last axis of arrays by names, as many as it has; nothing of nothing."""
+    return {} if arrays is None else dict(zip(names, np.moveaxis(arrays, -1, 0), strict=False))
+
+
 def _states(fields: Fields) -> pd.DataFrame:
     """One row a state: what runs, and what the state has as a whole, by the names of `solve --csv`."""
-    columns = _running(fields, 1)
+    columns: dict[str, Any] = {}
     if fields.frequency is not None:
-        return pd.DataFrame(columns | {"frequency_Hz": fields.frequency})
-    if len(fields.blocks) == 1:
-        com_x, com_y, turn = fields.bodies[:, 0].T
-        columns |= {"rotation_rad": turn, "com_x_m": com_x, "com_y_m": com_y}
-    if fields.analysis == "static":
-        return pd.DataFrame(columns | {each.key: values for each, values in quantities_of(fields)})
-    kept = {f"{name}_J": energy for name, energy in fields.energies.items()}
-    return pd.DataFrame(columns | kept | {"max_stress_Pa": fields.max_stress})
+        columns["frequency_Hz"] = fields.frequency
+    else:
+        if len(fields.blocks) == 1:
+            columns |= _parts(("rotation_rad", "com_x_m", "com_y_m"), np.roll(fields.bodies[:, 0], 1, axis=1))
+        if fields.analysis == "static":
+            columns |= {each.key: values for each, values in quantities_of(fields)}
+        else:
+            columns |= {f"{name}_J": energy for name, energy in fields.energies.items()}
+            columns["max_stress_Pa"] = fields.max_stress
+    return _table(fields, fields.values.shape, columns)
+
+
+def _placed(place: np.ndarray, rest: np.ndarray, turn: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the places (..., 2) and turns of points or bodies."""
+    return _parts(PLACES, np.concatenate((place, place - rest, turn[..., None]), axis=-1))
 
 
 def _strips(fields: Fields) -> pd.DataFrame:
     """One row a state, strip and station."""
-    states, strips, stations = fields.rotation.shape
     columns = {
-        **_running(fields, strips * stations),
-        "strip": np.tile(np.repeat([part.name for part in fields.parts], stations), states),
-        "arc_length_m": np.tile(fields.arc_length.ravel(), states),
+        "strip": np.array([part.name for part in fields.parts])[:, None],
+        "arc_length_m": fields.arc_length,
+        **_placed(fields.shape, fields.rest_shape, fields.rotation),
+        **{key: getattr(fields, name) for key, (name, _) in ALONG.items()},
+        **_parts(MODES, fields.mode_shape),
     }
-    per_point = {
-        "x_m": fields.shape[..., 0],
-        "y_m": fields.shape[..., 1],
-        "displacement_x_m": fields.displacement[..., 0],
-        "displacement_y_m": fields.displacement[..., 1],
-        "rotation_rad": fields.rotation,
-        "curvature_per_m": fields.curvature,
-        "stretch": fields.stretch,
-        "axial_force_N": fields.axial_force,
-        "shear_force_N": fields.shear_force,
-        "bending_moment_Nm": fields.bending_moment,
-        "extreme_fibre_stress_Pa": fields.stress,
-    }
-    if fields.mode_shape is not None:
-        per_point["mode_x_per_sqrt_kg"] = fields.mode_shape[..., 0]
-        per_point["mode_y_per_sqrt_kg"] = fields.mode_shape[..., 1]
-    return pd.DataFrame(columns | {name: array.ravel() for name, array in per_point.items()})
+    return _table(fields, fields.rotation.shape, columns)
 
 
 def _bodies(fields: Fields) -> pd.DataFrame:
     """One row a state and body."""
-    states, bodies = fields.bodies.shape[:2]
-    x, y, turn = np.moveaxis(fields.bodies, 2, 0)
-    per_body = {
-        "x_m": x,
-        "y_m": y,
-        "displacement_x_m": x - fields.rest_bodies[:, 0],
-        "displacement_y_m": y - fields.rest_bodies[:, 1],
-        "rotation_rad": turn,
+    columns = {
+        "body": np.array([block.name for block in fields.blocks]),
+        **_placed(fields.bodies[..., :2], fields.rest_bodies, fields.bodies[..., 2]),
+        **_parts(MODES, fields.mode_bodies),
+        "mass_kg": np.array([block.mass for block in fields.blocks]),
+        "moment_of_inertia_kg_m2": np.array([block.moment_of_inertia for block in fields.blocks]),
     }
-    if fields.mode_bodies is not None:
-        names = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
-        per_body |= dict(zip(names, np.moveaxis(fields.mode_bodies, 2, 0), strict=True))
-    return pd.DataFrame(
-        {
-            **_running(fields, bodies),
-            "body": np.tile([block.name for block in fields.blocks], states),
-            **{name: array.ravel() for name, array in per_body.items()},
-            "mass_kg": np.tile([block.mass for block in fields.blocks], states),
-            "moment_of_inertia_kg_m2": np.tile([block.moment_of_inertia for block in fields.blocks], states),
-        }
-    )
+    return _table(fields, fields.bodies.shape[:2], columns)
 
 
 def _reactions(fields: Fields) -> pd.DataFrame:
     """One row a state, strip and end."""
-    states, strips = fields.reactions.shape[:2]
-    on = [place or "free" for part in fields.parts for place in (part.root, part.tip)]
-    return pd.DataFrame(
-        {
-            **_running(fields, 2 * strips),
-            "strip": np.tile(np.repeat([part.name for part in fields.parts], 2), states),
-            "end": np.tile(["root", "tip"], states * strips),
-            "on": np.tile(on, states),
-            **{
-                name: fields.reactions[..., k].ravel()
-                for k, name in enumerate(("force_x_N", "force_y_N", "moment_Nm"))
-            },
-        }
-    )
-
-
-def _running(fields: Fields, rows: int) -> dict[str, np.ndarray]:
-    """Return what runs over the states, each of so many rows, and their numbers, which modes have as it is.
-
-    The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
-    """
-    if fields.series == "mode":
-        return {"mode": np.repeat(fields.values.astype(np.int64), rows)}
-    states = np.arange(len(fields.values))
-    return {fields.series: np.repeat(fields.values, rows), "state": np.repeat(states, rows)}
+    columns = {
+        "strip": np.array([part.name for part in fields.parts])[:, None],
+        "end": np.array(["root", "tip"]),
+        "on": np.array([[part.root or "free", part.tip or "free"] for part in fields.parts]),
+        **_parts(("force_x_N", "force_y_N", "moment_Nm"), fields.reactions),
+    }
+    return _table(fields, fields.reactions.shape[:3], columns)
 
 
 Contents = dict[str, bytes]

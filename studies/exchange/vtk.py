@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers.fields import Fields
-from studies.answers.quantities import quantities_of
+from studies.answers.quantities import ALONG, quantities_of
 from studies.cases.keys import GROUND
 from studies.kinds import Array
 
@@ -26,15 +26,6 @@ Indices = NDArray[np.int64]
 STRIP, BODY_ARM, BODY_CENTRE, CLAMP = range(4)
 #: Largest displacement of a mode in the picture, in lengths of the longest strip [1].
 AMPLITUDE = 0.1
-#: Point data along the strips, and the attributes of `Fields` they are.
-ALONG = {
-    "curvature_per_m": "curvature",
-    "stretch": "stretch",
-    "axial_force_N": "axial_force",
-    "shear_force_N": "shear_force",
-    "bending_moment_Nm": "bending_moment",
-    "extreme_fibre_stress_Pa": "stress",
-}
 
 
 def vtk(fields: Fields) -> dict[str, bytes]:
@@ -63,8 +54,8 @@ def mesh(fields: Fields, state: int) -> meshio.Mesh:
         "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in cells],
         "part_number": [parts for _, _, parts, _ in cells],
     }
-    for name in ("mass", "moment_of_inertia"):
-        of_cells[{"mass": "mass_kg"}.get(name, f"{name}_kg_m2")] = [
+    for key, name in (("mass_kg", "mass"), ("moment_of_inertia_kg_m2", "moment_of_inertia")):
+        of_cells[key] = [
             np.array([getattr(fields.blocks[n], name) if kind == BODY_CENTRE else 0.0 for n in parts])
             for kind, _, parts, _ in cells
         ]
@@ -149,7 +140,7 @@ def _point_data(fields: Fields, state: int) -> dict[str, Any]:
         "displacement_m": _spatial(moved),
         "rotation_rad": np.concatenate([fields.rotation[state].ravel(), bodies[:, 2], bodies[carried, 2]]),
         "arc_length_m": np.concatenate([fields.arc_length.ravel(), nothing]),
-        **{n: np.concatenate([getattr(fields, a)[state].ravel(), nothing]) for n, a in ALONG.items()},
+        **{n: np.concatenate([getattr(fields, a)[state].ravel(), nothing]) for n, (a, _) in ALONG.items()},
         "reaction_force_N": _spatial(np.concatenate([forces.reshape(-1, 2), np.zeros((beyond, 2))])),
         "reaction_moment_Nm": np.concatenate([moments.ravel(), still]),
     }

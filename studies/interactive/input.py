@@ -3,12 +3,13 @@ holds the body as it is read off."""
 
 import math
 from collections import deque
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.cases.rules import whole
 from studies.errors import BadInput
 from studies.interactive.mechanics import Mechanics, Snapshot
 from studies.interactive.presets import STEP, STEPS_A_FRAME, finite
@@ -41,47 +42,46 @@ class Event(dict[str, Any]):
     """An event by the names of its fields, each of which is checked when it is read; BadInput in one line for
     one that does not fit."""
 
+    def _field(self, key: str, fits: Callable[[Any], bool], expected: str, default: Any = None) -> Any:
+        value = self.get(key, default)
+        if not fits(value):
+            raise BadInput(f"{key}: got {value!r}, expected {expected}")
+        return value
+
     def number(self, key: str) -> float:
         """Return a finite number."""
-        value = self.get(key)
-        if not finite(value):
-            raise BadInput(f"{key}: got {value!r}, expected a finite number")
-        return float(value)
+        return float(self._field(key, finite, "a finite number"))
 
     def three(self, key: str) -> NDArray[np.float64]:
         """Return three finite numbers."""
-        values = self.get(key)
-        if not isinstance(values, list | tuple) or len(values) != 3:
-            raise BadInput(f"{key}: got {values!r}, expected three finite numbers")
+        values = self._field(
+            key, lambda given: isinstance(given, list | tuple) and len(given) == 3, "three finite numbers"
+        )
         return np.array([Event({key: value}).number(key) for value in values])
 
     def choice(self, key: str, choices: Collection[str]) -> str:
         """Return one of the choices."""
-        value = self.get(key)
-        if not isinstance(value, str) or value not in choices:
-            raise BadInput(f"{key}: got {value!r}, expected one of {', '.join(choices)}")
-        return value
+        expected = f"one of {', '.join(choices)}"
+        return str(self._field(key, lambda value: isinstance(value, str) and value in choices, expected))
 
     def whole(self, key: str, most: int) -> int:
         """Return a whole number from 1 to `most`."""
-        value = self.get(key)
-        if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
-            raise BadInput(f"{key}: got {value!r}, expected a whole number from 1 to {most}")
-        return value
+        return int(self._field(key, whole(1, most).admits, f"a whole number from 1 to {most}"))
 
     def mapping(self, key: str) -> Mapping[str, Any]:
         """Return names with their values, none where the key is absent."""
-        value = self.get(key, {})
-        if not isinstance(value, Mapping):
-            raise BadInput(f"{key}: got {value!r}, expected values by name")
-        return value
+        found: Mapping[str, Any] = self._field(
+            key, lambda value: isinstance(value, Mapping), "values by name", {}
+        )
+        return found
 
     def words(self, key: str) -> list[str]:
         """Return a list of texts, empty where the key is absent."""
-        value = self.get(key, [])
-        if not isinstance(value, list) or not all(isinstance(word, str) for word in value):
-            raise BadInput(f"{key}: got {value!r}, expected a list of texts")
-        return value
+
+        def fits(value: Any) -> bool:
+            return isinstance(value, list) and all(isinstance(word, str) for word in value)
+
+        return list(self._field(key, fits, "a list of texts", []))
 
 
 #: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told.

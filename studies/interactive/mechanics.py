@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -236,22 +237,11 @@ class Mechanics:
         return float(self._load[:2] @ (self.pivot.centre - pose[:2]))
 
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
-        shape, stress = read(self.values, self._held.control_points)
-        energy = {
-            "strain": state.bending_energy + state.axial_energy,
-            "kinetic": 0.0,
-            "potential": self._potential(state.pose),
-            "dissipated": 0.0,
-            "lost": 0.0,
-        }
         return Snapshot(
-            pose=state.pose,
-            shape=shape,
-            stress=stress,
+            **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
             tangent=state.tangent,
             stiffness=_free_stiffness(state.tangent),
-            energy=energy,
             centre=_pole(state.pose, _free_turn(state.tangent), 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
@@ -260,22 +250,19 @@ class Mechanics:
         now, layout = moving.state(), self._system.layout
         pose, velocity = now.z[layout.body(BODY)].copy(), now.v[layout.body(BODY)].copy()
         points = np.stack([now.z[layout.strip(name)].reshape(-1, 2) for name in STRIPS])
+        known = self._shown(pose, points, now.strain, now.kinetic, now.dissipated)
+        known["energy"]["lost"] = self.begun - sum(known["energy"].values())
+        centre = _pole(pose, velocity, LEAST_TURN / self.step)
+        return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
+
+    def _shown(
+        self, pose: Array, points: Array, strain: float, kinetic: float = 0.0, dissipated: float = 0.0
+    ) -> dict[str, Any]:
+        """Return what follows from the pose, the control points of the strips (2, n, 2) and the energies."""
         shape, stress = read(self.values, points)
-        energy = {
-            "strain": now.strain,
-            "kinetic": now.kinetic,
-            "potential": self._potential(pose),
-            "dissipated": now.dissipated,
-        }
-        return Snapshot(
-            pose=pose,
-            velocity=velocity,
-            shape=shape,
-            stress=stress,
-            energy=energy | {"lost": self.begun - sum(energy.values())},
-            centre=_pole(pose, velocity, LEAST_TURN / self.step),
-            iterations=now.iterations,
-        )
+        energy = {"strain": strain, "kinetic": kinetic, "potential": self._potential(pose)}
+        energy |= {"dissipated": dissipated, "lost": 0.0}
+        return {"pose": pose, "shape": shape, "stress": stress, "energy": energy}
 
 
 def _pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:

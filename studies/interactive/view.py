@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.quantities import PREFIXES, fixed, power_of
 from studies.interactive.bench import SPRUNG, Bench
 from studies.interactive.design import Curve, scales
 from studies.kinds import Array
@@ -14,7 +15,6 @@ from studies.kinds import Array
 FINEST = 1e-4
 #: What lies below this part of a design's own scale is round-off, and written as nought.
 ROUND_OFF = 1e-6
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def quantity(value: float | None, unit: str, least: float = 0.0, spread: float | None = None) -> str:
@@ -38,14 +38,9 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
 
 
 def _prefix(size: float) -> tuple[float, str]:
-    if size == 0.0:
-        return 1.0, ""
-    return next((pair for pair in PREFIXES if size >= pair[0]), PREFIXES[-1])
-
-
-def fixed(value: float, places: int) -> str:
-    """Return a value with so many places, nought without a sign."""
-    return f"{round(value, places) + 0.0:.{places}f}"
+    """Return the power of ten of the prefix that suits a size, and the prefix."""
+    power = power_of(size, lowest=-9)
+    return 10.0**power, PREFIXES[power]
 
 
 def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
@@ -133,47 +128,39 @@ def curved(curve: Curve, strength: float) -> dict[str, Any]:
     }
 
 
+#: What a state tells of the bench, of its clock and of the mechanics as it is.
+OF_BENCH = ("paused", "preset", "drive", "solver", "sweeps", "sight", "wanted")
+OF_CLOCK = ("steps", "simulated")
+OF_NOW = ("iterations", "pose", "velocity", "centre", "force", "stiffness", "shape")
+
+
 def shown(bench: Bench) -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
     mechanics, placing, now = bench.mechanics, bench.placing, bench.mechanics.snapshot
-    values, moving, sd = mechanics.values, mechanics.moving, bench.readings.sd
-    state: dict[str, Any] = {
+    values, moving = mechanics.values, mechanics.moving
+    given = ((bench, OF_BENCH), (bench.clock, OF_CLOCK), (now, OF_NOW))
+    state: dict[str, Any] = {name: getattr(source, name) for source, names in given for name in names} | {
         "t": bench.time,
         "mode": "released" if moving else "held",
-        "paused": bench.paused,
-        "preset": bench.preset,
         "values": values,
-        "drive": bench.drive,
-        "solver": bench.solver,
-        "sweeps": bench.sweeps,
-        "steps": bench.clock.steps,
-        "simulated": bench.clock.simulated,
-        "iterations": now.iterations,
         "control_points": mechanics.control_points,
-        "sight": bench.sight,
         "scale": scales(values),
-        "pose": _plain(now.pose),
-        "displacement": [*_plain(now.pose[:2] - placing.centre), float(now.pose[2])],
-        "wanted": _plain(bench.wanted),
+        "displacement": [*(now.pose[:2] - placing.centre), now.pose[2]],
         "centre_shift": placing.crossing_shift(now.pose),
-        "velocity": _plain(now.velocity),
-        "centre": None if now.centre is None else list(now.centre),
-        "force": _plain(now.force),
-        "stiffness": now.stiffness,
         "grip": bench.grip if bench.drive in SPRUNG and not moving else None,
-        "sd": None if sd is None else _plain(sd),
+        "sd": bench.readings.sd,
         "force_sd": _force_sd(bench),
-        "shape": _plain(now.shape),
         "stress": _stress(now.stress, values["yield_strength"]),
         "energy": now.energy | {"start": mechanics.begun if moving else None},
         "placing": {
-            "ground": _plain(placing.ground),
-            "marker": _plain(placing.marker(now.pose)),
-            "clamps": _plain(mechanics.pivot.clamp_points),
-            "centre": _plain(placing.centre),
+            "ground": placing.ground,
+            "marker": placing.marker(now.pose),
+            "clamps": mechanics.pivot.clamp_points,
+            "centre": placing.centre,
         },
         "warnings": [{"code": code, "text": text} for code, text in bench.warnings.items()],
     }
+    state = _plain(state)
     state["texts"] = _readout(state, bench.readings.mean(now))
     state["status"] = _sentence(state, state["texts"])
     return state
@@ -188,13 +175,17 @@ def _stress(stress: Array, strength: float) -> dict[str, Any]:
         "of_yield": largest / strength,
         "strip": int(strip),
         "place": int(place),
-        "along": _plain(np.round(stress / strength, 4)),
+        "along": np.round(stress / strength, 4),
     }
 
 
-def _plain(array: Array) -> Any:
-    """Return an array as nested lists of floats."""
-    return np.asarray(array, dtype=float).tolist()
+def _plain(value: Any) -> Any:
+    """Return a value as JSON has it: arrays and tuples as lists."""
+    if isinstance(value, Mapping):
+        return {name: _plain(each) for name, each in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [_plain(each) for each in value] if isinstance(value, list | tuple) else value
 
 
 def _force_sd(bench: Bench) -> list[float | None] | None:

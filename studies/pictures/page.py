@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from studies.answers.fields import fields_of, own_fields
-from studies.answers.quantities import QUANTITIES
+from studies.answers.quantities import QUANTITIES, Scale
 from studies.answers.response import Answered
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.pictures import shapes
-from studies.pictures.shown import LETTERS, TURNED, Chart, Curve, Quantity, Shown
+from studies.pictures.shown import LETTERS, TURNED, Chart, Curve, Shown
 from studies.record import style
 from studies.record.files import PICTURES, write_whole
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Look
@@ -38,13 +38,13 @@ PARTS = {
 #: A part of the energy below this share of the largest is not drawn [1].
 SHARE = 1e-3
 
-LOAD = Quantity(name="load factor", factor=1.0)
-ROTATION = Quantity(name="rotation", unit="°", factor=180.0 / np.pi)
-TIME = Quantity(name="time", unit="s", highest=-3)
-X, Y = (Quantity(name=f"Δ{axis} of the centre", unit="mm", factor=1e3) for axis in "xy")
-ENERGY = Quantity(name="energy", unit="J")
-STRESS = Quantity(name="largest stress", unit="Pa", highest=6)
-SHIFT = Quantity(name="centre shift", unit="m", highest=-3)
+LOAD = Scale(heading="load factor", factor=1.0)
+ROTATION = Scale(heading="rotation", unit="°", factor=180.0 / np.pi)
+TIME = Scale(heading="time", unit="s", highest=-3)
+X, Y = (Scale(heading=f"Δ{axis} of the centre", unit="mm", factor=1e3) for axis in "xy")
+ENERGY = Scale(heading="energy", unit="J")
+STRESS = Scale(heading="largest stress", unit="Pa", highest=6)
+SHIFT = Scale(heading="centre shift", unit="m", highest=-3)
 
 Values = Callable[[Shown], Array | None]
 
@@ -69,8 +69,7 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     if not turned:
         yield from _chart(shown, x, ROTATION, over, lambda each: each.rotation)
     for each in (own for own in QUANTITIES if path and own.chart):
-        y = Quantity(name=each.heading, unit=each.unit)
-        yield from _chart(shown, x, y, over, partial(_of_path, each.of, turned))
+        yield from _chart(shown, x, replace(each, highest=3), over, partial(_of_path, each.of, turned))
     if not path:
         yield from _energies(shown, x, over)
     yield from _chart(shown, X, Y, partial(_travel, axis=0), partial(_travel, axis=1), equal=True)
@@ -89,7 +88,7 @@ def turning(rotation: Array) -> Array:
 
 
 def _chart(
-    shown: Sequence[Shown], x: Quantity, y: Quantity, across: Values, up: Values, **more: Any
+    shown: Sequence[Shown], x: Scale, y: Scale, across: Values, up: Values, **more: Any
 ) -> Iterator[Chart]:
     """Yield the chart of a quantity of all that have it; none where none has."""
     curves: list[Curve] = []
@@ -113,10 +112,10 @@ def _travel(shown: Shown, axis: int) -> Array | None:
     return fields.bodies[:, body, axis] - fields.rest_bodies[body, axis] if fields.blocks else None
 
 
-def _energies(shown: Sequence[Shown], x: Quantity, over: Callable[[Shown], Array]) -> Iterator[Chart]:
+def _energies(shown: Sequence[Shown], x: Scale, over: Callable[[Shown], Array]) -> Iterator[Chart]:
     """Yield the chart of the energy by its parts, or of several answers that of the strain alone."""
     if len(shown) > 1:
-        strain = Quantity(name="strain energy", unit="J")
+        strain = Scale(heading="strain energy", unit="J")
         yield from _chart(shown, x, strain, over, lambda each: each.fields.strain_energy)
         return
     (only,) = shown

@@ -1,7 +1,5 @@
 """What a picture shows of an answer: its fields, what follows from them, and curves over one axis."""
 
-import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +8,8 @@ from matplotlib.axes import Axes
 from scipy.optimize import isotonic_regression
 
 from studies.answers.fields import Fields
+from studies.answers.quantities import Scale
+from studies.answers.response import centre_shift
 from studies.cases.keys import GROUND
 from studies.kinds import Array
 from studies.record.style import Look
@@ -45,13 +45,11 @@ class Shown:
 
         None of a design that is not one body on two strips from the ground whose chords cross.
         """
-        crossing, fields = _crossing_of(self.fields), self.fields
+        crossing, bodies = _crossing_of(self.fields), self.fields.bodies
         if crossing is None:
             return None
-        x, y = crossing - fields.rest_bodies[0]
-        cosine, sine = np.cos(fields.bodies[:, 0, 2]), np.sin(fields.bodies[:, 0, 2])
-        arm = np.stack((cosine * x - sine * y, sine * x + cosine * y), axis=-1)
-        return np.asarray(np.hypot(*(fields.bodies[:, 0, :2] + arm - crossing).T))
+        rest, place = self.fields.rest_bodies[:1], bodies[:, 0]
+        return np.asarray(np.hypot(*centre_shift(crossing, place[:, 2], place[:, :2], rest).T))
 
 
 def _crossing_of(fields: Fields) -> Array | None:
@@ -69,37 +67,12 @@ def _crossing_of(fields: Fields) -> Array | None:
 
 #: Colour of a level and of its name.
 MARK = "#444444"
-#: Power of ten -> prefix.
-PREFIXES = {6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 #: Least distance of two names, and how far a name stays from the ends of its axis, in heights of a chart.
 APART, WITHIN = 0.115, 0.03
 #: Least height of an axis, in parts of the largest value; and columns of names over the width of a chart.
 FLAT, NEAR = 2e-3, 20.0
 #: A level further away than this many times the curves' largest value is told, not drawn.
 FAR = 3.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Quantity:
-    """What an axis shows: its name, its unit in SI, and the power of ten of the largest prefix it takes.
-
-    factor: of a unit without prefix, such as degrees for radians; 0 for one that has prefixes.
-    """
-
-    name: str
-    unit: str = ""
-    highest: int = 3
-    factor: float = 0.0
-
-    def scaled(self, arrays: Iterable[Array]) -> tuple[float, str]:
-        """Return the factor to the unit that suits these values, and what the axis is called."""
-        if self.factor:
-            return self.factor, f"{self.name} [{self.unit}]" if self.unit else self.name
-        largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)
-        power = min(self.highest, 0)
-        if largest > 0.0:
-            power = max(min(PREFIXES), min(self.highest, 3 * math.floor(math.log10(largest) / 3.0)))
-        return 10.0**-power, f"{self.name} [{PREFIXES[power]}{self.unit}]"
 
 
 #: A curve: its name, colour and line, x and y (S,) in SI.
@@ -115,19 +88,19 @@ class Chart:
         equal: whether both axes have the same scale.
     """
 
-    x: Quantity
-    y: Quantity
+    x: Scale
+    y: Scale
     curves: tuple[Curve, ...]
     level: tuple[float, str] | None = None
     equal: bool = False
 
     def draw(self, panel: Axes) -> None:
         """Draw the chart."""
-        across, x_label = self.x.scaled(x for _, x, _ in self.curves)
-        up, y_label = self.y.scaled(y for _, _, y in self.curves)
+        across, x_unit = self.x.fitting(x for _, x, _ in self.curves)
+        up, y_unit = self.y.fitting(y for _, _, y in self.curves)
         for look, x, y in self.curves:
             panel.plot(across * x, up * y, color=look.colour, linestyle=look.line)
-        panel.set(xlabel=x_label, ylabel=y_label)
+        panel.set(xlabel=self.x.named(x_unit), ylabel=self.y.named(y_unit))
         if self.equal:
             panel.set(aspect="equal")
             panel.set_adjustable("datalim")

@@ -72,10 +72,10 @@ def _surroundings() -> dict[str, Any]:
 def _processor() -> str:
     """Return the processor's model name where the system tells it, else its family."""
     facts = Path("/proc/cpuinfo")
-    if facts.is_file():
-        for line in facts.read_text(encoding="utf-8", errors="replace").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
+    lines = facts.read_text(encoding="utf-8", errors="replace").splitlines() if facts.is_file() else []
+    for line in lines:
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
     return platform.processor() or "unknown"
 
 
@@ -138,11 +138,8 @@ class Store:
 
     def save_figures(self, study: str, figures: Mapping[str, Figure]) -> None:
         """Store the figures of `study` as SVG and PNG and note them in its provenance."""
-        contents = {
-            f"{name}.{kind}": rendered(figure, kind)
-            for name, figure in figures.items()
-            for kind in ("svg", "png")
-        }
+        pairs = [(name, kind) for name in figures for kind in ("svg", "png")]
+        contents = {f"{name}.{kind}": rendered(figures[name], kind) for name, kind in pairs}
         record = self.record(study)
         require_writable_folder(self.figures)
         for name in set(record["figures"] or ()) - set(contents):

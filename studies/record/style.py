@@ -74,9 +74,6 @@ LOOKS: dict[str, Look] = {
     "n = 6": Look(label="spline n = 6", colour=BLUE, marker="x"),
 }
 
-#: Colours of the locking-free splines by their control points.
-COUNT_COLOURS = {4: SKY, 5: ORANGE, 6: BLUE, 7: YELLOW, 8: PURPLE, 9: GREY, 10: GREEN}
-
 #: A refined spline beside them, to hold the reference to.
 CHECK = Look(label="spline n = 10", colour=GREEN, line=":")
 

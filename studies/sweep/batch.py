@@ -1,7 +1,8 @@
 """Static paths of plain pivots by the compiled kernel of many at once; what it cannot do goes one by one."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from contextlib import suppress
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -28,7 +29,7 @@ PLAIN = {"bending", "stretching"}
 INCREMENTS = "drive.increments"
 
 Columns = dict[str, Array]
-_KEYS = {f"{key.section}.{key.name}": key for key in case_keys.KEYS if key is not case_keys.NAMED}
+_KEYS = {name: key for name, key in plan.PIVOT_KEYS.items() if key is not case_keys.NAMED}
 _PARTS = {f"{name}.{part}" for name, key in _KEYS.items() if key.rule.kind == "pair" for part in plan.PARTS}
 
 
@@ -63,13 +64,21 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
-#: Quantities of a path that the kernel has, by the names that it gives them; stress it has as strain.
-KERNEL = {
-    "torque_Nm": "torque",
-    "stiffness_Nm_per_rad": "stiffness",
-    "strain_energy_J": "energy",
-    "max_stress_Pa": "",
-}
+class _Known(NamedTuple):
+    """What the kernel knows of paths, as an answer has it."""
+
+    torque: Any = 0.0
+    stiffness: Any = 0.0
+    strain_energy: Any = 0.0
+    max_stress: Any = 0.0
+
+    def quantities(self) -> Columns:
+        """Return the quantities that follow from it, by their key."""
+        found: dict[str, Any] = {}
+        for each in QUANTITIES:
+            with suppress(AttributeError):  # of something else
+                found[each.key] = each.of(self)
+        return {key: values for key, values in found.items() if values is not None}
 
 
 def takes(task: Task) -> bool:
@@ -79,7 +88,7 @@ def takes(task: Task) -> bool:
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
-    if not asked <= set(KERNEL):
+    if not asked <= set(_Known().quantities()):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
@@ -148,43 +157,40 @@ def _paths(
     """
     from spline_model.batch import solve_many
 
-    turns, depth = given["rotation"], given["depth"]
-    designs = {name: given[name] for name in PIVOT_PARAMETERS}
-    model = model_of(settings)
     try:
         batch = solve_many(
-            designs,
-            rotation=turns,
+            {name: given[name] for name in PIVOT_PARAMETERS},
+            rotation=given["rotation"],
             increments=increments,
-            section_depth=depth,
+            section_depth=given["depth"],
             threads=1,
             **settings.keywords(),
         )
-    except model.errors.InvalidParameter:
-        return np.zeros(len(turns), dtype=bool), {}
-    unstable = np.count_nonzero(batch.inertia, axis=1)
+    except model_of(settings).errors.InvalidParameter:
+        return np.zeros(len(given["rotation"]), dtype=bool), {}
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
-    found = {key: np.asarray(getattr(batch, name)) for key, name in KERNEL.items() if name}
-    found["max_stress_Pa"] = batch.strain * given["youngs_modulus"][:, None]
+    stress = batch.strain * given["youngs_modulus"][:, None]
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
-    by_name = (*batch.errors.values(), shift_error(batch.errors["trajectory"], batch.centre, shift))
-    error = np.fmax.reduce(by_name)
+    shift_errs = shift_error(batch.errors["trajectory"], batch.centre, shift)
+    error = np.fmax.reduce((*batch.errors.values(), shift_errs))
     paths = Paths(
         rest=0,
-        rotation=batch.rotation,
-        values=found,
-        defect=batch.moment_defect,
-        unstable=unstable,
-        iterations=(1 + task.options["both_sides"]) * batch.iterations,
-        shift=shift,
-        places={},
-        strips=(_strip(given).bent(batch.strain.max(axis=1)),),
+        along={
+            "rotation": batch.rotation,
+            "shift": shift,
+            "defect": batch.moment_defect,
+            "inertia": batch.inertia.astype(float),
+            "strain": batch.strain[..., None],
+            **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
+        },
+        strips=(_strip(given),),
         effects=tuple(PLAIN),
+        iterations=(1 + task.options["both_sides"]) * batch.iterations,
         control_points=batch.control_points.astype(float),
         error=error,
     )
     resolved = batch.accuracy is None or error <= batch.accuracy
-    sure = batch.converged & (unstable == 0) & ~turning & resolved
+    sure = batch.converged & ~batch.inertia.any(axis=1) & ~turning & resolved
     return sure, points.values(points.stored(task), paths)
 
 

@@ -22,13 +22,8 @@ import pyarrow as pa
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
-from studies.record.files import (
-    OutputError,
-    require_writable_folder,
-    temporary_prefix,
-    whole_file,
-    write_whole,
-)
+from studies.record import files
+from studies.record.files import OutputError, temporary_prefix, whole_file
 from studies.record.source import source_hash
 from studies.sweep.plan import Plan
 from studies.sweep.points import POINT, REASON, STATUS, stored
@@ -64,7 +59,7 @@ class Folder:
         Raises:
             OutputError: it cannot be written to, or another run is at work in it.
         """
-        require_writable_folder(self.root)
+        files.require_writable_folder(self.root)
         handle = os.open(self.root, os.O_RDONLY)
         try:
             try:
@@ -74,7 +69,9 @@ class Folder:
                 raise OutputError(f"{self.root}: {reason}") from None
             self._clean()
             if _require_usable(self.root, self._manifest):
-                write_whole(self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode())
+                files.write_whole(
+                    self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode()
+                )
             yield
         finally:
             os.close(handle)
@@ -91,7 +88,7 @@ class Folder:
         self._parts.mkdir(exist_ok=True)
         stream = pa.BufferOutputStream()
         pq.write_table(table, stream)
-        write_whole(self._part(number), stream.getvalue().to_pybytes())
+        files.write_whole(self._part(number), stream.getvalue().to_pybytes())
 
     def finish(self, *, csv: bool) -> None:
         """Make the table of the parts, one after the other, and remove them; OutputError if it cannot be."""

@@ -2,7 +2,7 @@
 may vary: the keys of a case, the settings of a model, and the slenderness of a pivot."""
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -10,7 +10,7 @@ from studies.answers.settings import Settings, settings_of_model
 from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
-from studies.cases.rules import Rule, not_negative, number, positive, text, whole
+from studies.cases.rules import Key, Rule, not_negative, number, positive, text, whole
 from studies.cases.section import of_sides, rectangle_of
 
 METHODS = ("grid", "list", "latin-hypercube", "sobol")
@@ -105,6 +105,13 @@ class Plan:
         return number * self.chunk, min((number + 1) * self.chunk, self.sample.points)
 
 
+def _dotted(rows: Iterable[Key]) -> dict[str, Key]:
+    """Return keys by their section and name."""
+    return {f"{key.section}.{key.name}": key for key in rows}
+
+
+#: Keys of a pivot as a sweep names them.
+PIVOT_KEYS = _dotted(keys.KEYS)
 SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
@@ -148,10 +155,8 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     if is_mechanism(document):
         found = _of_mechanism(document)
     else:
-        found = {f"{key.section}.{key.name}": key.rule for key in keys.KEYS}
-        found[SLENDERNESS] = positive("1")
-    for rows in keys.EFFECT_KEYS.values():
-        found |= {f"{key.section}.{key.name}": key.rule for key in rows}
+        found = {name: key.rule for name, key in PIVOT_KEYS.items()} | {SLENDERNESS: positive("1")}
+    found |= {name: key.rule for rows in keys.EFFECT_KEYS.values() for name, key in _dotted(rows).items()}
     for name, rule in list(found.items()):
         if rule.kind == "pair":
             found |= {f"{name}.{part}": number("a finite number") for part in PARTS}
@@ -166,7 +171,7 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
 def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
     """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
     shared = (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE)
-    found = {f"{key.section}.{key.name}": key.rule for key in shared}
+    found = {name: key.rule for name, key in _dotted(shared).items()}
     own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
     for section, rows in own.items():
         for part in document.get(section, []):
@@ -183,36 +188,35 @@ def _put(document: dict[str, Any], key: str, value: Any) -> None:
         value = NAMES.parse(value)
         tables = document.get("effects", {})
         document["effects"] = {name: table for name, table in tables.items() if name in value}
-    *way, last = key.split(".")
-    if last in PARTS and len(way) > 1:
-        *way, pair = way
-        place = _at(document, way)
-        values = list(place.get(pair, (0.0, 0.0)))
-        values[PARTS[last]] = value
-        place[pair] = values
-        return
-    _at(document, way)[last] = value
+    table, name, part = _place(document, key)
+    if part is not None:
+        pair = list(table.get(name, (0.0, 0.0)))
+        pair[part] = value
+        value = pair
+    table[name] = value
 
 
 def value_at(document: Mapping[str, Any], key: str) -> Any:
     """Return what stands at a key of a case's document, None where there is nothing."""
-    *way, last = key.split(".")
-    if last in PARTS and len(way) > 1:
-        pair = value_at(document, ".".join(way))
-        return None if pair is None else pair[PARTS[last]]
-    return _at(copy.deepcopy(dict(document)), way).get(last)
+    table, name, part = _place(copy.deepcopy(dict(document)), key)
+    found = table.get(name)
+    return found if part is None or found is None else found[part]
 
 
-def _at(document: dict[str, Any], way: list[str]) -> dict[str, Any]:
-    """Return the table that the names lead to; of an array the one of that name."""
+def _place(document: dict[str, Any], key: str) -> tuple[dict[str, Any], str, int | None]:
+    """Return the table that a key stands in, of an array the one of its name, its name there, and which
+    number of a pair it is."""
+    *way, name = key.split(".")
+    part = PARTS.get(name) if len(way) > 1 else None
+    if part is not None:
+        *way, name = way
     place: Any = document
-    for name in way:
+    for each in way:
         if isinstance(place, list):
-            place = next(part for part in place if part.get("name") == name)
+            place = next(table for table in place if table.get("name") == each)
         else:
-            place = place.setdefault(name, {})
-    found: dict[str, Any] = place
-    return found
+            place = place.setdefault(each, {})
+    return place, name, part
 
 
 def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
@@ -231,15 +235,18 @@ def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
 
 def to_moments(section: dict[str, Any]) -> None:
     """Give a table of the document its section by area and second moment, in place of width and thickness."""
-    width, thickness = (key.name for key in keys.SIDES)
-    if width in section and thickness in section:
-        made = of_sides(section.pop(width), section.pop(thickness))
-        section |= {key.name: made[key.attribute] for key in keys.MOMENTS}
+    _exchange(section, keys.SIDES, of_sides, keys.MOMENTS)
 
 
 def to_sides(section: dict[str, Any]) -> None:
     """Give a table of the document its section by width and thickness, in place of area and second moment."""
-    area, second = (key.name for key in keys.MOMENTS)
-    if area in section and second in section:
-        made = rectangle_of(section.pop(area), section.pop(second))
-        section |= {key.name: made[key.attribute] for key in keys.SIDES}
+    _exchange(section, keys.MOMENTS, rectangle_of, keys.SIDES)
+
+
+def _exchange(
+    section: dict[str, Any], given: Iterable[Key], make: Callable[..., Any], wanted: Iterable[Key]
+) -> None:
+    names = [key.name for key in given]
+    if all(name in section for name in names):
+        made = make(*(section.pop(name) for name in names))
+        section |= {key.name: made[key.attribute] for key in wanted}

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from studies.answers import validity
-from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.models import put
+from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.motion import Motion, Spectrum
 from studies.answers.quantities import QUANTITIES, STANDING, Quantity, quantities_of
 from studies.answers.response import Response
@@ -34,7 +33,7 @@ POINT, STATUS, REASON = "point", "status", "reason"
 NOT_ESTIMATED = "error not estimated"
 
 
-class _Quantity(NamedTuple):
+class Column(NamedTuple):
     """A column of the table: what it means, and its value for each design from their answer, (D,).
 
     `usual`: stored where the file does not say what is. `whole`: of whole numbers.
@@ -50,118 +49,128 @@ class _Quantity(NamedTuple):
 class Paths:
     """Static paths of D designs over S states in the order of the rotation; `rest` is the unloaded one.
 
-    values (D, S) of the quantities of a path by their key; shift (D, S, 2) of the crossing point [m]; defect
-    of the moments [1]; unstable (D,) states, -1 where the model
-    cannot tell; iterations (D,) of Newton; places (D, S, 3) of the bodies by name [m, m, rad];
-    strips with the most that happens to them, arrays (D,); effects that were assembled; control_points (D,),
-    nan of another model; error (D,) the largest estimated one [1], nan where it is not estimated.
+    along: by name (D, S, ...): the quantities of a path by their key, rotation [rad], shift (2) of the
+    crossing point [m], defect of the moments [1], inertia, not 0 of what is not stable and nan where the
+    model cannot tell, strain, the largest of each strip [1], bodies (B, 3) [m, m, rad];
+    strips, whose values may be of all designs (D,); effects that were assembled; iterations (D,) of Newton;
+    control_points (D,), nan of another model; error (D,) the largest estimated one [1], nan where it is not
+    estimated.
     """
 
     rest: int
-    rotation: Array
-    values: Mapping[str, Array]
-    defect: Array
-    unstable: NDArray[np.int64]
-    iterations: NDArray[np.int64]
-    shift: Array
-    places: Mapping[str, Array]
+    along: Mapping[str, Array]
     strips: tuple[Strip, ...]
     effects: tuple[str, ...]
+    iterations: NDArray[np.int64]
     control_points: Array
     error: Array
 
     @property
     def stiffness(self) -> Array:
         """(D, S) of the driven rotation [N m/rad]."""
-        return self.values["stiffness_Nm_per_rad"]
+        return self.along["stiffness_Nm_per_rad"]
+
+    @property
+    def shift(self) -> Array:
+        """(D, S) distance of the crossing point from rest [m]."""
+        return np.asarray(np.hypot(*np.moveaxis(self.along["shift"], -1, 0)))
+
+    @property
+    def bent(self) -> list[Strip]:
+        """The strips with the most that happens to them."""
+        most = np.moveaxis(self.along["strain"].max(axis=1), -1, 0)
+        return [strip.bent(strain) for strip, strain in zip(self.strips, most, strict=True)]
+
+    def and_back(self, other: "Paths") -> "Paths":
+        """Return these paths behind those to the other side, from whose end through rest they lead on."""
+        both = {
+            name: np.concatenate((other.along[name][:, :0:-1], forth), axis=1)
+            for name, forth in self.along.items()
+        }
+        return replace(
+            self,
+            rest=both["rotation"].shape[1] - self.along["rotation"].shape[1],
+            along=both,
+            iterations=self.iterations + other.iterations,
+            control_points=np.fmax(self.control_points, other.control_points),
+            error=np.fmax(self.error, other.error),
+        )
 
 
-def _shift(paths: Paths) -> Array:
-    return np.hypot(paths.shift[..., 0], paths.shift[..., 1])
+def _end(name: str, *place: int) -> Callable[[Paths], Array]:
+    """Return what takes an array of the paths, or an entry of it, at their end."""
+    return lambda paths: np.asarray([each[(-1, *place)] for each in paths.along[name]])
 
 
 def _most(ratio: str) -> Callable[[Paths], Array]:
     """Return what takes the largest of a ratio over the strips."""
-    return lambda paths: np.max([np.asarray(getattr(s, ratio), dtype=float) for s in paths.strips], axis=0)
+    return lambda paths: np.max([np.asarray(getattr(s, ratio), dtype=float) for s in paths.bent], axis=0)
 
 
-def _standing(each: Quantity) -> _Quantity:
+def _standing(each: Quantity) -> Column:
     """Return the column of a quantity of a path: its value in the state that stands for it."""
-    return _Quantity(
-        f"{each.meaning}, {each.standing}", lambda p: STANDING[each.standing](p.values[each.key])
-    )
+    return Column(f"{each.meaning}, {each.standing}", lambda p: STANDING[each.standing](p.along[each.key]))
+
+
+def _unstable(paths: Paths) -> Any:
+    lost = paths.along["inertia"]
+    return np.where(np.isnan(lost).any(axis=1), -1, np.count_nonzero(lost, axis=1))
 
 
 PATH = {
-    "rotation_rad": _Quantity("rotation at the end", lambda p: p.rotation[:, -1]),
+    "rotation_rad": Column("rotation at the end", _end("rotation")),
     **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
-    "stiffness_rest_Nm_per_rad": _Quantity("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
-    "stiffness_end_Nm_per_rad": _Quantity("rotational stiffness at the end", lambda p: p.stiffness[:, -1]),
-    "stiffness_variation": _Quantity(
+    "stiffness_rest_Nm_per_rad": Column("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
+    "stiffness_end_Nm_per_rad": Column("rotational stiffness at the end", _end("stiffness_Nm_per_rad")),
+    "stiffness_variation": Column(
         "largest less smallest stiffness of the path, over that at rest",
         lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, p.rest]),
     ),
-    "moment_defect": _Quantity(
-        "largest relative imbalance of the strips' moments, of a spline", lambda p: p.defect.max(axis=1)
+    "moment_defect": Column(
+        "largest relative imbalance of the strips' moments, of a spline",
+        lambda p: p.along["defect"].max(axis=1),
     ),
-    "iterations": _Quantity("Newton iterations", lambda p: p.iterations, whole=True),
-    "control_points": _Quantity(
+    "iterations": Column("Newton iterations", lambda p: p.iterations, whole=True),
+    "control_points": Column(
         "control points of a strip, of a spline", lambda p: p.control_points, whole=True
     ),
-    "estimated_error": _Quantity(
+    "estimated_error": Column(
         "largest estimated relative error of what `solve` answers; none where it is not estimated",
         lambda p: p.error,
     ),
-    "unstable_states": _Quantity(
-        "states of the path that are not stable, -1 where the model does not say",
-        lambda p: p.unstable,
-        usual=False,
-        whole=True,
+    "unstable_states": Column(
+        "states of the path that are not stable, -1 where the model does not say", _unstable, False, True
     ),
-    "torque_max_Nm": _Quantity(
-        "largest magnitude of the driving torque",
-        lambda p: np.abs(p.values["torque_Nm"]).max(axis=1),
-        usual=False,
+    "torque_max_Nm": Column(
+        "largest magnitude of the driving torque", lambda p: np.abs(p.along["torque_Nm"]).max(axis=1), False
     ),
-    "stress_end_Pa": _Quantity(
-        "largest stress of the strips at the end", lambda p: p.values["max_stress_Pa"][:, -1], usual=False
-    ),
+    "stress_end_Pa": Column("largest stress of the strips at the end", _end("max_stress_Pa"), False),
     # what an answer is worth; the curvature is taken as high as the strain allows
-    "width_ratio": _Quantity("b/L, largest of the strips", _most("width_ratio")),
-    "curvature_ratio": _Quantity(
-        "b^2/(R t), largest of strips and states, at most", _most("curvature_ratio")
-    ),
-    "thickness_ratio": _Quantity("t/L, largest of the strips", _most("thickness_ratio")),
-    "strain_max": _Quantity("largest strain of strips and states", _most("strain")),
-    "outside": _Quantity(
+    "width_ratio": Column("b/L, largest of the strips", _most("width_ratio")),
+    "curvature_ratio": Column("b^2/(R t), largest of strips and states, at most", _most("curvature_ratio")),
+    "thickness_ratio": Column("t/L, largest of the strips", _most("thickness_ratio")),
+    "strain_max": Column("largest strain of strips and states", _most("strain")),
+    "outside": Column(
         "limits of the model that the answer lies beyond",
-        lambda p: validity.passed(p.strips, p.effects),
+        lambda p: validity.passed(p.bent, p.effects),
         whole=True,
     ),
 }
 SHIFT = {
-    "centre_shift_end_m": _Quantity(
-        "displacement of the body's point at the strips' crossing, at the end", lambda p: _shift(p)[:, -1]
+    "centre_shift_end_m": Column(
+        "displacement of the body's point at the strips' crossing, at the end", lambda p: p.shift[:, -1]
     ),
-    "centre_shift_max_m": _Quantity("largest displacement of that point", lambda p: _shift(p).max(axis=1)),
-    "centre_shift_end_x_m": _Quantity(
-        "x of the displacement at the end", lambda p: p.shift[:, -1, 0], usual=False
-    ),
-    "centre_shift_end_y_m": _Quantity(
-        "y of the displacement at the end", lambda p: p.shift[:, -1, 1], usual=False
-    ),
+    "centre_shift_max_m": Column("largest displacement of that point", lambda p: p.shift.max(axis=1)),
+    "centre_shift_end_x_m": Column("x of the displacement at the end", _end("shift", 0), False),
+    "centre_shift_end_y_m": Column("y of the displacement at the end", _end("shift", 1), False),
 }
 
 
-def _place(body: str, axis: int) -> Callable[[Paths], Array]:
-    return lambda paths: paths.places[body][:, -1, axis]
-
-
-def _of_bodies(names: list[str]) -> dict[str, _Quantity]:
+def _of_bodies(names: list[str]) -> dict[str, Column]:
     """Return the places of bodies at the end of a path."""
     return {
-        f"{body}_{part}": _Quantity(f"{part} of {body} at the end", _place(body, axis))
-        for body in names
+        f"{body}_{part}": Column(f"{part} of {body} at the end", _end("bodies", place, axis))
+        for place, body in enumerate(names)
         for axis, part in enumerate(("x_m", "y_m", "rotation_rad"))
     }
 
@@ -170,28 +179,28 @@ def _frequency(mode: int) -> Callable[[Spectrum], float]:
     return lambda found: found.frequency[mode] if mode < len(found.frequency) else np.nan
 
 
-def _of_modes(count: int) -> dict[str, _Quantity]:
+def _of_modes(count: int) -> dict[str, Column]:
     """Return the frequencies of the lowest modes; negative where the state is unstable."""
     return {
-        f"frequency_{mode}_Hz": _Quantity(f"frequency of mode {mode}", _frequency(mode - 1))
+        f"frequency_{mode}_Hz": Column(f"frequency of mode {mode}", _frequency(mode - 1))
         for mode in range(1, count + 1)
     }
 
 
 RELEASE = {
-    "frequency_Hz": _Quantity("frequency of the swing", lambda m: m.frequency),
-    "rotation_min_rad": _Quantity("smallest rotation", lambda m: m.rotation.min()),
-    "rotation_max_rad": _Quantity("largest rotation", lambda m: m.rotation.max()),
-    "kinetic_max_J": _Quantity("largest kinetic energy", lambda m: m.kinetic_energy.max()),
-    "energy_error": _Quantity("largest relative error of the energy", lambda m: m.energy_error),
-    "records": _Quantity("records of the motion", lambda m: len(m.time), usual=False, whole=True),
+    "frequency_Hz": Column("frequency of the swing", lambda m: m.frequency),
+    "rotation_min_rad": Column("smallest rotation", lambda m: m.rotation.min()),
+    "rotation_max_rad": Column("largest rotation", lambda m: m.rotation.max()),
+    "kinetic_max_J": Column("largest kinetic energy", lambda m: m.kinetic_energy.max()),
+    "energy_error": Column("largest relative error of the energy", lambda m: m.energy_error),
+    "records": Column("records of the motion", lambda m: len(m.time), usual=False, whole=True),
 }
 """Of a release: functions of a `Motion`."""
 
 Answer = Paths | Spectrum | Motion
 
 
-def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity]:
+def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Column]:
     """Return all quantities of an analysis of the case's document, `count` of modes."""
     if kind == "modes":
         return _of_modes(count)
@@ -201,82 +210,56 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Quantity
     return PATH | (_of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT)
 
 
-def stored(task: Task) -> dict[str, _Quantity]:
+def stored(task: Task) -> dict[str, Column]:
     """Return the quantities that the task stores, by name, in their order."""
     found = known(task.case, task.kind, task.options.get("count", 0))
     return {name: found[name] for name in task.quantities}
 
 
-def values(found: Mapping[str, _Quantity], answer: Answer) -> dict[str, Array]:
+def values(found: Mapping[str, Column], answer: Answer) -> dict[str, Array]:
     """Return the quantities of an answer, (D,) each."""
     return {name: np.atleast_1d(np.asarray(each.of(answer))) for name, each in found.items()}
 
 
 def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tuple[str, str, Paths | None]:
     """Return status, reason and static path of one design, to its rotation and, if asked, its opposite."""
-    sides = [design]
+    sides = {"": design}
     if both_sides:
-        sides.append(replace(design, rotation=-(design.rotation or 0.0)))
-    found: list[Any] = []
-    asked = [put(side, settings) for side in sides]
-    for side in asked:
-        result = side.static_path(raise_on_failure=False)
-        if result.status.value != CONVERGED:
-            words = "" if not both_sides else "to the other side: " if found else "to the one side: "
-            return NOT_CONVERGED, words + result.message, None
-        found.append(result)
-    answers = [Response.of(side, result) for side, result in zip(asked, found, strict=True)]
-    remarks = (each for answer in answers for each in (answer.message, answer.resolution) if each)
-    paths = list(map(_paths_of, answers))
-    path = paths[0] if len(paths) == 1 else _joined(*paths)
-    unknown = (NOT_ESTIMATED,) * bool(np.isnan(path.error[0]))
-    return CONVERGED, "; ".join(dict.fromkeys((*remarks, *unknown))), path
+        other = replace(design, rotation=-(design.rotation or 0.0))
+        sides = {"to the one side: ": design, "to the other side: ": other}
+    answers = []
+    for words, side in sides.items():
+        answers.append(answer := answer_static(side, settings))
+        if not answer.converged:
+            return NOT_CONVERGED, words + answer.message, None
+    remarks = [each for answer in answers for each in (answer.message, answer.resolution) if each]
+    path, *back = map(_paths_of, answers)
+    for other_path in back:
+        path = path.and_back(other_path)
+    remarks += [NOT_ESTIMATED] * bool(np.isnan(path.error[0]))
+    return CONVERGED, "; ".join(dict.fromkeys(remarks)), path
 
 
 def _paths_of(answer: Response) -> Paths:
     """Return the path of one design from its answer."""
-    design, result = answer.design, answer.solution
-    inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
-    places = {name: place[None] for name, place in answer.bodies.items()}
+    design, result, none = answer.design, answer.solution, np.full(len(answer.load_factor), np.nan)
     moduli = np.array([strip.youngs_modulus for strip in design.strips])
-    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli).max(axis=0)
-    strips = zip(strips_of(design), strains[:, None], strict=True)
-    nowhere = np.full((states, 2), np.nan)
+    along = {each.key: values for each, values in quantities_of(answer)} | {
+        "rotation": answer.rotation if answer.body else none,
+        "shift": np.stack((none, none), axis=1) if answer.crossing is None else answer.centre_shift,
+        "defect": np.asarray(getattr(result, "moment_defect", none)),
+        "inertia": np.asarray(getattr(result, "inertia", none)),
+        "strain": answer.extreme_fibre_stress.max(axis=2) / moduli,
+        "bodies": np.stack([answer.bodies[each.name] for each in design.bodies] or [none[:, None]], axis=1),
+    }
     return Paths(
         rest=0,
-        rotation=places[design.body][..., 2] if design.body else nowhere[None, :, 0],
-        values={each.key: values[None] for each, values in quantities_of(answer)},
-        defect=np.asarray(getattr(result, "moment_defect", nowhere[:, 0]))[None],
-        unstable=np.array([-1 if inertia is None else np.count_nonzero(inertia)]),
-        iterations=np.array([result.counters["newton_iterations"]]),
-        shift=(nowhere if answer.crossing is None else answer.centre_shift)[None],
-        places=places,
-        strips=tuple(strip.bent(strain) for strip, strain in strips),
+        along={name: array[None] for name, array in along.items()},
+        strips=tuple(strips_of(design)),
         effects=tuple(design.effects.names),
+        iterations=np.array([result.counters["newton_iterations"]]),
         control_points=np.array([answer.settings.get("control_points", np.nan)], dtype=float),
         error=np.array([answer.largest_error]),
-    )
-
-
-def _joined(one: Paths, other: Paths) -> Paths:
-    """Return the paths to both sides as one, from the end of `other` through rest to that of `one`."""
-
-    def through(back: Array, forth: Array) -> Array:
-        return np.concatenate((back[:, :0:-1], forth), axis=1)
-
-    arrays = ("rotation", "defect", "shift")
-    both: dict[str, Any] = {name: through(getattr(other, name), getattr(one, name)) for name in arrays}
-    both["values"] = {name: through(other.values[name], array) for name, array in one.values.items()}
-    strips = zip(one.strips, other.strips, strict=True)
-    return replace(
-        one,
-        rest=one.rotation.shape[1] - 1,
-        unstable=np.where(one.unstable < 0, -1, one.unstable + other.unstable),
-        iterations=one.iterations + other.iterations,
-        strips=tuple(strip.bent(np.maximum(strip.strain, twin.strain)) for strip, twin in strips),
-        control_points=np.fmax(one.control_points, other.control_points),
-        error=np.fmax(one.error, other.error),
-        **both,
     )
 
 

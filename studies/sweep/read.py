@@ -14,7 +14,7 @@ from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
-from studies.cases.rules import TRUTH, Rule, positive, shown, text, whole
+from studies.cases.rules import TRUTH, Key, choice, positive, shown, text, whole
 from studies.sweep import batch, plan, points
 from studies.sweep.plan import KINDS, Plan, Sample, Task
 from studies.sweep.sample import POINTS, leaves, require_known, sample_of
@@ -24,20 +24,22 @@ SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 CHUNK, CHUNK_OF_SINGLE = (64, 2048), (1, 16)
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
-MOST_MODES = whole(1, 100)
-#: Options of an analysis: key -> (keyword, rule).
-OPTIONS: dict[str, dict[str, tuple[str, Rule]]] = {
-    "static": {"both_sides": ("both_sides", TRUTH)},
-    "modes": {
-        "rotation_deg": ("rotation", ROTATION),
-        "count": ("count", MOST_MODES),
-        "held": ("held", TRUTH),
-    },
-    "release": {
-        "duration_s": ("duration", positive("s")),
-        "step_s": ("step", positive("s")),
-        "integrator": ("integrator", text("the name of an integrator")),
-    },
+#: Kind of an analysis -> its options, and what these are where the file does not say.
+OPTIONS: dict[str, tuple[Key, ...]] = {
+    kind: tuple(Key("analysis", *row, optional=True) for row in (("kind", "kind", choice(*KINDS)), *rows))
+    for kind, rows in {
+        "static": (("both_sides", "both_sides", TRUTH),),
+        "modes": (
+            ("rotation_deg", "rotation", ROTATION),
+            ("count", "count", whole(1, 100)),
+            ("held", "held", TRUTH),
+        ),
+        "release": (
+            ("duration_s", "duration", positive("s")),
+            ("step_s", "step", positive("s")),
+            ("integrator", "integrator", text("the name of an integrator")),
+        ),
+    }.items()
 }
 STANDARD: dict[str, dict[str, Any]] = {
     "static": {"both_sides": False},
@@ -145,12 +147,8 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
 def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     """Return kind and options of a task."""
     kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
-    document.refuse_unknown(where, "analysis", given, ["kind", *OPTIONS[kind]])
-    found = dict(STANDARD[kind])
-    for name, (keyword, rule) in OPTIONS[kind].items():
-        if name in given:
-            found[keyword] = document.admitted(where, f"analysis.{name}", rule, given[name])
-    return kind, found
+    found = STANDARD[kind] | document.values(where, OPTIONS[kind], given, "analysis")
+    return kind, {name: value for name, value in found.items() if name != "kind"}
 
 
 def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:

@@ -10,15 +10,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    CancelledError,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from concurrent import futures
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,7 +42,7 @@ class SweepError(BadInput):
 class Pool:
     """Workers behind the interface of `concurrent.futures`, and how many they are."""
 
-    executor: Executor
+    executor: futures.Executor
     workers: int
 
 
@@ -76,8 +68,7 @@ def sweep(
     Raises:
         OutputError: the folder cannot be used or written. SweepError: a chunk that no worker could solve.
     """
-    folder = Folder(out, plan)
-    solved = 0
+    folder, solved, total = Folder(out, plan), 0, plan.sample.points
     with ExitStack() as stack:
         workers = None
         if folder.missing():  # asked before anything is written: a scheduler may be out of reach
@@ -86,7 +77,12 @@ def sweep(
         missing = folder.missing()
         if missing and workers is not None:
             interrupted = stack.enter_context(_interruptions())
-            solved = _solve(plan, folder, missing, workers, progress, interrupted)
+            done = total - sum(stop - start for start, stop in map(plan.span, missing))
+            progress(done, total)
+            for number, table in _tables(plan, missing, workers, interrupted):
+                folder.write(number, table)
+                solved += table.num_rows
+                progress(done + solved, total)
         folder.finish(csv=csv)
     return solved
 
@@ -119,32 +115,12 @@ def _interruptions() -> Iterator[Callable[[], None]]:
         signal.signal(signal.SIGINT, before)
 
 
-def _solve(
-    plan: Plan,
-    folder: Folder,
-    missing: list[int],
-    pool: Pool,
-    progress: Progress,
-    interrupted: Callable[[], None],
-) -> int:
-    """Solve and keep the missing chunks; returns the number of their points."""
-    total = plan.sample.points
-    left = sum(stop - start for start, stop in map(plan.span, missing))
-    done = total - left
-    progress(done, total)
-    for number, table in _tables(plan, missing, pool, interrupted):
-        folder.write(number, table)
-        done += table.num_rows
-        progress(done, total)
-    return left
-
-
 def _tables(
     plan: Plan, missing: list[int], pool: Pool, interrupted: Callable[[], None]
 ) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
     drawer, waiting = Drawer(plan.sample), iter(missing)
-    pending: dict[Future[pa.Table], int] = {}
+    pending: dict[futures.Future[pa.Table], int] = {}
     try:
         while True:
             while len(pending) < AHEAD * pool.workers and (number := next(waiting, None)) is not None:
@@ -153,7 +129,7 @@ def _tables(
                 pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
             if not pending:
                 return
-            done = wait(pending, timeout=PATIENCE, return_when=FIRST_COMPLETED).done
+            done = futures.wait(pending, timeout=PATIENCE, return_when=futures.FIRST_COMPLETED).done
             interrupted()  # it ends processes too: what they leave is no failure of theirs
             for future in sorted(done, key=pending.__getitem__):
                 number = pending.pop(future)
@@ -163,11 +139,11 @@ def _tables(
             future.cancel()
 
 
-def _result(plan: Plan, number: int, future: Future[pa.Table]) -> pa.Table:
+def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Table:
     """Return the rows of a chunk; SweepError if its workers failed."""
     try:
         return future.result()
-    except (Exception, CancelledError) as error:
+    except (Exception, futures.CancelledError) as error:
         first, last = plan.span(number)
         reason = (str(error).splitlines() or [""])[0]
         raise SweepError(
@@ -185,7 +161,7 @@ def local_pool(plan: Plan, workers: int | None = None) -> AbstractContextManager
 @contextmanager
 def threads(count: int) -> Iterator[Pool]:
     """Yield that many threads of this process; an interruption waits for the chunks that are under way."""
-    executor = ThreadPoolExecutor(count)
+    executor = futures.ThreadPoolExecutor(count)
     try:
         yield Pool(executor=executor, workers=count)
     finally:
@@ -196,7 +172,7 @@ def threads(count: int) -> Iterator[Pool]:
 def processes(count: int) -> Iterator[Pool]:
     """Yield that many processes; they end with the context, in the middle of a chunk if need be."""
     others = set(multiprocessing.active_children())
-    executor = ProcessPoolExecutor(
+    executor = futures.ProcessPoolExecutor(
         count, mp_context=multiprocessing.get_context("spawn"), initializer=_end_quietly
     )
     try:

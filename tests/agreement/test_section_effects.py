@@ -21,8 +21,9 @@ INCREMENTS = 18
 STEPS = {10: 5e-7, 20: 2e-7}
 
 
-#: End of the names of gates for roots, which are a smooth profile in the splines and springs in the elements.
-ROOTED = "_with_roots"
+#: Gates without and with roots, which are a smooth profile in the splines and springs in the elements.
+TORQUE = ("section_effects_torque", "section_effects_torque_with_roots")
+SWING = ("section_effects_swing", "section_effects_swing_with_roots")
 
 
 def scene(section, effects):
@@ -47,9 +48,9 @@ def difference(section, effects, *, control_points=14):
 @pytest.mark.parametrize("effects", [*((name,) for name in EFFECTS), EFFECTS], ids="+".join)
 def test_models_agree_at_large_rotations(section, effects):
     """Requirement: with each effect and all, both models agree to a quarter turn as they do without."""
-    gates.check("section_effects_torque" + ROOTED * (EFFECTS[2] in effects), difference(section, effects))
+    gates.check(TORQUE[EFFECTS[2] in effects], difference(section, effects))
     if (section, effects) == ("wide", EFFECTS):
-        gates.refuse("section_effects_torque" + ROOTED, partial(difference, section, effects))
+        gates.refuse(TORQUE[1], partial(difference, section, effects))
 
 
 def swing_difference(effects, *, control_points=8):
@@ -78,9 +79,9 @@ def swing_difference(effects, *, control_points=8):
 @pytest.mark.parametrize("effects", [*((name,) for name in EFFECTS), EFFECTS], ids="+".join)
 def test_models_swing_alike(effects):
     """Requirement: with each effect and all, both models let go swing as they do without."""
-    gates.check("section_effects_swing" + ROOTED * (EFFECTS[2] in effects), swing_difference(effects))
+    gates.check(SWING[EFFECTS[2] in effects], swing_difference(effects))
     if effects == ("root_compliance",):
-        gates.refuse("section_effects_swing" + ROOTED, partial(swing_difference, effects))
+        gates.refuse(SWING[1], partial(swing_difference, effects))
 
 
 def test_roots_of_a_turned_pivot_vibrate_alike():

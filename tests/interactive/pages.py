@@ -1,5 +1,6 @@
 """What the tests in a browser share: opening the page, choosing in it, and scripts that look at it."""
 
+import base64
 import json
 import math
 import time
@@ -111,3 +112,32 @@ CONTRAST = """
   return found.sort((p, q) => p[0] - q[0])[0];
 })()
 """
+
+
+def drag(browser, places):
+    """Press the mouse at the first place [px], move through the others and let go at the last."""
+    left = {"button": "left", "buttons": 1, "clickCount": 1}
+    (x, y), *others = places
+    browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+    browser.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, **left)
+    for x, y in others:
+        browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, button="left", buttons=1)
+    browser.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
+
+
+def touch(browser, kind, points):
+    """Send a touch event, "touchStart", "touchMove" or "touchEnd", with the fingers' places [px]."""
+    fingers = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+    browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
+
+
+def picture(browser, quality=None):
+    """Return a PNG of the page as it is shown, or a JPEG of that quality."""
+    kind = {} if quality is None else {"format": "jpeg", "quality": quality}
+    return base64.b64decode(browser.call("Page.captureScreenshot", **kind)["data"])
+
+
+def canvas(browser, name):
+    """Return a PNG of the canvas with that id, pixel by pixel."""
+    data = browser.ask(f"document.getElementById({json.dumps(name)}).toDataURL('image/png')")
+    return base64.b64decode(data.partition(",")[2])

@@ -10,7 +10,7 @@ from pathlib import Path
 from studies.interactive.tracking.films import demo_film
 from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
-from tests.interactive.pages import typed
+from tests.interactive.pages import picture, typed
 
 #: What the numbers stand at, from 1 on.
 PARTS = (
@@ -65,7 +65,7 @@ def _open(browser: Browser, address: str) -> None:
 
 def _take(browser: Browser, path: Path) -> None:
     time.sleep(1.0)  # plots are drawn, and what was typed is answered
-    path.write_bytes(browser.picture(None if path.suffix == ".png" else QUALITY))
+    path.write_bytes(picture(browser, None if path.suffix == ".png" else QUALITY))
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 

@@ -9,7 +9,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import film
-from tests.interactive.pages import load, turned, typed
+from tests.interactive.pages import canvas, load, turned, typed
 from tests.interactive.test_browser_film import pixels
 
 pytestmark = [
@@ -59,7 +59,7 @@ def test_scrubbing_shows_the_pictures():
         browser.key("[")
         browser.wait("document.getElementById('when').textContent.endsWith('s ago')")
         browser.ask("new Promise((done) => setTimeout(done, 300))")
-        image = pixels(browser.canvas("stage"))
+        image = pixels(canvas(browser, "stage"))
         assert browser.ask("studio.view.size") == [640, 480]
         assert 0 < browser.ask("studio.ring.small.blob.size") < 20000
         assert browser.ask("document.getElementById('camera-row').hidden")  # a film has no camera to choose

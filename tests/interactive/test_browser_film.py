@@ -21,7 +21,7 @@ from studies.interactive.tracking.planar import project
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import both, film, true_corners, truth
-from tests.interactive.pages import BODY, BUSY, WATCH, load
+from tests.interactive.pages import BODY, BUSY, WATCH, drag, load
 
 pytestmark = [
     pytest.mark.slow,
@@ -164,7 +164,7 @@ def test_no_camera_is_explained(camera):
         text = browser.wait("document.getElementById('note').textContent", 2.0)
         assert text.startswith("No camera was found.")
         x, y = browser.ask(BODY)
-        browser.drag([(x, y), (x - 40, y + 3), (x - 80, y + 12)])
+        drag(browser, [(x, y), (x - 40, y + 3), (x - 80, y + 12)])
         browser.wait("studio.state.pose[2] > 0.1")
         assert browser.ask("studio.errors") == []
         assert browser.console == []

@@ -9,7 +9,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.web.browser import executable
-from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen, typed
+from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen, drag, touch, typed
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
@@ -21,7 +21,7 @@ def test_drag_turns_the_body(page):
     x, y = page.ask(BODY)
     way = [(x - 2 * k, y + 0.3 * k) for k in range(61)]
     wanted = page.ask(f"{ANGLE}({way[0][0]}, {way[0][1]}, {way[-1][0]}, {way[-1][1]})")
-    page.drag(way)
+    drag(page, way)
     page.wait(f"Math.abs(studio.state.pose[2] - {wanted}) * 0.03 < 5e-5")
     for _ in range(10):
         page.key("ArrowLeft")
@@ -36,11 +36,11 @@ def test_touch_moves_with_two_fingers(page):
     chosen(page, "drive", "pose")
     page.wait("studio.state.drive === 'pose'")
     x, y = page.ask(BODY)
-    page.touch("touchStart", [(x - 60, y), (x + 60, y)])
+    touch(page, "touchStart", [(x - 60, y), (x + 60, y)])
     for k in range(1, 6):
-        page.touch("touchMove", [(x - 60, y + k), (x + 60, y - k)])
+        touch(page, "touchMove", [(x - 60, y + k), (x + 60, y - k)])
     page.wait("Math.abs(studio.state.pose[2] - 2 * 5 / 120) < 0.005")
-    page.touch("touchEnd", [])
+    touch(page, "touchEnd", [])
 
 
 def test_keyboard_alone_does_everything(page):

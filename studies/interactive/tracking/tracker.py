@@ -165,17 +165,13 @@ class Tracker:
     def _seen(
         self, picture: Picture, fit: planar.Fit, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
-        faults = []
-        if _clipped(picture, fit) > CLIPPED:
-            faults.append("over-exposed")
-        if followed:
-            faults.append("followed")
-        if fit.rms > DOUBT_PX:
-            faults.append("not-flat")
-        if (share < CLEAR).any() and not followed:
-            faults.append("blurred")
-        if _odd_sizes(fit):
-            faults.append("sizes")
+        faults = {
+            "over-exposed": _clipped(picture, fit) > CLIPPED,
+            "followed": bool(followed),
+            "not-flat": fit.rms > DOUBT_PX,
+            "blurred": bool((share < CLEAR).any()) and not followed,
+            "sizes": _odd_sizes(fit),
+        }
         scale = np.array([self.side, self.side, 1.0])
         size = np.hypot(*(refined - np.roll(refined, 1, axis=1)).reshape(-1, 2).T).min()
         # an offset that is wrong changes the size of both squares, and with it all distances
@@ -188,7 +184,7 @@ class Tracker:
             "state": "followed" if followed else "found",
             "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
             "quads": self._shrinkage.taken_out(picture, refined, {}).tolist(),
-            "faults": faults,
+            "faults": [name for name, seen in faults.items() if seen],
         }
 
     def _missing(self, picture: Picture, found: set[int], quads: set[int], time: float) -> dict[str, Any]:

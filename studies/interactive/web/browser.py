@@ -1,13 +1,11 @@
 """A Chromium without a window, driven through its debugging socket: pages, scripts, mouse, keys, pictures."""
 
-import base64
 import json
 import os
 import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from http.client import HTTPConnection
 from pathlib import Path
@@ -143,31 +141,6 @@ class Browser:
         self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers, **more)
         more.pop("text", None)
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key, modifiers=modifiers, **more)
-
-    def drag(self, places: Sequence[tuple[float, float]]) -> None:
-        """Press the mouse at the first place [px], move through the others and let go at the last."""
-        left = {"button": "left", "buttons": 1, "clickCount": 1}
-        (x, y), *others = places
-        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
-        self.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, **left)
-        for x, y in others:
-            self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y, button="left", buttons=1)
-        self.call("Input.dispatchMouseEvent", type="mouseReleased", x=x, y=y, button="left", clickCount=1)
-
-    def touch(self, kind: str, points: Sequence[tuple[float, float]]) -> None:
-        """Send a touch event, "touchStart", "touchMove" or "touchEnd", with the fingers' places [px]."""
-        fingers = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
-        self.call("Input.dispatchTouchEvent", type=kind, touchPoints=fingers)
-
-    def picture(self, quality: int | None = None) -> bytes:
-        """Return a PNG of the page as it is shown, or a JPEG of that quality."""
-        kind: dict[str, Any] = {} if quality is None else {"format": "jpeg", "quality": quality}
-        return base64.b64decode(self.call("Page.captureScreenshot", **kind)["data"])
-
-    def canvas(self, name: str) -> bytes:
-        """Return a PNG of the canvas with that id, pixel by pixel."""
-        data = self.ask(f"document.getElementById({json.dumps(name)}).toDataURL('image/png')")
-        return base64.b64decode(data.partition(",")[2])
 
     def __enter__(self) -> Self:
         return self
