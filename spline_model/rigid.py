@@ -7,7 +7,6 @@ equilibrium they bear nothing; where they bear something, there is no equilibriu
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,11 +44,6 @@ def propped(scene: Scene) -> Scene:
                     rows.append(row)
                     props.append(_prop(body.name, axis))
     return scene.with_effects(*props) if props else scene
-
-
-def without_props(scene: Scene) -> Scene:
-    """The scene with nothing that only props it."""
-    return replace(scene, effects=tuple(e for e in scene.effects if not getattr(e, "prop", False)))
 
 
 def require_unborne(system: System, reactions: Array) -> None:
