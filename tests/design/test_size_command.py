@@ -61,7 +61,19 @@ def test_a_case_without_an_answer_says_why(capsys):
     assert main(["size", str(FINDS / "heavy_pivot.toml"), *QUICK[:2]]) == 3
     told = capsys.readouterr().err
     assert "the case itself has no answer over the range: limit point at 44.9" in told
+    assert "give --stiffness to search from other designs\n" in told
     assert told.count("\n") == 1
+
+
+def test_a_case_that_tips_over_is_no_end(capsys):
+    """Requirement: with the limits given the search begins from other designs."""
+    words = ("size", str(FINDS / "mirror_pivot.toml"), *QUICK[:2], "--starts", "1")
+    assert main(list(words)) == 3
+    assert "give --stiffness to search from other designs (at rest it has 0.1845 N" in capsys.readouterr().err
+    assert main([*words, "--stiffness", "0.3", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["case"]["stiffness_Nm_per_rad"] is None
+    assert found["optimum"]["finite_elements"]["stiffness_Nm_per_rad"] == pytest.approx(0.3, rel=1e-4)
 
 
 @pytest.mark.slow
