@@ -46,7 +46,6 @@ from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
-from studies.errors import BadInput
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -133,10 +132,7 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
     """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives;
     of what has no stable mode the usual duration, in the model's own steps."""
-    try:
-        found = answer_modes(design, settings, count=MODES + RIGID)
-    except BadInput:  # of a mesh that has no more than the modes of its body
-        found = answer_modes(design, settings, count=MODES)
+    found = answer_modes(design, settings, count=MODES + RIGID)
     frequency = found.frequency[found.frequency > 0.0][:MODES]
     led = _last_time(design)
     if not found.converged or not frequency.size:
