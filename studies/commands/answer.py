@@ -85,7 +85,10 @@ def not_converged(why: object) -> int:
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
     names = ("status", "message", "resolution", "model", "settings", "effects")
-    return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+    found = {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+    if isinstance(answer, Response | Spectrum):
+        found["not_estimated"] = not_estimated(answer)
+    return found
 
 
 def described(answer: Answered) -> str:
@@ -103,15 +106,18 @@ def estimated(answer: Answered) -> Iterator[str]:
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
-    unknown = list(_not_estimated(answer, set(errors))) if isinstance(answer, Response) else []
+    unknown = not_estimated(answer) if isinstance(answer, Response | Spectrum) else []
     if not errors:
         yield "errors not estimated: --accuracy estimates them"
     elif unknown:
         yield f"error not estimated: {', '.join(unknown)}"
 
 
-def _not_estimated(answer: Response, errors: set[str]) -> Iterator[str]:
-    """Yield what a static answer prints whose error is not among those that are estimated."""
+def not_estimated(answer: Response | Spectrum) -> list[str]:
+    """Return what a path or modes print whose error is not among those that are estimated."""
+    errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
+    if isinstance(answer, Spectrum):
+        return [] if errors else ["frequency"]
     there = {
         "places": bool(answer.bodies),
         "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
@@ -121,7 +127,7 @@ def _not_estimated(answer: Response, errors: set[str]) -> Iterator[str]:
         "energy": True,
         "stress": True,
     }
-    yield from (name for name, names in PRINTED.items() if there[name] and not errors & set(names))
+    return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
 
 
 def ending(answer: Solved | Spectrum) -> str:

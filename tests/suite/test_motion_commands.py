@@ -124,6 +124,14 @@ FINDS = Path(__file__).with_name("finds")
 PACE = {"spline": ["--step", 0.02], "fe": ["--elements", 8, "--integrator", "generalised-alpha"]}
 
 
+def test_a_companion_that_fails_is_told(command):
+    """Where a companion cannot follow the motion its errors are not estimated, and the reason is printed."""
+    words = ("release", FINDS / "pinned_pendulum.toml", "--duration", 0.5, "--step", 0.02)
+    lines = command(*words).out.splitlines()
+    told = lines.index("errors of rotations and displacements: not estimated")
+    assert re.match("error not estimated: a companion with 8 .* reaches the end: stopped at", lines[told + 1])
+
+
 @pytest.mark.parametrize("model", ["spline", "fe"])
 @pytest.mark.parametrize("duration", [0.1, 6.0], ids=["short", "long"])
 def test_a_column_beyond_its_load_is_unstable(model, duration, command):

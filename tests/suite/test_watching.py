@@ -1,7 +1,9 @@
 """Progress and timing report what happened and stay out of the way."""
 
 import gc
+import json
 import sys
+import timeit
 
 import pytest
 
@@ -20,6 +22,17 @@ def test_timing_warms_up_and_counts_repeats():
     assert min(timing.seconds) <= timing.median <= max(timing.seconds)
     with pytest.raises(ValueError, match="got 0, expected at least 1"):
         measure(lambda: None, repeat=0)
+
+
+@pytest.mark.parametrize(
+    "more", [["solve", "--increments", 1], ["release", "--duration", 1e-4, "--step", 1e-5, "--no-check"]]
+)
+def test_repeat_reaches_the_timer(more, case, command, monkeypatch):
+    """With --repeat 3 a command times three calls, beside one that is not timed."""
+    timed, once = [], timeit.timeit
+    monkeypatch.setattr(timeit, "timeit", lambda *work, **how: timed.append(once(*work, **how)) or timed[-1])
+    answer = command(*more, case(), "--control-points", 4, "--repeat", 3, "--json", "-")
+    assert len(timed) == 3 and json.loads(answer.out)["wall_s"] == sorted(timed)[1]
 
 
 def test_bar_shows_long_work_on_a_terminal_only(capsys, monkeypatch):
