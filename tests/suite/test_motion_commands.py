@@ -21,6 +21,14 @@ def test_a_release_keeps_the_pace_of_its_design(length, case, command):
     assert (answer["status"], answer["resolution"]) == ("converged", "")
 
 
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_an_unstable_design_is_seen_to_fall(model, command):
+    """Without --duration a pivot that its weight tips over is followed until it has fallen to its side."""
+    words = ["release", FINDS / "heavy_pivot.toml", "--model", model, "--no-check", "--json", "-"]
+    answer = json.loads(command(*words).out)
+    assert math.degrees(answer["rotation_rad"][-1]) == pytest.approx(102.0, abs=0.2)
+
+
 def test_options_of_the_motion_reach_the_model(case, command):
     """Integrator, step and slide stiffness stand in the answer's settings; accuracy replaces the step."""
     words = ["release", case(), "--model", "spline", "--control-points", 4, "--duration", 1e-3, "--json", "-"]
