@@ -239,7 +239,7 @@ def _paths_of(answer: Response) -> Paths:
     inertia, states = getattr(result, "inertia", None), len(answer.load_factor)
     places = {name: place[None] for name, place in answer.bodies.items()}
     moduli = np.array([strip.youngs_modulus for strip in design.strips])
-    strains = (answer.extreme_fibre_stress.max(axis=2) / moduli).max(axis=0)
+    strains = (answer.strip_stress / moduli).max(axis=0)
     strips = zip(strips_of(design), strains[:, None], strict=True)
     nowhere = np.full((states, 2), np.nan)
     return Paths(
