@@ -83,7 +83,8 @@ def _compared(
         step = spacing / math.ceil(spacing / level.longest * (1.0 - 1e-9))
         other = run(level.model, duration=samples * spacing, step=step, samples=samples)
         if other.message or len(other.time) != samples + 1:
-            raise InvalidParameter("step", step, other.message or "as many instants")
+            reached = other.message or f"{len(other.time)} instants"
+            raise InvalidParameter("step", step, f"one that reaches the end: {reached}")
         found.append(moves(level.model, other, 1))
     ratios = [level.ratio for level in levels]
     turns, places = (

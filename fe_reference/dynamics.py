@@ -28,8 +28,9 @@ from .trajectory import Trajectory, trajectory
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
 STEPS_PER_PERIOD = 6000
-#: Most steps of one run unless more are allowed, some 25 s with 20 elements, and most numbers kept of it.
-MOST_STEPS = 20_000_000
+#: Most steps of one run unless more are allowed, some 25 s with 20 elements; 50 times more, 20 minutes, are
+#: the most that are recommended. Most numbers kept of a run.
+MOST_STEPS, FAR_MORE = 20_000_000, 50
 MOST_NUMBERS = 200_000_000
 
 
@@ -240,13 +241,20 @@ def _first_frequency(model: Model) -> float:
     return float(found[found > 0.0][0])
 
 
-def _cheaper(model: Model, run: Run) -> str:
-    """Return what to do about a run of too many steps."""
-    allow = "allow more by --most-steps (most_steps)"
-    if not run.explicit:
-        return f"take longer steps, or {allow}"
-    steps = run.duration * STEPS_PER_PERIOD * _first_frequency(model)
-    return f"--integrator generalised-alpha takes about {max(steps, 1.0):.2g}; or {allow}"
+def _cheaper(model: Model, run: Run, steps: int) -> str:
+    """Return what to do about a run of too many steps: of all ways those that can be run."""
+    ways = ["take longer steps"]
+    if run.explicit:
+        implicit = max(run.duration * STEPS_PER_PERIOD * _first_frequency(model), 1.0)
+        ways = [f"--integrator generalised-alpha takes about {implicit:.2g}"]
+        if implicit > run.most_steps:
+            ways = [
+                "leave out strip_inertia, if strips are light, and take --integrator generalised-alpha with "
+                f"a --step (its own are about {implicit:.2g})"
+            ]
+    if steps <= FAR_MORE * MOST_STEPS:
+        ways.append("allow more by --most-steps (most_steps)")
+    return "; or ".join(ways)
 
 
 def _steps(run: Run, longest: float) -> tuple[float, int]:
@@ -266,7 +274,7 @@ def _affordable(model: Model, run: Run, step: float, steps: int, size: int) -> N
             "duration",
             run.duration,
             f"at most {run.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: "
-            f"{_cheaper(model, run)} [s]",
+            f"{_cheaper(model, run, steps)} [s]",
         )
     samples = min(run.samples, steps)
     if 2 * samples * size > MOST_NUMBERS:

@@ -73,7 +73,8 @@ def natural_frequencies(
 
     Args:
         pivot: the model.
-        rotation: of the static state [rad]; None: no rotation is driven. count: number of modes.
+        rotation: of the static state [rad]; None: no rotation is driven. count: number of modes, fewer where
+            the mesh has no more.
         held: whether the rotation of the body stays held; if not the torque of the drive stays on unchanged.
         mass: "consistent" (default) or "lumped", the one of the explicit integrator.
         increments: of the static path to the state.
@@ -84,8 +85,7 @@ def natural_frequencies(
     Exact for small motion; leaves out damping. Strips without inertia follow the bodies statically.
 
     Raises:
-        InvalidParameter: more modes than there are coordinates, an unknown kind of mass, no inertia at all, a
-            rotation that is held but not driven.
+        InvalidParameter: an unknown kind of mass, no inertia at all, a rotation that is held but not driven.
         ConvergenceError: the static state cannot be reached, or the accuracy is not.
     """
     require_model(pivot)
@@ -95,11 +95,13 @@ def natural_frequencies(
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
+        nonlocal count
         try:
             y, _ = settled_state(model, rotation, body, increments)
         except NothingHolds:  # under the loads in full
             y, _ = state_at_start(model, rotation, body, increments)
         modes = _modes(structure_of(model), y, _held(model, body, held), kind, count)
+        count = len(modes.frequency)  # of finer meshes as many as of the first
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
     if accuracy is None:
@@ -153,11 +155,12 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
     shifted a little below zero, so that rigid motions do not make it singular. What has no mass is condensed.
     """
     kept = np.flatnonzero(free)
+    wanted = _available(wanted, len(kept))
     matrices = (structure.evaluate(y).tangent, mass_matrix(structure, y, kind))
     stiffness, mass = (matrix.sparse()[:, kept][kept].tocsc() for matrix in matrices)
     if "strip_inertia" not in structure.model.effects:
         values, vectors = _condensed(structure.first_body, stiffness, mass, wanted)
-    elif _available(wanted, len(kept)) >= len(kept) - 1:
+    elif wanted >= len(kept) - 1:
         values, vectors = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, wanted - 1))
     else:
         shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[0::3]).sum())
@@ -190,7 +193,7 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
     follow = -splu(stiffness[:strips, :strips]).solve(stiffness[:strips, strips:].toarray())
     shapes = np.vstack([follow, np.eye(stiffness.shape[0] - strips)])
     own = mass[strips:, strips:].toarray()
-    _available(wanted, int(np.linalg.matrix_rank(own)))
+    wanted = _available(wanted, int(np.linalg.matrix_rank(own)))
     # largest inverses first: a body without rotary inertia leaves the mass matrix singular
     bodies, shift = shapes.T @ (stiffness @ shapes), 0.0
     while True:
@@ -209,7 +212,7 @@ def _condensed(strips: int, stiffness: csc_matrix, mass: csc_matrix, wanted: int
 
 
 def _available(wanted: int, available: int) -> int:
-    """Return the wanted number of modes, or refuse it if there are not as many."""
-    if at_least_one("count", wanted) > available:
-        raise InvalidParameter("count", wanted, f"at most {available} modes of this mesh [1]")
-    return wanted
+    """Return the wanted number of modes, or as many as there are; refuse a mesh without one."""
+    if not available:
+        raise InvalidParameter("count", wanted, "a mesh that has a mode: nothing with inertia is free [1]")
+    return min(at_least_one("count", wanted), available)

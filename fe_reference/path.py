@@ -92,7 +92,10 @@ class Path:
             path.begin()
             return path
         values = np.stack([control.values[0]] * 2)
-        settling = Control(structure=control.structure, held=control.held, values=values, settling=True)
+        held, watched = control.held, control.watched
+        settling = Control(
+            structure=control.structure, held=held, values=values, watched=watched, settling=True
+        )
         before = cls(control=settling, counters=path.counters, failures=path.failures, critical=path.critical)
         before.begin()
         reached = all(before.advance(k / increments) for k in range(1, increments + 1))

@@ -216,7 +216,7 @@ def _solved(
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
-    for state in () if starts else path.states:
+    for state in () if starts else reversed(path.states):  # the load in full is named
         require_balance(structure, path.control.props, state.balance.residual, acting)
     name = None if which is None else model.body_names[which]
     return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)

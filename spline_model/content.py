@@ -183,7 +183,7 @@ def with_companion(task: Task, motion: Trajectory) -> Trajectory:
             for points, integrator, step, part in companions:
                 other = task.run(points, integrator, step, len(instants) - 1)
                 if other.message:
-                    raise InvalidParameter("step", step, other.message)
+                    raise InvalidParameter("step", step, f"one that reaches the end: {other.message}")
                 apart = [mine - theirs for mine, theirs in zip(moves, other.moves(), strict=True)]
                 turns += part * np.abs(apart[0])
                 places += part * np.linalg.norm(apart[1], axis=2)

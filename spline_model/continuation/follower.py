@@ -201,7 +201,10 @@ def _grown(watch: Watch) -> Array:
     begin = _held(growing, newton)
     follower = Follower(own, begin, newton.norms)
     message = follower.advance(1.0)
-    shared = (replace(each, load_factor=0.0, preload=each.load_factor) for each in own.critical)
+    shared = (
+        replace(each, load_factor=0.0, rotation=0.0 * each.rotation, preload=each.load_factor)
+        for each in own.critical
+    )
     watch.settled = tuple(shared)
     if message:
         raise Unsettled(message, watch.settled)

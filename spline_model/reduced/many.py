@@ -131,7 +131,8 @@ def _take_design(i, designs, along, curved, preload, bodies, strips, route, loca
 
 @called()
 def _largest_strain(y, poses, depth, along, strips, local, stations):
-    """Largest |N / (EA)| + |M| d / (2 EI) over straight strips' stations; depth d of the sections over L.
+    """Largest |N / (EA)| + |M| d / (2 EI) of straight strips, by parabolas between their stations; depth d of
+    the sections over L.
 
     Plane sections: M = EI (theta' / J0 - kappa_0), N the mixed form's axial force, slide modes included, as
     in ``sections``. along: of the mechanism, whose first strip the stations' modes belong to.
@@ -160,7 +161,12 @@ def _largest_strain(y, poses, depth, along, strips, local, stations):
                 force[p] += mode[p] * a
         for p in range(force.size):
             turning = (x1[p] * y2[p] - y1[p] * x2[p]) / (x1[p] * x1[p] + y1[p] * y1[p])
-            largest = max(largest, abs(force[p]) + 0.5 * depth * abs(turning / speed - natural))
+            force[p] = abs(force[p]) + 0.5 * depth * abs(turning / speed - natural)
+            largest = max(largest, force[p])
+        for p in range(1, force.size - 1):
+            bend = force[p - 1] - 2.0 * force[p] + force[p + 1]
+            if bend < 0.0 and force[p] >= max(force[p - 1], force[p + 1]):
+                largest = max(largest, force[p] - (force[p + 1] - force[p - 1]) ** 2 / (8.0 * bend))
     return largest
 
 

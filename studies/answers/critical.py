@@ -262,7 +262,7 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
         return np.abs(answer.bodies[question.body][:, 2]) / SOFT
 
     def stress(answer: Response) -> Array:
-        worst = answer.extreme_fibre_stress.max(axis=2) / np.array(limits, dtype=float)
+        worst = answer.strip_stress / np.array(limits, dtype=float)
         return np.asarray(worst.max(axis=1))
 
     shares = {"soft": turn} | ({"yields": stress} if None not in limits else {})

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import Model, effects_of, mode_bodies, model_of
-from studies.answers.response import Answered, assembled, stress_of
+from studies.answers.response import Answered, assembled, peak, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Strip
@@ -120,8 +120,8 @@ class Fields:
 
     @property
     def max_stress(self) -> Array:
-        """(S,) largest of all strips [Pa]."""
-        return np.asarray(self.stress.max(axis=(1, 2)))
+        """(S,) largest of all strips, between the stations as well [Pa]."""
+        return np.asarray(peak(self.stress).max(axis=1))
 
 
 def fields_of(answer: Answered) -> Fields:

@@ -45,14 +45,16 @@ class Strength:
 
 def strength(answer: Response) -> Strength:
     """Return the largest stress of an answer, and what of its path the material bears."""
-    stress, strips = answer.extreme_fibre_stress, answer.design.strips
+    stress, strips = answer.strip_stress, answer.design.strips
     limits = [strip.yield_strength for strip in strips]
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
-    state, strip, station = map(int, np.unravel_index(first, stress.shape))
+    state, strip = map(int, np.unravel_index(first, stress.shape))
+    along = answer.extreme_fibre_stress[state, strip]
+    station = int(np.argmax(along >= (1.0 - SAME) * along.max()))
     turns = np.full(len(answer.load_factor), np.nan) if answer.body is None else answer.rotation
     places = np.stack((answer.load_factor, turns), axis=1)
     known = all(limit is not None for limit in limits)
-    share = (stress.max(axis=2) / np.array(limits, dtype=float)).max(axis=1) if known else None
+    share = (stress / np.array(limits, dtype=float)).max(axis=1) if known else None
     return Strength(
         stress=float(stress.max()),
         strip=strips[strip].name,

@@ -82,7 +82,7 @@ def _root(
     def beyond(at: float) -> float:
         if at not in known:
             there = _solved(answer, _between(places, at))
-            share = float((there.extreme_fibre_stress[-1].max(axis=1) / limits).max())
+            share = float((there.strip_stress[-1] / limits).max())
             turn = np.nan if there.body is None else float(there.rotation[-1])
             known[at] = share - 1.0, np.array([_between(places, at)[0], turn])
         return known[at][0]

@@ -19,11 +19,10 @@ from studies.errors import BadInput
 
 DEFAULT = ("bending", "stretching", "strip_inertia", "body_inertia")
 
-#: Effects that a static path never asks for.
+#: Effects that a static path never asks for, and of them those without one of which nothing moves.
+INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
 MOTION_ONLY = (
-    "strip_inertia",
-    "section_rotary_inertia",
-    "body_inertia",
+    *INERTIA,
     "strip_damping",
     "strip_drag",
     "body_damping",

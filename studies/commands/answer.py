@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.motion import Spectrum
-from studies.answers.response import PLACES, Answered, Response, Solved
+from studies.answers.response import Answered, Response, Solved
 from studies.answers.strength import Strength
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
@@ -25,6 +25,16 @@ if TYPE_CHECKING:
     from studies.pictures.shown import Shown
 
 NOT_CONVERGED = 3
+#: What a static answer prints, and the names by which models estimate its error.
+PRINTED = {
+    "places": PLACES,
+    "centre shift": ("centre_shift",),
+    "torque": ("torque",),
+    "stiffness": ("stiffness",),
+    "stiffness of the body": ("body_stiffness",),
+    "energy": ("energy", "strain_energy"),
+    "stress": ("stress", "largest_stress"),
+}
 
 
 def deliver(
@@ -78,7 +88,10 @@ def not_converged(why: object) -> int:
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
     names = ("status", "message", "resolution", "model", "settings", "effects")
-    return {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+    found = {name: getattr(answer, name) for name in names if hasattr(answer, name)}
+    if isinstance(answer, Response | Spectrum):
+        found["not_estimated"] = not_estimated(answer)
+    return found
 
 
 def keyed(answer: Any, *keys: str) -> dict[str, Any]:
@@ -107,28 +120,28 @@ def estimated(answer: Answered) -> Iterator[str]:
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
-    unknown = list(_not_estimated(answer, set(errors))) if isinstance(answer, Response) else []
+    unknown = not_estimated(answer) if isinstance(answer, Response | Spectrum) else []
     if not errors:
         yield "errors not estimated: --accuracy estimates them"
     elif unknown:
         yield f"error not estimated: {', '.join(unknown)}"
 
 
-def _not_estimated(answer: Response, errors: set[str]) -> Iterator[str]:
-    """Yield what a static answer prints whose error is not among those that are estimated."""
-    body = answer.body is not None
-    shifts = answer.crossing is not None and np.any(answer.centre_shift)
-    for name, names, printed in (
-        ("places", PLACES, answer.bodies),
-        ("centre shift", ("centre_shift",), shifts),
-        ("torque", ("torque",), np.isfinite(answer.torque).any()),
-        ("stiffness", ("stiffness",), np.isfinite(answer.stiffness).any()),
-        ("stiffness of the body", ("body_stiffness",), body and np.isfinite(answer.body_stiffness).any()),
-        ("energy", ("energy", "strain_energy"), True),
-        ("stress", ("stress", "largest_stress"), True),
-    ):
-        if printed and not errors & set(names):
-            yield name
+def not_estimated(answer: Response | Spectrum) -> list[str]:
+    """Return what a path or modes print whose error is not among those that are estimated."""
+    errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
+    if isinstance(answer, Spectrum):
+        return [] if errors else ["frequency"]
+    there = {
+        "places": bool(answer.bodies),
+        "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
+        "torque": bool(np.isfinite(answer.torque).any()),
+        "stiffness": bool(np.isfinite(answer.stiffness).any()),
+        "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
+        "energy": True,
+        "stress": True,
+    }
+    return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
 
 
 def ending(answer: Solved | Spectrum) -> str:

@@ -28,8 +28,9 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.cases.design import read_design
+from studies.cases.effects import INERTIA
 from studies.commands import arguments as take
-from studies.commands.answer import called, deliver, draw, headed, shown_of
+from studies.commands.answer import called, deliver, draw, headed, not_estimated, shown_of
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -40,6 +41,8 @@ from studies.record.progress import Bar, watched
 DIGITS, ROUND_OFF = 5, 1e-8
 #: Modes that are drawn.
 MODES = 6
+#: What `solve` prints of a path beside the lines of the table.
+NOT_SHOWN = ("places", "stiffness of the body")
 PLOT_MODES = Argument(
     "--plot-modes FILE",
     "draw the first six natural modes at rest over one another (default: no picture)",
@@ -63,13 +66,16 @@ ROWS = {
 
 class _Compared(NamedTuple):
     """One design by one model: its case, the answer, its path and its modes as pictures show them, None of
-    what has no state, and its numbers by the keys of `ROWS`, NaN of those that it has not."""
+    what has no state, its numbers by the keys of `ROWS`, NaN of those that it has not, and what has no
+    estimated error.
+    """
 
     case: str
     answer: Response
     shown: Shown | None
     modes: Shown | None
     values: dict[str, float]
+    not_estimated: list[str]
 
 
 def _values(answer: Response, shown: Shown) -> dict[str, Any]:
@@ -133,6 +139,7 @@ def _document(found: Sequence[_Compared]) -> dict[str, Any]:
                 "name": called(each.case, each.answer),
                 "case": Path(each.case).name,
                 **headed(each.answer),
+                "not_estimated": each.not_estimated,
                 "estimate": each.answer.estimate,
                 **each.values,
             }
@@ -144,21 +151,26 @@ def _document(found: Sequence[_Compared]) -> dict[str, Any]:
 def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Compared:
     design = take.driven(read_design(case, changes=arguments.effects), arguments)
     answer = answer_static(design, settings, accuracy=arguments.accuracy)
-    spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
-    shown = shown_of(case, answer) if len(answer.load_factor) else None
-    modes = shown_of(case, spectrum) if len(spectrum.frequency) else None
-    found = _values(answer, shown) if shown else {}
-    if modes:
-        found["first_frequency_Hz"] = spectrum.frequency[0]
+    shown, modes, found = None, None, {}
+    unknown = [name for name in not_estimated(answer) if name not in NOT_SHOWN]
+    if len(answer.load_factor):
+        shown = shown_of(case, answer)
+        found = _values(answer, shown)
+    if set(INERTIA) & set(design.effects.names):
+        spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
+        unknown += not_estimated(spectrum)
+        if len(spectrum.frequency):
+            modes = shown_of(case, spectrum)
+            found["first_frequency_Hz"] = spectrum.frequency[0]
     known = {key: float(value) for key, value in found.items() if value is not None}
-    return _Compared(case, answer, shown, modes, dict.fromkeys(ROWS, math.nan) | known)
+    return _Compared(case, answer, shown, modes, dict.fromkeys(ROWS, math.nan) | known, unknown)
 
 
 def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     """Yield the lines of the table: the key, then a row a quantity, and what the others are over A."""
     letters = LETTERS[: len(found)]
     for letter, each in zip(letters, found, strict=True):
-        told = (each.answer.status.replace("_", " "), *_remarks(each.answer))
+        told = (each.answer.status.replace("_", " "), *_remarks(each))
         yield f"{letter}: {called(each.case, each.answer)}, {'; '.join(told)}"
     rows = []
     for key, scale in ROWS.items():
@@ -173,11 +185,14 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     yield from (line for line in table(columns) if line.strip())
 
 
-def _remarks(answer: Response) -> Iterator[str]:
-    """Yield the largest estimated error of a path, or that there is none, and what is unresolved."""
+def _remarks(found: _Compared) -> Iterator[str]:
+    """Yield the largest estimated error of a path, what has none, what was passed and what is unresolved."""
+    answer, unknown = found.answer, found.not_estimated
     error = answer.largest_error
     yield f"estimated error {error:.1e}" if math.isfinite(error) else "errors not estimated"
-    yield from filter(None, [answer.resolution])
+    if math.isfinite(error) and unknown:
+        yield f"not estimated: {', '.join(unknown)}"
+    yield from filter(None, [answer.message if answer.converged else "", answer.resolution])
 
 
 def _ratio(value: float, first: float) -> str:

@@ -12,9 +12,9 @@ and by a `history`, whose change times rotation_deg it is led through from where
 value times history(t), constant before its first and after its last time. A mechanism without a rotation
 starts where all of this settles it: under constant loads it stands still, and `message` says so.
 
-Without --duration four swings of the first natural mode at rest are followed, after all histories, and
-without --step the implicit splines take 256 steps to a swing, or more where another of the first modes asks
-for it; a design without such a mode has 0.05 s.
+Without --duration four swings of the first natural mode at rest are followed, after all histories, or, where
+that mode is unstable, its growth by a factor of 23. Without --step the implicit splines take 256 steps to a
+swing, or more where another of the first modes asks for it; a design without such a mode has 0.05 s.
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
 frequency_Hz is of the swing about its rest where one mode carries the rotation: no other has a fifth of its
@@ -46,7 +46,6 @@ from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
-from studies.errors import BadInput
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -58,8 +57,9 @@ ANGLES = ("accuracy", "rotation", "time", "space")
 #: Energy in EI/L below which what moves is round-off, whose balance says nothing [1].
 STILL = 1e-15
 
-#: Swings that are followed beyond what the design is led through, and steps in each.
-SWINGS, STEPS = 4, 256
+#: Swings that are followed beyond what the design is led through, and steps in each; what an unstable mode
+#: has of them, pi e-foldings.
+SWINGS, STEPS, GROWTH = 4, 256, 0.5
 #: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
 MODES, FASTEST, LEAST_STEPS = 3, 40.0, 40
 #: Rigid motions that may come before them.
@@ -129,19 +129,20 @@ def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> 
 
 
 def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
-    """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives;
-    of what has no stable mode the usual duration, in the model's own steps."""
-    try:
-        found = answer_modes(design, settings, count=MODES + RIGID)
-    except BadInput:  # of a mesh that has no more than the modes of its body
-        found = answer_modes(design, settings, count=MODES)
-    frequency = found.frequency[found.frequency > 0.0][:MODES]
+    """Return duration and step [s] that suit the first mode at rest, after all histories of loads and drives.
+
+    Of an unstable mode the duration is that in which it grows twentyfold. What has rigid motions alone has
+    the usual duration, in the model's own steps.
+    """
+    found = answer_modes(design, settings, count=MODES + RIGID)
+    frequency = np.sort(np.abs(found.frequency[found.frequency != 0.0]))[:MODES]
     led = _last_time(design)
     if not found.converged or not frequency.size:
         return led + USUAL, None
     first = float(frequency[0])
     last = float(frequency[frequency <= FASTEST * first].max())
-    return led + SWINGS / first, 1.0 / max(STEPS * first, LEAST_STEPS * last)
+    swings = GROWTH if found.falls_in else SWINGS
+    return led + swings / first, 1.0 / max(STEPS * first, LEAST_STEPS * last)
 
 
 def _last_time(design: Design) -> float:

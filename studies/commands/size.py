@@ -12,10 +12,11 @@ strength is known. Under loads both sides of the range are solved, the stress is
 the body turns, and a design that buckles is none. Both strips are alike, with a rectangular section; they
 become neither thicker for their length than the case's nor wider than --aspect times their length; a
 dimension with one value is held. Gradients are exact; several starts show local optima, and one whose path
-ends early is moved towards the case. The optimum is answered to 1e-4, found again with more control points
-where it takes more, and solved by the finite elements in the limit of refinement; --out writes it as a case
-file. A price is the change of the objective over that of a limit, in % over %. What the scene names is
-assembled: clamped widths, sections that flatten and roots too.
+ends early is moved towards the case. A case whose own path ends early takes --stiffness, and a stress where
+none is known; then other designs are searched. A start is given up after 300 designs. The optimum is answered
+to 1e-4, found again with more control points where it takes more, and solved by the finite elements in the
+limit of refinement; --out writes it as a case file. A price is the change of the objective over that of a
+limit, in % over %. What the scene names is assembled: clamped widths, sections that flatten and roots too.
 
 Of a mechanism the numbers of its file that --free names are found, as `sweep` names them, in the file's unit;
 keys with commas share a value. Held is the stiffness of the driven body as it begins to turn, or, of a
@@ -44,6 +45,7 @@ from studies.commands.sized import Optimum, as_document, question, readable
 from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
 from studies.design.numbers import NumbersTask, by_sides, number_of
 from studies.design.optimise import Outcome, best, search
+from studies.design.programme import compared
 from studies.design.task import OBJECTIVES, Sizing, Task
 from studies.errors import BadInput
 from studies.record.files import write_whole
@@ -215,27 +217,44 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
 
 def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accurate]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
-    try:
-        own = task.accurate()
-    except PathEnds:
-        told = answer_static(task.start, SplineSettings())
-        reason = (
-            told.message or f"it takes more than {CONTROL_POINTS} control points, from which sizing goes on"
-        )
-        raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}") from None
-    if own.quantities[task.objective] <= NOTHING:
-        expected = "what is not zero already: its stiffness does not vary"
-        raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
     known = [each for each in strengths if each is not None]
     strength = min(known) if len(known) == len(strengths) else None
+    allowable = _allowable(strength, arguments)
+    try:
+        own = task.accurate()
+    except PathEnds:
+        own = _unknown(task, arguments, {task.held: wanted, "stress": allowable})
+        return task.changed(stiffness=wanted, allowable_stress=allowable), own
+    if own.quantities[task.objective] <= NOTHING:
+        expected = "what is not zero already: its stiffness does not vary"
+        raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
     limits = {
         "stiffness": own.answers.stiffness if wanted is None else wanted,
-        "allowable_stress": _allowable(strength, arguments, own.answers.largest(STRESS)),
+        "allowable_stress": own.answers.largest(STRESS) if allowable is None else allowable,
     }
     return task.changed(**limits, control_points=own.control_points), own
+
+
+def _unknown(task: Sizing, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
+    """Return the answers of a case whose path ends early: no numbers, if all limits are given without them;
+    else PathEnds, with what is to be given."""
+    options = {"stiffness": "--stiffness", "travel": "--travel-mm", "stress": "--max-stress-MPa"}
+    missing = [options[name] for name, limit in limits.items() if limit is None]
+    if missing:
+        told = answer_static(task.start, SplineSettings())
+        reason = (
+            told.message or f"it takes more than {CONTROL_POINTS} control points, from which sizing goes on"
+        )
+        rest = float(told.stiffness[0]) if len(told.stiffness) else math.nan
+        unloaded = f" (at rest it has {rest:.4g} N m/rad)" if rest > 0.0 else ""
+        remedy = f"give {' and '.join(missing)} to search from other designs{unloaded}"
+        raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}; {remedy}")
+    names, (_, answers) = (STRESS, *task.objectives, task.held), compared(task)
+    nothing = dict.fromkeys(names, math.nan)
+    return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
 
 
 def _file(task: Sizing, found: Outcome, name: str) -> str:
@@ -248,8 +267,8 @@ def _file(task: Sizing, found: Outcome, name: str) -> str:
     return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
 
 
-def _allowable(strength: float | None, arguments: argparse.Namespace, own: float) -> float:
-    """Return the stress that is allowed [Pa], from what is given, the yield strength and the case's `own`."""
+def _allowable(strength: float | None, arguments: argparse.Namespace) -> float | None:
+    """Return the stress that is allowed [Pa], from what is given or the yield strength; None without both."""
     factor, wanted = arguments.safety_factor, arguments.max_stress_MPa
     if factor is not None and wanted is not None:
         raise BadInput(f"--safety-factor: got {factor:g} beside --max-stress-MPa, expected one of them")
@@ -258,7 +277,7 @@ def _allowable(strength: float | None, arguments: argparse.Namespace, own: float
         raise BadInput(f"--safety-factor: got {factor:g} without a yield strength, expected {expected}")
     if wanted is not None:
         return float(1e6 * wanted)
-    return own if strength is None else strength / (factor or 1.0)
+    return None if strength is None else strength / (factor or 1.0)
 
 
 def _failure(outcomes: list[Outcome]) -> str:

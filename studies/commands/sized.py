@@ -179,6 +179,8 @@ def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]
 
 def _gain(times: float) -> str:
     """Return in words how much less the objective is, which the case has so many times."""
+    if math.isnan(times):
+        return "the case itself has no answer over the range"
     if abs(times - 1.0) < SAME:
         return "as much as the case's, which is an optimum already"
     if times > 1.0:

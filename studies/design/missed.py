@@ -12,6 +12,8 @@ from studies.kinds import Array
 MET = 1e-6
 #: From so many times a limit on it is told as times, not as percent above.
 TIMES = 2.0
+#: Part of a limit up to which it is told as times below, not as percent.
+SMALL = 1e-3
 
 
 class _Held(NamedTuple):
@@ -41,6 +43,8 @@ class _Held(NamedTuple):
         far = f"{100.0 * abs(ratio - 1.0):.3g} % {'above' if ratio > 1.0 else 'below'}"
         if ratio >= TIMES:
             far = f"{ratio:.3g} times"
+        elif 0.0 < ratio <= SMALL:
+            far = f"{1.0 / ratio:.3g} times below"
         elif ratio < 0.0:
             far = "of the other sign than"
         got, limit = (f"{self.factor * value:.4g}{self.unit}" for value in (self.got, self.limit))

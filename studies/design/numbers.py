@@ -187,6 +187,9 @@ class NumbersTask(Sizing):
                 if _rest(other) != given:
                     expected = "a number of sections, moduli, ends of straight strips or centres"
                     raise BadInput(f"--free: got {number.name}, expected {expected}")
+            if _raw(alone.problem(np.array([number.low]))) == _raw(other):
+                expected = "one that the design depends on: all strips have their own"
+                raise BadInput(f"--free: got {number.name}, expected {expected}")
 
 
 def _raw(design: Mechanism) -> dict[str, float]:

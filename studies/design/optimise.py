@@ -5,6 +5,7 @@ would hang on round-off.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,9 +18,10 @@ from studies.design.missed import missed
 from studies.design.programme import Active, Programme
 from studies.design.task import Sizing
 from studies.kinds import Array, Progress
-from studies.record.progress import watched
 
 MOST_ITERATIONS = 100
+#: Designs that a start solves before it is given up: of all questions of the study one takes 125 at most.
+MOST_PATHS = 300
 #: Times that the optimiser is started again where it stopped short of an optimum.
 MOST_RUNS = 4
 #: Change of the objective, over the start's, below which the optimiser stops.
@@ -34,7 +36,7 @@ LONGEST, SHORTEST = 0.25, 1e-6
 KEPT = 0.1
 #: Stiffness over the wanted one below which no logarithm tells more.
 SOFTEST = 1e-2
-#: Times that a start without an answer is moved half of the way to the design to compare with.
+#: Times that a start without an answer is moved half of the way to one that has an answer.
 MOST_MOVES = 4
 #: Weight of a step's length beside the violations that it leaves.
 LENGTH = 1e-3
@@ -69,19 +71,24 @@ class Outcome:
     solved: int
 
 
-def optimise(task: Sizing, start: Array) -> Outcome:
-    """Minimise from a scaled start (N,), or from nearer the design to compare with if it has no answer.
+class _Enough(Exception):
+    """`MOST_PATHS` designs are solved; its argument: where the optimiser is (N + 1,)."""
 
-    An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature.
+
+def optimise(task: Sizing, start: Array, progress: Callable[[int], None] | None = None) -> Outcome:
+    """Minimise from a scaled start (N,), or from nearer one that has an answer if it has none.
+
+    An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature;
+    `progress` is told of designs that were solved.
     """
-    programme, own = Programme.of(task), task.starts(1)[0]
-    moves = (own + 0.5**k * (start - own) for k in range(MOST_MOVES + 1))
+    programme = Programme.of(task, progress)
+    moves = (programme.known + 0.5**k * (start - programme.known) for k in range(MOST_MOVES + 1))
     begin = next((at for at in moves if programme.answers(at) is not None), None)
     if begin is None:
         return _unsolved(programme, start)
     outcome = _run(programme, feasible(programme, begin))
     for _ in range(MOST_RUNS - 1):
-        if outcome.converged or outcome.violation > FEASIBLE:
+        if outcome.converged or outcome.violation > FEASIBLE or programme.solved >= MOST_PATHS:
             break
         outcome = _run(programme, outcome.at[:-1])
     return outcome
@@ -90,8 +97,7 @@ def optimise(task: Sizing, start: Array) -> Outcome:
 def feasible(programme: Programme, at: Array) -> Array:
     """Return the scaled variables (N,) of a feasible design near ``at``, or of the least violation there.
 
-    Each step is the shortest of those that leave the linearised constraints least violated; it is shortened
-    where they are no guide.
+    Each step is the shortest that leaves the linearised constraints least violated, shortened where needed.
     """
     beyond, jacobian = _graded(*programme.excesses(at))
     reach = LONGEST
@@ -150,27 +156,45 @@ def _run(programme: Programme, at: Array) -> Outcome:
     where there is no answer, its better end."""
     begin = programme.answers(at)
     assert begin is not None, "it has an answer"
-    found = minimize(
-        lambda x: (x[-1], np.eye(len(x))[-1]),
-        np.append(at, _t(programme, begin)),
-        jac=True,
-        method="SLSQP",
-        bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
-        constraints=[
-            {"type": "ineq", "fun": programme.inequalities, "jac": programme.inequality_jacobian},
-            {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
-        ],
-        options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
-    )
-    end = _outcome(programme, found.x, programme.answers(found.x), str(found.message))
+
+    def stop(x: Array) -> None:
+        if programme.solved >= MOST_PATHS:
+            raise _Enough(x.copy())
+
+    try:
+        found = minimize(
+            lambda x: (x[-1], np.eye(len(x))[-1]),
+            np.append(at, _t(programme, begin)),
+            jac=True,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
+            constraints=[
+                {"type": "ineq", "fun": programme.inequalities, "jac": programme.inequality_jacobian},
+                {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
+            ],
+            options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
+            callback=stop,
+        )
+        last, message = found.x, str(found.message)
+    except _Enough as enough:
+        last, message = enough.args[0], f"given up after {programme.solved} designs"
+    end = _outcome(programme, last, programme.answers(last), message)
     if end.violation <= FEASIBLE:
         return end
-    return min((_outcome(programme, at, begin, str(found.message)), end), key=lambda each: each.violation)
+    return min((_outcome(programme, at, begin, message), end), key=lambda each: each.violation)
 
 
 def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
-    """Optimise from scaled starts (K, N)."""
-    return [optimise(task, start) for start in watched(list(begin), progress)]
+    """Optimise from scaled starts (K, N); progress is of the designs that they may solve at most."""
+    outcomes, most = [], len(begin) * MOST_PATHS
+    for k, start in enumerate(begin):
+
+        def told(solved: int, before: int = k * MOST_PATHS) -> None:
+            progress(before + min(solved, MOST_PATHS), most)
+
+        outcomes.append(optimise(task, start, told))
+    progress(most, most)
+    return outcomes
 
 
 def settled(task: Sizing, found: Outcome) -> tuple[Outcome, Accurate]:

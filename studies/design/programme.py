@@ -9,13 +9,14 @@ Karush, Kuhn and Tucker say what holds a design back, and what each constraint c
 to what they are held against: the start's objective, the wanted stiffness, the allowable stress.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import nnls
 
 from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers, PathEnds
-from studies.design.task import Sizing
+from studies.design.task import STARTS, Sizing
 from studies.kinds import Array
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
@@ -41,28 +42,35 @@ class Active:
 
 @dataclass(kw_only=True)
 class Programme:
-    """The programme of a task; `scale` holds the start's largest value of every objective.
+    """The programme of a task; `scale` holds the largest value of every objective of the design to compare
+    with, or of one beside it that has an answer, and `known` where that lies (N,), scaled.
 
-    Counts designs that were solved; keeps the last design's answer, and why the last path `ended` early.
+    Counts designs that were solved, and tells `progress` of them; keeps the last design's answer, and why the
+    last path `ended` early.
     """
 
     task: Sizing
     scale: dict[str, float]
+    known: Array = field(default_factory=lambda: np.zeros(0), repr=False)
+    progress: Callable[[int], None] | None = field(default=None, repr=False)
     solved: int = 0
     ended: str = ""
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     @classmethod
-    def of(cls, task: Sizing) -> "Programme":
+    def of(cls, task: Sizing, progress: Callable[[int], None] | None = None) -> "Programme":
         """Return the programme of a task, in whose scale the task's own design is one."""
-        given = task.case()
-        return cls(task=task, scale={name: given.largest(name) for name in task.objectives})
+        known, given = compared(task)
+        scale = {name: given.largest(name) for name in task.objectives}
+        return cls(task=task, scale=scale, known=known, progress=progress)
 
     def answers(self, y: Array) -> Answers | None:
         """Return the design's answers; None where its path ends early."""
         key = y[: len(self.task.span)].tobytes()
         if key != self._last[0]:
             self.solved += 1
+            if self.progress is not None:
+                self.progress(self.solved)
             try:
                 found = self.task.answers(self.task.values(y))
             except PathEnds as error:
@@ -181,6 +189,22 @@ class Programme:
             return float((low if end == "least" else -high) / (high - low))
         fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
         return (fixed | task.shape(self.task.values(y))[2])[name]
+
+
+def compared(task: Sizing) -> tuple[Array, Answers]:
+    """Return where a task's own design lies (N,), scaled, and what it answers; of the first of the spread
+    starts that has an answer if its own path ends early; PathEnds where none has one."""
+    own, *spread = task.starts(STARTS)
+    try:
+        return own, task.case()
+    except PathEnds as error:
+        ended = str(error)
+    for start in spread:
+        try:
+            return start, task.answers(task.values(start))
+        except PathEnds as error:
+            ended = str(error)
+    raise PathEnds(f"neither the case nor {len(spread)} designs within the bounds have an answer: {ended}")
 
 
 def _widened(rows: Array, last: float = 0.0) -> Array:

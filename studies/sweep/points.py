@@ -249,7 +249,7 @@ def _paths_of(answer: Response) -> Paths:
         "shift": np.stack((none, none), axis=1) if answer.crossing is None else answer.centre_shift,
         "defect": np.asarray(getattr(result, "moment_defect", none)),
         "inertia": np.asarray(getattr(result, "inertia", none)),
-        "strain": answer.extreme_fibre_stress.max(axis=2) / moduli,
+        "strain": answer.strip_stress / moduli,
         "bodies": np.stack([answer.bodies[each.name] for each in design.bodies] or [none[:, None]], axis=1),
     }
     return Paths(

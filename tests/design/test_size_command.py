@@ -61,7 +61,20 @@ def test_a_case_without_an_answer_says_why(capsys):
     assert main(["size", str(FINDS / "heavy_pivot.toml"), *QUICK[:2]]) == 3
     told = capsys.readouterr().err
     assert "the case itself has no answer over the range: limit point at 44.9" in told
+    assert "give --stiffness to search from other designs\n" in told
     assert told.count("\n") == 1
+
+
+def test_a_case_that_tips_over_is_no_end(capsys):
+    """Requirement: with the limits given the search begins from other designs."""
+    words = ("size", str(FINDS / "mirror_pivot.toml"), *QUICK[:2], "--starts", "1")
+    assert main(list(words)) == 3
+    assert "give --stiffness to search from other designs (at rest it has 0.1845 N" in capsys.readouterr().err
+    assert main([*words, "--stiffness", "0.3", "--json", "-"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["case"]["stiffness_Nm_per_rad"] is None
+    there = found["optimum"]["finite_elements"]["stiffness_Nm_per_rad"]
+    gates.check("sizing_finite_elements", abs(there / 0.3 - 1.0))
 
 
 @pytest.mark.slow
@@ -98,6 +111,9 @@ WORDS = {
     f"{LINKAGE} --free strips.rocker_ground.end_m.x": "without bounds, expected strips.rock",
     f"{LINKAGE} --free section.width_m=2:1": "expected KEY=LOW:HIGH with LOW",
     f"{LINKAGE} --free bodies.crank.mass_kg": "expected a number of sections, moduli",
+    f"{FINDS / 'two_bodies_in_series.toml'} --objective stress --free section.thickness_m": (
+        "--free: got section.thickness_m, expected one that the design depends on: all strips have"
+    ),
     f"{LINKAGE} --free section.width_m --travel-mm 1": "--travel-mm: got it for four_bar",
     f"{LINKAGE} --free section.width_m --width-mm 9": "--width-mm: got it for four_bar",
     f"{CASE} --objective stress": "--objective: got stress, expected centre-shift or",

@@ -9,7 +9,7 @@ import pytest
 from studies.cases.effects import Effects
 from studies.design import task as questions
 from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIATION, answers, by_elements
-from studies.design.optimise import best, numbered, optimise, search
+from studies.design.optimise import MOST_PATHS, best, numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
 from studies.design.sizing import ANGLE, GRADE, LENGTH, toleranced
 from studies.design.task import OBJECTIVES, variables_of, varied
@@ -107,6 +107,19 @@ def test_constraints_that_no_design_meets(own):
     assert best(found) is None and numbered(found) == [0] * len(found)
     begin, stress = "no design here meets the constraints: ", " the allowable 1 MPa"
     assert all(each.message.startswith(begin) and stress in each.message for each in found)
+
+
+@pytest.mark.slow
+def test_a_start_is_given_up():
+    """Of a stiffness that nothing has a start solves no more than its share of designs, and tells each."""
+    start = questions.baseline(questions.SPRING_STEEL)
+    question = questions.Question(baseline=questions.SPRING_STEEL, objective=VARIATION)
+    task, told = replace(question.task(start, answers(start)), stiffness=1e4), []
+    found = search(task, task.starts(2)[1:], lambda done, total: told.append((done, total)))
+    assert "no design here meets the constraints" in found[0].message
+    assert MOST_PATHS <= found[0].solved < 1.1 * MOST_PATHS
+    assert [done for done, _ in told[:-1]] == [min(k, MOST_PATHS) for k in range(1, found[0].solved + 1)]
+    assert {total for _, total in told} == {MOST_PATHS} and told[-1][0] == MOST_PATHS
 
 
 @pytest.mark.parametrize("start", [FAR, pytest.param(5, marks=pytest.mark.slow)])

@@ -89,6 +89,15 @@ def hung(*, bodies: tuple[str, ...] = ("plate",), strips: int = 1) -> Model:
     return compliant_mechanism(strips=[strip] * strips, bodies=made)
 
 
+def apart(ratio: float) -> Model:
+    """Return two strips in a chain, of which the one on the ground is softer by a ratio."""
+    moduli = {"youngs_modulus": table_one.SECTION["youngs_modulus"] / ratio}
+    soft = StripDesign(name="soft", start=(0.0, 0.0), end=(0.1, 0.0), tip="a", **table_one.SECTION | moduli)
+    hard = StripDesign(name="hard", start=(0.1, 0.0), end=(0.2, 0.0), root="a", tip="b", **table_one.SECTION)
+    bodies = [BodyDesign(name=name, centre=end) for name, end in (("a", soft.end), ("b", hard.end))]
+    return compliant_mechanism(strips=[soft, hard], bodies=bodies)
+
+
 def release(given: Any = None, **options: Any) -> object:
     """Release the pivot, given other effects as well."""
     return solve_release(pivot(**given or {}), **{"start": 0.5, "duration": 1e-4} | options)
@@ -152,6 +161,10 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (
         lambda: solve_motion(free_cantilever(root=None), settled=False, integrator=ALPHA, **BRIEF),
         "step: got None",
+    ),
+    (
+        lambda: solve_mechanism(apart(1e14), body="b", rotation=0.1),
+        "expected clamps that hold it, or stiffnesses less far apart",
     ),
     (lambda: natural_frequencies(pivot(**STILL)), INERTIA),
     (lambda: release(STILL), INERTIA),

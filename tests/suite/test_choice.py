@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -54,9 +55,23 @@ def test_what_is_not_estimated_is_named(command):
     for more in (("--control-points", 6), ("--model", "fe")):
         lines = command("solve", "cross_axis_pivot", *short, *more).out.splitlines()
         assert "errors not estimated: --accuracy estimates them" in lines
+        none = json.loads(command("solve", "cross_axis_pivot", *short, *more, "--json", "-").out)
+        assert {"places", "torque", "stiffness", "energy", "stress"} < set(none["not_estimated"])
+        modes = json.loads(command("modes", "cross_axis_pivot", *more, "--json", "-").out)
+        assert modes["not_estimated"] == ["frequency"]
     accurate = ("--model", "fe", "--elements", 5, "--accuracy", 1e-3)
     lines = command("solve", "cross_axis_pivot", *short, *accurate).out.splitlines()
     assert "error not estimated: stiffness of the body" in lines
+    compared = command("compare", "cross_axis_pivot", "titanium_pivot", *short, *accurate).out
+    assert "; not estimated: frequency" in compared and "stiffness of the body" not in compared
+
+
+def test_designs_without_inertia_are_compared(command):
+    """Requirement: what has no inertia has no frequency; all else is compared, with what paths pass."""
+    found = command("compare", FINDS / "soft_column_pivot.toml", FINDS / "mirror_pivot.toml", "--model", "fe")
+    assert found.code == 0
+    assert re.search(r"first frequency +Hz +- +-3\.", found.out)
+    assert "errors not estimated; limit point: the body's own stiffness vanishes" in found.out
 
 
 @pytest.mark.parametrize("settings", [SplineSettings(), FeSettings(elements=10)], ids=lambda s: s.model)

@@ -28,11 +28,16 @@ def test_a_limit_point_is_a_critical_load(answered):
 
 @pytest.mark.parametrize(("name", "share"), [("heavy_payload", 0.4521), ("heavy_pivot", 0.4490)])
 def test_stability_at_zero_force_is_checked_first(name, share, answered):
-    """Requirement: a design that its own weight tips over bears no force, with the share of the weight."""
-    found = answered("critical-load", FINDS / f"{name}.toml", "--model", "spline,fe")
-    for answer in found["answers"]:
+    """Requirement: a design that its own weight tips over bears no force, with the share of the weight; its
+    path says so too, where the body has not turned yet."""
+    words = [FINDS / f"{name}.toml", "--model", "spline,fe"]
+    for answer in answered("critical-load", *words)["answers"]:
         assert (answer["kind"], answer["critical_load_N"]) == ("unstable at zero force", 0.0)
         assert answer["weight_share"] == pytest.approx(share, rel=1e-3)
+    for answer in answered("solve", *words)["answers"]:
+        assert "let go it tips over" in answer["message"] and f"{100.0 * share:.3g}" in answer["message"]
+        (point,) = answer["critical_points"]
+        assert (point["kind"], point["load_factor"], point["rotation_rad"]) == ("limit point", 0.0, 0.0)
 
 
 def test_the_former_name_prints_the_new_one(command):

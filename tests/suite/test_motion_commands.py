@@ -21,6 +21,14 @@ def test_a_release_keeps_the_pace_of_its_design(length, case, command):
     assert (answer["status"], answer["resolution"]) == ("converged", "")
 
 
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_an_unstable_design_is_seen_to_fall(model, command):
+    """Without --duration a pivot that its weight tips over is followed until it has fallen to its side."""
+    words = ["release", FINDS / "heavy_pivot.toml", "--model", model, "--no-check", "--json", "-"]
+    answer = json.loads(command(*words).out)
+    assert math.degrees(answer["rotation_rad"][-1]) == pytest.approx(102.0, abs=0.2)
+
+
 def test_options_of_the_motion_reach_the_model(case, command):
     """Integrator, step and slide stiffness stand in the answer's settings; accuracy replaces the step."""
     words = ["release", case(), "--model", "spline", "--control-points", 4, "--duration", 1e-3, "--json", "-"]
@@ -122,6 +130,14 @@ def test_accuracy_of_a_motion_is_reported(words, told, case, command):
 FINDS = Path(__file__).with_name("finds")
 #: Few steps of each model for a second of the column.
 PACE = {"spline": ["--step", 0.02], "fe": ["--elements", 8, "--integrator", "generalised-alpha"]}
+
+
+def test_a_companion_that_fails_is_told(command):
+    """Where a companion cannot follow the motion its errors are not estimated, and the reason is printed."""
+    words = ("release", FINDS / "pinned_pendulum.toml", "--duration", 0.5, "--step", 0.02)
+    lines = command(*words).out.splitlines()
+    told = lines.index("errors of rotations and displacements: not estimated")
+    assert re.match("error not estimated: a companion with 8 .* reaches the end: stopped at", lines[told + 1])
 
 
 @pytest.mark.parametrize("model", ["spline", "fe"])

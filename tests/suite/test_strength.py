@@ -5,13 +5,14 @@ import io
 import json
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
-from studies.cases.design import named_design
+from studies.cases.design import named_design, read_design
 from studies.cases.problem import named_case
 
 TABLE_1, SIX = named_case("cross_axis_pivot"), SplineSettings(control_points=6)
@@ -20,6 +21,13 @@ TABLE_1, SIX = named_case("cross_axis_pivot"), SplineSettings(control_points=6)
 def yielding(limit):
     """Table 1 of a material of that yield strength."""
     return replace(TABLE_1, yield_strength=limit)
+
+
+@pytest.mark.parametrize(("settings", "how"), [(SplineSettings(), {}), (FeSettings(), {"accuracy": 1e-4})])
+def test_the_largest_stress_may_lie_between_stations(settings, how):
+    """Requirement: both models have the stress of 640 elements where it is largest inside a strip."""
+    design = read_design(Path(__file__).parent / "finds" / "mirror_pivot.toml")
+    assert answer_static(design, settings, **how).max_stress[-1] == pytest.approx(171.937e6, rel=1e-5)
 
 
 def test_every_strip_has_its_own_yield_strength():
