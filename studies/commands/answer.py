@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.motion import Spectrum
-from studies.answers.response import Answered, Response, Solved
+from studies.answers.response import PLACES, Answered, Response, Solved
 from studies.answers.strength import Strength
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
