@@ -11,6 +11,7 @@ import numpy as np
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
 from studies.answers.motion import Motion
+from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -99,7 +100,7 @@ def _of_amplitude(name: str, amplitude: float) -> Answer:
 def _reference() -> Answer:
     """Return the frequency in the limit of the finite elements and its uncertainty."""
     limit = formulations.refined_swing()
-    known = {"frequency_Hz": limit.frequency, "uncertainty": limit.frequency_uncertainty}
+    known = {"frequency_Hz": limit.frequency, "uncertainty": limit.uncertainty["frequency"]}
     return {"reference": {"quantity": "frequency", **known}}
 
 
@@ -128,7 +129,7 @@ def _outcome(motion: Motion) -> dict[str, Any]:
         "status": motion.status,
         "frequency_Hz": found,
         "shift": found / limit.frequency - 1.0,
-        "error_rotation_rad": formulations.rotation_error(motion, limit.swing.rotation),
+        "error_rotation_rad": rotation_error(motion, limit, limit.time) if motion.converged else math.nan,
     }
 
 

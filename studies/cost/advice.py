@@ -1,5 +1,7 @@
 """The cheapest setting of every model that meets an error on one design, found by trying them all."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.cost import settings
-from studies.cost.limits import MATERIAL, Limit, path_limit, swing_limit
+from studies.cost.limits import MATERIAL, path_limit, swing_limit
 from studies.cost.model import Failed
 from studies.cost.own import elements, spline
 from studies.cost.tried import PATH_JUDGED, SWING_ERRORS, cheapest, tried_paths, tried_swings
@@ -58,9 +60,9 @@ def advise_swing(design: Design, error: float, progress: Progress = silent) -> p
     tried = [each for each in _askable(settings.swings(frequency), design) if each.theory == MATERIAL]
     rows = tried_swings(tried, design, instants, {MATERIAL: limit}, PASSES, progress)
     rows["rotation"] = rows.pop("rotation_rad") / start
-    uncertainty = limit.uncertainty | {"rotation": limit.uncertainty["rotation"] / start}
-    told = Limit(found=None, uncertainty=uncertainty, source=limit.source)
-    return _uncertain(cheapest(rows, ("rotation", SWING_ERRORS[1]), error), {MATERIAL: told})
+    uncertainty = {**limit.uncertainty, "rotation": limit.uncertainty["rotation"] / start}
+    told = {MATERIAL: replace(limit, uncertainty=uncertainty)}
+    return _uncertain(cheapest(rows, ("rotation", SWING_ERRORS[1]), error), told)
 
 
 def _askable(tried: list[settings.Setting], design: Design) -> list[settings.Setting]:
@@ -79,7 +81,7 @@ def _integrator(design: Design, duration: float) -> str:
     return "leapfrog"
 
 
-def _uncertain(found: pd.DataFrame, limits: dict[str, Limit]) -> pd.DataFrame:
+def _uncertain(found: pd.DataFrame, limits: Mapping[str, Any]) -> pd.DataFrame:
     """Return the advice with how uncertain the limit of each quantity is."""
     names = next(iter(limits.values())).uncertainty
     columns: dict[str, list[Any]] = {

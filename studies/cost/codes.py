@@ -17,10 +17,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.answers.reference import largest_errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import TABLE_1, named_case
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.limits import MATERIAL, SHEAR, largest_errors, path_limits, swing_limits
+from studies.cost.limits import MATERIAL, SHEAR, path_limits, swing_limits
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import (
@@ -80,7 +81,7 @@ def _paths() -> Answer:
     for model, settings in FINEST.items():
         if model.installed():
             theory = SHEAR if model.sheared else MATERIAL
-            apart = largest_errors(model.path(design, **settings), limits[theory].found)
+            apart = largest_errors(model.path(design, **settings), limits[theory])
             finest.append({"model": model.name, "elements": settings["elements"], "theory": theory, **apart})
     tried = tried_paths(paths(), design, limits)
     return {"path_limits": rows, "finest": finest, **_apart("paths", tried)}

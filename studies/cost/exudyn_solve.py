@@ -24,8 +24,9 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, SolvedMotion, SolvedPath, checked_choice, steps_of, turns_of
+from studies.cost.model import Failed, Model, checked_choice, steps_of, turns_of
 from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.

@@ -1,8 +1,7 @@
 """The models that are compared: what each answers, what all check alike, the pivot as it is given."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,41 +13,6 @@ from studies.kinds import Array
 
 class Failed(RuntimeError):
     """A model did not reach the end of its path or motion; one line that says where it stopped."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolvedPath:
-    """A static path, S states, the unloaded one first; a `Response` of the suite's own models has the same.
-
-    Attributes:
-        rotation (S,): of the body, counter-clockwise [rad]. centre (S, 2): of its mass, origin at A1 [m].
-        torque (S,): that drives the body [N m]. stiffness (S,): its derivative by the rotation [N m / rad];
-            max_stress (S,): at the strips' outer fibres [Pa]; None where the model does not give them.
-        solve_s: time of the increments alone [s]. counters: of the solve, by kind; "unknowns" is the size of
-            its system.
-    """
-
-    rotation: Array
-    centre: Array
-    torque: Array
-    stiffness: Array | None = None
-    max_stress: Array | None = None
-    solve_s: float = math.nan
-    counters: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolvedMotion:
-    """Motion after a release at rest, T records, the start first; a `Motion` has the same.
-
-    Attributes:
-        time (T,): [s]. rotation (T,): of the body [rad]. solve_s, counters: as of a path, of the steps.
-    """
-
-    time: Array
-    rotation: Array
-    solve_s: float = math.nan
-    counters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(eq=False, kw_only=True)

@@ -28,17 +28,9 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import (
-    Failed,
-    Model,
-    SolvedMotion,
-    SolvedPath,
-    checked_count,
-    geometry_of,
-    steps_of,
-    turns_of,
-)
+from studies.cost.model import Failed, Model, checked_count, geometry_of, steps_of, turns_of
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from studies.answers.reference import Reference, SwingReference, largest_errors, rotation_error, sampled
 from studies.cases.design import Design
-from studies.cost.limits import Limit, at, frequency_error, largest_errors
 from studies.cost.model import Failed
 from studies.cost.settings import HINT, Setting
 from studies.engine import Row
@@ -29,8 +29,6 @@ PASSES = 3
 AFFORDED, RUNS = 0.2, 5
 #: Counters that stand beside the errors.
 WORK = ("unknowns", "steps", "newton_iterations", "factorisations")
-#: Columns that name a row.
-NAMED = ("model", "group", "setting")
 
 #: Errors of a path, those that it is judged by first, and of a swing.
 PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
@@ -40,14 +38,14 @@ SWING_ERRORS = ("rotation_rad", "frequency")
 def tried_paths(
     settings: Sequence[Setting],
     design: Design,
-    limits: Mapping[str, Limit],
+    limits: Mapping[str, Reference],
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
     """Return errors, work and times of the path of a design, a row a setting."""
 
     def errors(path: Any, theory: str) -> Row:
-        return largest_errors(path, limits[theory].found)
+        return largest_errors(path, limits[theory])
 
     return _tried(settings, lambda each: each.model.path(design, **each.settings), errors, passes, progress)
 
@@ -56,7 +54,7 @@ def tried_swings(
     settings: Sequence[Setting],
     design: Design,
     instants: Array,
-    limits: Mapping[str, Limit],
+    limits: Mapping[str, SwingReference],
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
@@ -66,10 +64,10 @@ def tried_swings(
         return each.model.swing(design, float(instants[-1]), **each.settings)
 
     def errors(motion: Any, theory: str) -> Row:
-        rotation, limit = at(motion, instants), limits[theory].found
+        limit = limits[theory]
         return {
-            "rotation_rad": float(np.abs(rotation - limit).max()),
-            "frequency": frequency_error(rotation, limit, instants),
+            "rotation_rad": rotation_error(motion, limit, instants),
+            "frequency": abs(sampled(motion, instants).frequency / limit.frequency - 1.0),
         }
 
     return _tried(settings, solve, errors, passes, progress)

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.motion import Motion
-from studies.answers.reference import Swing, SwingReference, sampled
+from studies.answers.reference import SwingReference, rotation_error, sampled
 from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
@@ -46,19 +46,17 @@ def _compared() -> Answer:
     limit = formulations.refined_swing()
     motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
     traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
-    largest = {
-        "rotation_rad": float(limit.uncertainty.max()),
-        "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
-        "com_y_m": float(limit.centre_uncertainty[:, 1].max()),
-        "frequency": limit.frequency_uncertainty,
-    }
+    columns = (*(column for column, _, _ in QUANTITIES), "frequency")
     return {
         "motions": pd.concat(
-            _trace(name, swing, limit.swing) for name, swing in {REFINED: limit.swing, **traces}.items()
+            _trace(name, swing, limit) for name, swing in {REFINED: limit, **traces}.items()
         ),
         "summary": [_summary(name, motion, limit) for name, motion in motions.items()],
         "findings": [row for name in SPLINES for row in _findings(name, motions[name], motions[FE])],
-        "reference": [{"quantity": name, "uncertainty": value} for name, value in largest.items()],
+        "reference": [
+            {"quantity": name, "uncertainty": value}
+            for name, value in zip(columns, limit.uncertainty.values(), strict=True)
+        ],
     }
 
 
@@ -117,7 +115,7 @@ def _motion(name: str) -> Motion:
     )
 
 
-def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
+def _trace(name: str, swing: Any, limit: Any) -> pd.DataFrame:
     kept = slice(None, None, STORED)
     return pd.DataFrame(
         {
@@ -136,15 +134,15 @@ def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
 
 
 def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]:
-    swing = sampled(motion, formulations.INSTANTS)
+    centre = sampled(motion, limit.time).centre
     return {
         "formulation": name,
         "meaning": MEANING.get(name, "material measure, mixed stretch: refined, a check of the reference"),
         "status": motion.status,
         "frequency_Hz": motion.frequency,
         "frequency_shift": motion.frequency / limit.frequency - 1.0,
-        "error_rotation_rad": float(np.abs(swing.rotation - limit.swing.rotation).max()),
-        "error_centre_m": float(np.linalg.norm(swing.centre - limit.swing.centre, axis=1).max()),
+        "error_rotation_rad": rotation_error(motion, limit, limit.time),
+        "error_centre_m": float(np.linalg.norm(centre - limit.centre, axis=1).max()),
         "energy_error": motion.energy_error,
         "constraint_residual_m": float(motion.constraint_residual.max()),
         "integrator": motion.settings["integrator"],

@@ -19,7 +19,6 @@ from studies.answers.reference import (
     errors,
     largest_errors,
     reference,
-    sampled,
     swing_reference,
 )
 from studies.answers.response import Response
@@ -96,14 +95,6 @@ def resolved(settings: SplineSettings) -> Motion:
 def refined_swing() -> SwingReference:
     """Return the swing in the limit of refinement of the finite elements."""
     return swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
-
-
-def rotation_error(motion: Motion, against: Array) -> float:
-    """Return the largest difference of the rotation to `against` at `INSTANTS` [rad]; NaN if it stopped
-    early."""
-    if not motion.converged:
-        return float("nan")
-    return float(np.abs(sampled(motion, INSTANTS).rotation - against).max())
 
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.

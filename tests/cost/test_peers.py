@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.reference import reference
+from studies.answers.reference import largest_errors, reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.cost.exudyn_solve import SOLVERS
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.limits import Limit, largest_errors
 from studies.cost.model import Failed, Model
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.own import elements
@@ -137,7 +136,7 @@ def test_failed_setting_keeps_its_row():
         def path(self, *_, **__):
             raise Failed("stopped at 0.1 rad")
 
-    limits = {"material": Limit(found=reference(CASE), uncertainty={}, source="")}
+    limits = {"material": reference(CASE)}
     asked = [*grid(Failing(name="failing"), "x"), *grid(elements, "y", elements=(5, 20))]
     failed, coarse, fine = tried_paths(asked, CASE, limits, 1).to_dict("records")
     assert (failed["status"], failed["message"], failed["runs"]) == ("failed", "stopped at 0.1 rad", 0)
