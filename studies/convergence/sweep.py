@@ -17,10 +17,11 @@ from studies.cases.design import Design
 from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Progress
+from studies.paper.formulations import FE, LOOKS, SIX
 from studies.record.marks import Doubt
 from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
 from studies.record.progress import silent, watched
-from studies.record.style import ELEMENTS, LOOKS
+from studies.record.style import ELEMENTS
 
 ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
 
@@ -120,8 +121,8 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     for quantity in QUANTITIES:
         y = Axis(f"error_{quantity}", f"error of the {quantity} [1]", log=True)
         doubt = Doubt(limit.uncertainty[quantity])
-        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS["n = 6"]), doubt)))
-        below.append(Panel(MESH, y, (Curves(elements, LOOKS["FE, 20 elements"]), doubt)))
+        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))
+        below.append(Panel(MESH, y, (Curves(elements, LOOKS[FE]), doubt)))
     above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
     return sheet(11.5, 6.0, (above, below))
 

@@ -11,14 +11,26 @@ from studies.answers.motion import Motion
 from studies.answers.reference import SwingReference, rotation_error, sampled
 from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
-from studies.paper import formulations
-from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
+from studies.paper.formulations import (
+    FE,
+    INSTANTS,
+    LOCKING_FREE,
+    LOOKS,
+    MEANING,
+    PAPER,
+    REFINED,
+    SETTINGS,
+    SIX,
+    refined_swing,
+    released,
+    resolved,
+)
 from studies.record.marks import Doubt
 from studies.record.panels import TIME, Axis, Curves, Panel, sheet
-from studies.record.style import CHECK, LOOKS
+from studies.record.style import GREEN, Look
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
-SPLINES = (PAPER, LOCKING_FREE, "n = 6")
+SPLINES = (PAPER, LOCKING_FREE, SIX)
 REFINED_SPLINE = "n = 10"
 
 #: "Slightly different" is read as a tenth of what the centre travels.
@@ -34,7 +46,8 @@ QUANTITIES = (
 )
 
 #: Lines of the figure: motions have too many points for markers.
-LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)} | {REFINED_SPLINE: CHECK}
+LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)}
+LINES[REFINED_SPLINE] = Look(label="spline n = 10", colour=GREEN, line=":")
 
 
 def _compared() -> Answer:
@@ -43,9 +56,9 @@ def _compared() -> Answer:
     `reference` has the uncertainties of the limit: in rad, in m, relative for the frequency. All of it is one
     point, since the limit takes most of the time.
     """
-    limit = formulations.refined_swing()
+    limit = refined_swing()
     motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
-    traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
+    traces = {name: sampled(motion, INSTANTS) for name, motion in motions.items()}
     columns = (*(column for column, _, _ in QUANTITIES), "frequency")
     return {
         "motions": pd.concat(
@@ -108,11 +121,7 @@ def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
 def _motion(name: str) -> Motion:
     """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
     settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
-    return (
-        formulations.resolved(settings)
-        if isinstance(settings, SplineSettings)
-        else formulations.released(settings)
-    )
+    return resolved(settings) if isinstance(settings, SplineSettings) else released(settings)
 
 
 def _trace(name: str, swing: Any, limit: Any) -> pd.DataFrame:
@@ -152,8 +161,8 @@ def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]
 
 def _findings(name: str, motion: Motion, elements: Motion) -> list[Row]:
     """Return the claims of Fig 6 held against a spline, compared with 20 elements as there."""
-    twenty = sampled(elements, formulations.INSTANTS).centre
-    distance = np.linalg.norm(sampled(motion, formulations.INSTANTS).centre - twenty, axis=1).max()
+    twenty = sampled(elements, INSTANTS).centre
+    distance = np.linalg.norm(sampled(motion, INSTANTS).centre - twenty, axis=1).max()
     distance /= np.linalg.norm(np.ptp(twenty, axis=0))  # the diagonal of the rectangle that the path fills
     shift = motion.frequency / elements.frequency - 1.0
     return [

@@ -1,4 +1,4 @@
-"""The formulations that the paper's figures compare, their paths and swings, and other readings."""
+"""The formulations that figures compare, each named once, their paths and swings, and other readings."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -17,50 +17,68 @@ from studies.answers.reference import (
     Reference,
     SwingReference,
     errors,
-    largest_errors,
     reference,
     swing_reference,
 )
-from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part, Study
 from studies.kinds import Array
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, SKY, Look
 
-PAPER = "n = 4, as the paper"
-REFINED = "FE refined"
-FE = "FE, 20 elements"
-LOCKING_FREE = "n = 4, locking-free"
+PAPER, LOCKING_FREE, SIX = "n = 4, as the paper", "n = 4, locking-free", "n = 6"
+REFINED, FE = "FE refined", "FE, 20 elements"
+PRINTED = "n = 4, printed forces"
 
-#: Spline formulations and the paper's finite elements; what each one is stands in `MEANING`.
-SETTINGS: dict[str, Settings] = {
-    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
-    "n = 4, printed forces": SplineSettings(control_points=4, measure="printed", stretch="consistent"),
-    "n = 4, 3 Gauss points": SplineSettings(
-        control_points=4, measure="spatial", stretch="consistent", gauss_points=3
+_AS_PAPER = SplineSettings(control_points=4, measure="spatial", stretch="consistent")
+#: Settings of each formulation, none of the limit of refinement; how it is drawn; and what it is.
+NAMED: dict[str, tuple[Settings | None, Look, str]] = {
+    REFINED: (
+        None,
+        Look(label="FE, refined", colour=BLACK),
+        f"the same elements in the limit of refinement, from {', '.join(map(str, MESHES))} a strip",
     ),
-    LOCKING_FREE: SplineSettings(control_points=4, axial_modes=2),
-    "n = 6": SplineSettings(control_points=6),
-    FE: FeSettings(elements=20),
+    FE: (
+        FeSettings(elements=20),
+        Look(label="FE, 20 elements", colour=GREY, line="--", marker="s"),
+        "corotational Euler-Bernoulli elements, 20 a strip, as the paper",
+    ),
+    PAPER: (
+        _AS_PAPER,
+        Look(label="spline n = 4, as the paper", colour=RED, marker="o"),
+        "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
+    ),
+    PRINTED: (
+        replace(_AS_PAPER, measure="printed"),
+        Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
+        "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
+    ),
+    "n = 4, 3 Gauss points": (
+        replace(_AS_PAPER, gauss_points=3),
+        Look(label="spline n = 4, 3 Gauss points", colour=ORANGE, line="-.", marker="^"),
+        "Eqs 10 and 13 with three Gauss points, too few to see the locking",
+    ),
+    LOCKING_FREE: (
+        SplineSettings(control_points=4, axial_modes=2),
+        Look(label="spline n = 4, locking-free", colour=SKY, marker="D"),
+        "material measure, mixed stretch with two axial-force modes a strip",
+    ),
+    SIX: (
+        SplineSettings(control_points=6),
+        Look(label="spline n = 6", colour=BLUE, marker="x"),
+        "material measure, mixed stretch with four axial-force modes a strip",
+    ),
 }
-
-#: What each formulation is, for tables and reports.
-MEANING: dict[str, str] = {
-    PAPER: "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
-    "n = 4, printed forces": "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
-    "n = 4, 3 Gauss points": "Eqs 10 and 13 with three Gauss points, too few to see the locking",
-    LOCKING_FREE: "material measure, mixed stretch with two axial-force modes a strip",
-    "n = 6": "material measure, mixed stretch with four axial-force modes a strip",
-    FE: "corotational Euler-Bernoulli elements, 20 a strip, as the paper",
-    REFINED: f"the same elements in the limit of refinement, from {', '.join(map(str, MESHES))} a strip",
-}
+SETTINGS = {name: settings for name, (settings, _, _) in NAMED.items() if settings is not None}
+LOOKS = {name: look for name, (_, look, _) in NAMED.items()}
+MEANING = {name: meaning for name, (_, _, meaning) in NAMED.items()}
 
 
 @cache
-def answer(name: str) -> Response:
+def path_of(name: str) -> Any:
     """Return the static path of a formulation, computed once however many figures ask."""
-    return answer_static(named_case(), SETTINGS[name])
+    return refined() if name == REFINED else answer_static(named_case(), SETTINGS[name])
 
 
 @cache
@@ -108,15 +126,13 @@ AS_READ = "midway between the upper clamps"
 
 def _integrated(points: int) -> Answer:
     """Return the errors of the paper's formulation with so many Gauss points."""
-    settings = SplineSettings(control_points=4, measure="spatial", stretch="consistent", gauss_points=points)
-    path = answer_static(named_case(), settings)
-    largest = largest_errors(path, refined())
+    path = answer_static(named_case(), replace(_AS_PAPER, gauss_points=points))
+    error = errors(path, refined())
     row = {
         "gauss_points": points,
         "status": path.status,
-        "error_torque": largest["torque"],
-        "error_stiffness": largest["stiffness"],
-        "error_stiffness_end": float(errors(path, refined())["stiffness"][-1]),
+        **{f"error_{name}": float(np.abs(error[name]).max()) for name in ("torque", "stiffness")},
+        "error_stiffness_end": float(error["stiffness"][-1]),
     }
     return {"quadrature": row}
 
@@ -128,10 +144,8 @@ def _readings() -> Iterator[tuple[str, Problem]]:
     rise = (1.0 - case.crossing_ratio) * case.length * sin(case.inclination)
     for name, offset in (("at the crossing", -rise), ("as far above the upper clamps", rise)):
         yield f"centre of mass {name}", replace(case, centre_offset=(0.0, offset))
-    yield (
-        "gravity, the ground below",
-        replace(case, effects=case.effects.renamed([*case.effects.names, "gravity"])),
-    )
+    weighed = case.effects.renamed([*case.effects.names, "gravity"])
+    yield "gravity, the ground below", replace(case, effects=weighed)
     frequency = swing_frequency(INSTANTS, _swing(case)).value
     lost = 2.0 * DAMPING * 2.0 * pi * frequency * case.body_moment_of_inertia
     damped = Effects(
@@ -142,7 +156,7 @@ def _readings() -> Iterator[tuple[str, Problem]]:
 
 
 def _swing(problem: Problem) -> Array:
-    motion: Motion = answer_release(
+    motion = answer_release(
         problem, SplineSettings(control_points=POINTS), duration=DURATION, records=len(INSTANTS) - 1,
         integrator="energy", step=DURATION / (10 * (len(INSTANTS) - 1)),
     )  # fmt: skip

@@ -7,35 +7,35 @@ from typing import Any, Self
 
 import pandas as pd
 
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import Settings, SplineSettings
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
 from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
+from studies.paper import formulations as named
+from studies.paper.formulations import LOOKS, SETTINGS
 from studies.record.digits import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
 VARIED = "spline, settings varied"
-SIX = "spline n = 6"
-PAPER = "spline n = 4, as the paper"
-PRINTED = "spline n = 4, printed forces"
-LOCKING_FREE = "spline n = 4, locking-free"
-FE = "FE, 20 elements"
+LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
+    LOOKS[name].label for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE, named.SIX)
+)
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
 COLUMNS: dict[str, Settings] = {
     DEFAULT: SplineSettings(),
-    LOCKING_FREE: SplineSettings(control_points=4),
-    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
-    PRINTED: SplineSettings(control_points=4, measure="printed", stretch="consistent"),
-    FE: FeSettings(),
+    LOCKING_FREE: SETTINGS[named.LOCKING_FREE],
+    PAPER: SETTINGS[named.PAPER],
+    PRINTED: SETTINGS[named.PRINTED],
+    FE: SETTINGS[named.FE],
 }
 
 #: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
 #: Motions and arcs of frames take six by default.
-PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
+PATHS: dict[str, Settings] = {**COLUMNS, SIX: SETTINGS[named.SIX]}
 
 #: Those of paths in arc length: finer splines, as the default reaches its end there.
 EIGHT, TWELVE = "spline n = 8", "spline n = 12"
