@@ -17,8 +17,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.metrics import differences
 from studies.answers.motion import Motion
-from studies.answers.reference import sampled
+from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
@@ -124,11 +125,11 @@ def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
         let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)
         for n in (SWING_REFERENCE, SWING_CHECK)
     )
-    uncertainty = _rotation_error(check, exact)
+    uncertainty = _swing_error(check, exact)
     for accuracy in SWING_ACCURACIES:
         answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
         identity = {"problem": "motion", **_described(number, problem), "accuracy": accuracy}
-        error = _rotation_error(answer, exact)
+        error = _swing_error(answer, exact)
         yield identity | _judged("rotation", "rad", error, uncertainty, answer)
 
 
@@ -154,21 +155,16 @@ def _judged(
 def _path_errors(answer: Response, exact: Response) -> dict[str, float]:
     """Return the largest errors of a path over travel and peak torque and stress [1]; NaN for one that
     stopped."""
-    if len(answer.rotation) != len(exact.rotation):
-        return dict.fromkeys(("trajectory", "torque", "stress"), math.nan)
-    travel = np.linalg.norm(exact.centre - exact.centre[0], axis=1).max()
-    return {
-        "trajectory": float(np.linalg.norm(answer.centre - exact.centre, axis=1).max() / travel),
-        "torque": float(np.abs(answer.torque - exact.torque).max() / np.abs(exact.torque).max()),
-        "stress": float(np.abs(answer.max_stress - exact.max_stress).max() / exact.max_stress.max()),
-    }
+    apart = differences(answer, exact, ("path", "torque", "stress")).values()
+    whole = len(answer.rotation) == len(exact.rotation)
+    names = ("trajectory", "torque", "stress")
+    return {name: float(each or 0.0) if whole else math.nan for name, each in zip(names, apart, strict=True)}
 
 
-def _rotation_error(motion: Motion, exact: Motion) -> float:
+def _swing_error(motion: Motion, exact: Motion) -> float:
     """Return the largest error of the rotation at the motion's instants [rad]; NaN for one that stopped."""
-    if not (motion.converged and exact.converged):
-        return math.nan
-    return float(np.abs(motion.rotation - sampled(exact, motion.time).rotation).max())
+    whole = motion.converged and exact.converged
+    return rotation_error(motion, exact, motion.time) if whole else math.nan
 
 
 def _timed(accuracy: float) -> dict[str, Any]:

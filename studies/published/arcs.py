@@ -28,6 +28,8 @@ from studies.kinds import Array
 from studies.published.case import Frame
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
+#: How a path ended.
+REACHED, STOPPED = "converged", "not_converged"
 #: Increments of elements over those of a frame where a column bends. Splines take the steps that curves need.
 FINER = 20
 #: Part of the displacement at a limit load by which a body is led on, and how often at most.
@@ -53,7 +55,8 @@ class Arc:
         energy: (S,) stored, in its unit.
         inertia: (S,) number of negative eigenvalues of the tangent.
         critical: the critical points in order.
-        message: what the model says of the path; warning: and of its own resolution; empty: nothing.
+        status: "converged", or how it ended early; message: what the model says of the path; resolution: and
+            of its own resolution; empty: nothing.
     """
 
     load: Array
@@ -61,9 +64,9 @@ class Arc:
     energy: Array
     inertia: NDArray[np.int64]
     critical: tuple[_Critical, ...]
-    reached: bool
+    status: str
     message: str
-    warning: str = ""
+    resolution: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
 
     def critical_load(self, kind: str, place: int = 0) -> float:
@@ -118,9 +121,9 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
             _Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
             for point in path.critical_points
         ),
-        reached=path.status.value == "converged",
+        status=path.status.value,
         message=path.message,
-        warning=path.resolution,
+        resolution=path.resolution,
         counters=path.counters,
     )
 
@@ -201,7 +204,7 @@ def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
         energy=_stored(structure, path),
         inertia=np.array([state.inertia for state in path.states]),
         critical=critical,
-        reached=not path.message,
+        status=STOPPED if path.message else REACHED,
         message=path.message or _told(critical),
     )
     snaps = path.message and critical and critical[-1].kind == LIMIT
@@ -228,7 +231,7 @@ def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice)
         energy=np.append(arc.energy, _stored(structure, on)),
         inertia=np.append(arc.inertia, unstable),
         critical=critical,
-        reached=reached,
+        status=REACHED if reached else STOPPED,
         message=_told(critical) if reached else f"{frame.body} is led no further than load {load[-1]:.6g}",
     )
 

@@ -26,7 +26,7 @@ from studies.cases.problem import Problem
 from studies.engine import Answer, Claim, Part, Study
 from studies.errors import BadInput
 from studies.published import case
-from studies.published.arcs import LIMIT, Arc, arc_of
+from studies.published.arcs import LIMIT, REACHED, Arc, arc_of
 from studies.published.case import Value, published
 
 #: Fine enough that what is left is the model's, not its discretisation's.
@@ -85,7 +85,7 @@ def _load_at_rotation(arc: Arc, value: Value) -> float:
     Load and turn are both smooth over the way of the body; one over the other is steep where a column closes.
     """
     turned = np.abs(arc.place[:, 2])
-    if not arc.reached or turned[-1] < math.radians(value.at):
+    if arc.status != REACHED or turned[-1] < math.radians(value.at):
         return math.nan
     bent = turned > TURNED
     way = np.cumsum(np.linalg.norm(np.diff(arc.place[bent], axis=0, prepend=arc.place[bent][:1]), axis=1))

@@ -99,7 +99,7 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
         "energy_J": float(arc.energy[-1]),
         "unstable_directions": int(arc.inertia[-1]),
         "first_bifurcation_mm": min((1e3 * point.load for point in arc.critical), default=math.nan),
-        "says": arc.message or arc.warning,
+        "says": arc.message or arc.resolution,
     }
     return {"branches": found}
 

@@ -11,10 +11,11 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release, answer_static
+from studies.answers.metrics import differences
 from studies.answers.motion import Motion
+from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
@@ -125,29 +126,18 @@ def answers_of(question: Question) -> Answer:
 def path_distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
-    Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
-    path that stopped may end between two of the reference's states.
+    Each over its largest value on the reference's path; infinite where the path is not of finite numbers.
     """
-    near = np.abs(path.load_factor[:, None] - reference.load_factor).min(axis=1) < 1e-9
-    same = np.abs(path.load_factor[near][:, None] - reference.load_factor).argmin(axis=1)
-    if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
-        return math.inf
-    torque = np.abs(path.torque[near] - reference.torque[same]).max()
-    place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
-    travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
-    return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
+    apart = [each for each in differences(path, reference, ("path", "torque")).values() if each is not None]
+    return max(apart, default=0.0) if np.isfinite(apart).all() else math.inf
 
 
 def _swing_distance(motion: Motion, reference: Motion) -> float:
-    """Return the largest difference of rotation at the motion's records, as far as the reference goes [1].
-
-    Over the rotation at the start. Infinite for a motion without a record or with one that is no number.
-    """
-    if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
+    """Return the largest difference of rotation at the motion's records, as far as the reference goes, over
+    the rotation at the start [1]; infinite for a motion with one that is no number."""
+    if len(motion.time) < 2 or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
         return math.inf
-    known = motion.time <= reference.time[-1] * (1.0 + 1e-9)
-    expected = CubicSpline(reference.time, reference.rotation)(motion.time[known])
-    return float(np.abs(motion.rotation[known] - expected).max() / abs(reference.rotation[0]))
+    return rotation_error(motion, reference, motion.time) / abs(float(reference.rotation[0]))
 
 
 def _energy_gain(motion: Motion) -> float:

@@ -27,8 +27,6 @@ SHALLOW, DEPTHS = 1e-3, (2e-3, 5e-3, 1e-2, 2e-2)
 INDEPENDENT = FeSettings(elements=40)
 #: Tilt of the body over its depth, in lengths of a strip, from which elements find the branch [rad].
 TILT = 2.0
-
-
 #: Euler load of a cantilever [EI/L^2].
 EULER = math.pi**2 / 4.0
 
@@ -49,14 +47,6 @@ def tip(angles: Array) -> Array:
     modulus = np.sin(angles / 2.0)
     first = ellipk(modulus**2)
     return np.stack((2.0 * ellipe(modulus**2) / first - 1.0, 2.0 * modulus / first), axis=-1)
-
-
-def _extensible_euler(slenderness: float) -> float:
-    """Return the critical load [EI/L^2] of a column that is shortened first: (1 - P / EA) P is Euler's.
-
-    slenderness: L sqrt(EA / EI) [1].
-    """
-    return slenderness**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / slenderness**2))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,12 +74,14 @@ class _BucklingCase:
 
 def _cases() -> Iterator[_BucklingCase]:
     """Yield all questions."""
+    first = partial(Arc.critical_load, kind=BIFURCATION)
     yield _BucklingCase(
         name="column: critical load",
         frame=published("column").frame(BEYOND),
         quantity="bifurcation [EI/L^2]",
-        value=lambda arc: arc.critical_load(BIFURCATION),
-        exact=_extensible_euler(SLENDERNESS),
+        value=first,
+        # of a column that is shortened first: (1 - P / EA) P is Euler's
+        exact=SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2)),
     )
     for degrees in PUBLISHED:
         name, angle = f"column: elastica at {degrees} deg", float(degrees)
@@ -120,7 +112,7 @@ def _cases() -> Iterator[_BucklingCase]:
         name="pivot pushed down: where its strips buckle",
         frame=pushed_pivot(DEPTHS[0]),
         quantity="bifurcation [m]",
-        value=lambda arc: arc.critical_load(BIFURCATION),
+        value=first,
     )
     for depth in DEPTHS:
         name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
@@ -156,18 +148,26 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 
     It is settled by elements, or by the value in print where they do not reach it.
     """
-    refined = case.value(case.arc(REFINED))
+    refined, check, independent = (case.value(case.arc(each)) for each in (REFINED, CHECK, INDEPENDENT))
     reference = refined if math.isnan(case.exact) else case.exact
-    spread = max(_difference(case.value(case.arc(CHECK)), refined), _difference(refined, reference))
-    independent = case.value(case.arc(INDEPENDENT))
+    spread = max(_difference(check, refined), _difference(refined, reference))
     gap = _difference(case.published if math.isnan(independent) else independent, reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}
-    rows = []
-    for model, settings in ARCS.items():
-        asked = {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
-        rows.append(asked | judged(partial(_attempt, case, settings, reference), TOLERANCE, model))
+
+    def attempt(settings: Settings) -> Found:
+        arc = case.arc(settings)
+        value = case.value(arc)
+        found = Found.of(arc, _difference(value, reference), found=value)
+        # a path that says where it stopped does not claim what lies beyond
+        return replace(found, states_limit=not found.reached)
+
+    rows = [
+        {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
+        | judged(partial(attempt, settings), TOLERANCE, model)
+        for model, settings in ARCS.items()
+    ]
     reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
 
@@ -175,22 +175,6 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 def _difference(found: float, reference: float) -> float:
     """Return the difference over the reference, or as it is where that is zero [1]; nan if there is none."""
     return abs(found - reference) / (abs(reference) or 1.0)
-
-
-def _attempt(case: _BucklingCase, settings: Settings, reference: float) -> Found:
-    """Answer a case, and compare the number that was found."""
-    arc = case.arc(settings)
-    value = case.value(arc)
-    return Found(
-        error=_difference(value, reference),
-        reached=arc.reached,
-        reason=arc.message,
-        # a path that says where it stopped does not claim what lies beyond
-        states_limit=not arc.reached,
-        warning=arc.warning,
-        counters=arc.counters,
-        measured={"found": value},
-    )
 
 
 #: All questions and what comes of each.

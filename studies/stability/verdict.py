@@ -10,7 +10,7 @@ import pandas as pd
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.engine import Answer, Part, Row, Study
+from studies.engine import Part, Row, Study
 from studies.errors import BadInput
 from studies.paper import formulations as named
 from studies.paper.formulations import LOOKS, SETTINGS
@@ -145,9 +145,6 @@ DIGITS: dict[str, Digits | None] = {
     **dict.fromkeys(("outcomes.error", "outcomes.found", "stopped", "warned"), _RIGHT),
 }
 
-#: A case of one model: name, model, what is asked, and the largest error that is right [1].
-Task = tuple[str, str, Callable[[], Found], float]
-
 
 def study(*parts: Part, **declared: Any) -> Study:
     """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it.
@@ -157,11 +154,6 @@ def study(*parts: Part, **declared: Any) -> Study:
     counts = {"counts": lambda tables: _counted(tables["outcomes"])}
     digits = DIGITS | declared.pop("digits", {})
     return Study(parts=parts, made=counts, digits=digits, **declared)
-
-
-def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
-    """Return how one task ends."""
-    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance, model)}}
 
 
 def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
