@@ -124,8 +124,8 @@ class _Question:
         """Return the path of a model, or its refusal where weight and pre-strain find no equilibrium."""
         how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "raise_on_failure": False}
         try:
-            return asked.model.statics.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
-        except asked.model.errors.InvalidParameter as error:
+            return asked.model.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
+        except asked.model.InvalidParameter as error:
             if hasattr(error, "critical_points"):
                 return error
             raise BadInput(f"{asked.settings.model}: {error}") from None

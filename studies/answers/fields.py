@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import Model, effects_of, mode_bodies, model_of
+from studies.answers.models import effects_of, fields_along, mode_bodies
 from studies.answers.response import Answered, assembled, stress_of
-from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Strip
 from studies.cases.section import Sectioned
@@ -164,7 +164,7 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
         parts=_strips_of(asked),
         blocks=blocks,
         driven=[block.name for block in blocks].index(body) if body else 0,
-        **KINDS[type(solution).__name__](model_of(settings), asked, solution),
+        **KINDS[type(solution).__name__](settings, asked, solution),
     )
 
 
@@ -185,9 +185,9 @@ def _as_fine(asked: Any, solution: Any) -> Any:
     return asked
 
 
-def _path(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+def _path(settings: Settings, asked: Any, result: Any) -> dict[str, Any]:
     driven = not np.isnan(result.torque).all()
-    along = _arrays(model.static_fields(asked, result.states))
+    along = _along(settings, "static", asked, result.states)
     # as the solution has them: by balance of moments, where a spline has chosen its control points
     own = {name: np.asarray(getattr(result, name), dtype=float) for name in ("axial_force", "bending_moment")}
     along |= {name: forces for name, forces in own.items() if forces.shape == along[name].shape}
@@ -203,20 +203,20 @@ def _path(model: Model, asked: Any, result: Any) -> dict[str, Any]:
     }
 
 
-def _motion(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+def _motion(settings: Settings, asked: Any, result: Any) -> dict[str, Any]:
     return {
         **_ended(result, OF_MOTION),
         "analysis": "release",
         "effects": effects_of(asked),
         "series": "time_s",
         "values": np.asarray(result.time),
-        **_arrays(model.moving_fields(asked, result.states)),
+        **_along(settings, "release", asked, result.states),
     }
 
 
-def _modes(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+def _modes(settings: Settings, asked: Any, result: Any) -> dict[str, Any]:
     count = len(result.frequency)
-    still = _arrays(model.mode_fields(asked, np.asarray(result.state)[None]))
+    still = _along(settings, "modes", asked, np.asarray(result.state)[None])
     moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
     return {
         "status": "converged",
@@ -244,8 +244,9 @@ def _ended(result: Any, names: dict[str, str]) -> dict[str, Any]:
     return {"status": str(result.status.value), "message": result.message, "energies": energies}
 
 
-def _arrays(found: Any) -> dict[str, Any]:
+def _along(settings: Settings, analysis: str, asked: Any, states: Any) -> dict[str, Any]:
     """Return the arrays of a model's fields along the strips, by the names that `Fields` has."""
+    found = fields_along(settings, analysis)(asked, states)
     return {each.name: np.asarray(getattr(found, each.name), dtype=float) for each in fields(found)}
 
 

@@ -160,7 +160,7 @@ def _paths(
             threads=1,
             **settings.keywords(),
         )
-    except model.errors.InvalidParameter:
+    except model.InvalidParameter:
         return np.zeros(len(turns), dtype=bool), {}
     unstable = np.count_nonzero(batch.inertia, axis=1)
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
