@@ -21,7 +21,6 @@ def answer_static(
     *,
     accuracy: float | None = None,
     repeat: int = 1,
-    raise_on_failure: bool = False,
     progress: Progress | None = None,
 ) -> Response:
     """Solve the static path of a design from load factor 0 to 1 with the model that `settings` belongs to.
@@ -37,8 +36,6 @@ def answer_static(
         accuracy: wanted error of trajectory and torque [1], which control points or elements are raised for;
             None for those of the settings.
         repeat: timed solves of the whole path [1].
-        raise_on_failure: raise the model's `ConvergenceError` rather than return the converged part of the
-            path.
         progress: called with increments done and increments in all.
 
     Raises:
@@ -48,7 +45,7 @@ def answer_static(
 
     def answer() -> Response:
         asked = put(design, settings)
-        path = asked.static_path(raise_on_failure=raise_on_failure, progress=progress, **wanted)
+        path = asked.static_path(raise_on_failure=False, progress=progress, **wanted)
         return Response.of(asked, path, solve_s=float(path.seconds["solve"]))
 
     timing = measure(answer, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=lambda each: each.solve_s)

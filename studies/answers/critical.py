@@ -18,7 +18,6 @@ from studies.cases.design import Design
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 #: The effect that is raised, and those that load or lead bodies, which are left out.
 FORCE = "applied_force"
@@ -257,16 +256,12 @@ def _told(question: _Question, asked: Asked, path: Any, size: float, lost: Any) 
 
 def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoad) -> CriticalLoad:
     """Return the answer of a design without a critical load with the forces at which it turns and yields."""
-    limits = [strip.yield_strength for strip in question.design.strips]
-
-    def turn(answer: Response) -> Array:
-        return np.abs(answer.bodies[question.body][:, 2]) / SOFT
-
-    def stress(answer: Response) -> Array:
-        worst = answer.extreme_fibre_stress.max(axis=2) / np.array(limits, dtype=float)
-        return np.asarray(worst.max(axis=1))
-
-    shares = {"soft": turn} | ({"yields": stress} if None not in limits else {})
+    shares: dict[str, Callable[[Response], Any]] = {
+        "soft": lambda answer: np.abs(answer.bodies[question.body][:, 2]) / SOFT,
+        "yields": lambda answer: answer.yield_share,
+    }
+    if any(strip.yield_strength is None for strip in question.design.strips):
+        del shares["yields"]
     forces: dict[str, float | None] = {}
     apart = [FOUND]
     for name, share in shares.items():
@@ -279,10 +274,10 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
     return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
 
 
-def _passing(question: _Question, settings: Settings, share: Callable[[Response], Array]) -> float | None:
+def _passing(question: _Question, settings: Settings, share: Callable[[Response], Any]) -> float | None:
     """Return the force [N] at which a share of a limit first is 1, by solutions that end there; or None."""
 
-    def path(force: float) -> Array:
+    def path(force: float) -> Any:
         asked = question.asked(settings, force)
         return share(Response.of(asked, question.path(asked), wall_s=0.0, solve_s=0.0)) - 1.0
 

@@ -14,9 +14,6 @@ from studies.answers.signal_modes import SignalMode, signal_modes
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
-#: Arrays that a model may lack which keeps its constraints exactly, and everywhere.
-RESIDUALS = ("constraint_residual", "velocity_residual")
-
 #: Amplitude of the second mode over the first up to which one mode carries a motion: a passage through the
 #: rest tolerates as much of a ripple.
 CARRIED = 0.2
@@ -44,7 +41,7 @@ class Motion(Solved):
         time: (T,) [s]; empty when statics does not reach the start.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
-        constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
+        constraint_residual: (T,) largest gap of clamps [m].
         starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
         wall_s: time of the whole call, the static path to its start included [s].
     """
@@ -56,7 +53,6 @@ class Motion(Solved):
     work: Array
     dissipated: Array
     constraint_residual: Array
-    velocity_residual: Array
     starts_still: bool = False
     rotation_error: float = math.nan
     displacement_error: float = math.nan
@@ -101,15 +97,14 @@ class Motion(Solved):
 
         One without a part of the design's energy in it stands still, and says so.
         """
-        exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
-        given: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
-        given |= {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
-        own: dict[str, Any] = {name: np.asarray(array, dtype=float) for name, array in given.items()}
+        own = {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
         own["starts_still"] = bool(result.starts_still)
-        own |= {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
+        if not hasattr(result, "constraint_residual"):  # where constraints are kept exactly
+            own["constraint_residual"] = np.zeros(len(result.time))
+        kinetic = np.asarray(result.kinetic_energy)
         if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
             own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
-        return cls(**cls.about(asked, result) | cls.ended(result) | own | seconds)
+        return cls.made(asked, result, **own, **seconds)
 
     @classmethod
     def without_start(cls, asked: Asked, message: str) -> "Motion":

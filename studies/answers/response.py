@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -133,16 +133,20 @@ class Solved(Answered):
         """Return the names of the arrays that are taken over from a model's own answer as they are."""
         return [each.name for each in fields(cls) if each.type == Array]
 
-    @staticmethod
-    def ended(result: Any) -> dict[str, Any]:
-        """Return how the bodies moved and how that ended; only some models say how well they resolve it."""
-        return {
+    @classmethod
+    def made(cls, asked: Asked, result: Any, **own: Any) -> Self:
+        """Return the neutral form of a model's path or motion, which has the arrays by the same names; `own`
+        are its times, and what else stands in their place. Only some models say how well they resolve it."""
+        arrays = {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
+        ended: dict[str, Any] = {
             "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
             "status": str(result.status.value),
             "message": result.message,
             "resolution": getattr(result, "resolution", ""),
             "counters": dict(result.counters),
         }
+        ended |= {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
+        return cls(**cls.about(asked, result) | ended | own)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,6 +183,12 @@ class Response(Solved):
         return getattr(self.design, "crossing_point", None)
 
     @property
+    def places(self) -> Array:
+        """(S, 2) load factor [1] and rotation [rad], NaN where no body turns."""
+        turns = np.full(len(self.load_factor), np.nan) if self.body is None else self.rotation
+        return np.stack((self.load_factor, turns), axis=1)
+
+    @property
     def centres(self) -> dict[str, Array]:
         """(S, 2) centres of mass of the bodies by name [m]."""
         return {name: place[:, :2] for name, place in self.bodies.items()}
@@ -208,6 +218,15 @@ class Response(Solved):
         """(S,) largest extreme-fibre stress over all strips [Pa]."""
         return np.asarray(self.extreme_fibre_stress.max(axis=(1, 2), initial=0.0))
 
+    @property
+    def yield_share(self) -> Array | None:
+        """(S,) largest stress over the yield strength of its strip [1]; None where a strip has none."""
+        limits = [strip.yield_strength for strip in self.design.strips]
+        if None in limits:
+            return None
+        worst = self.extreme_fibre_stress.max(axis=2) / np.array(limits, dtype=float)
+        return np.asarray(worst.max(axis=1))
+
     @cached_property
     def body_stiffness(self) -> Array:
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
@@ -219,10 +238,8 @@ class Response(Solved):
     @classmethod
     def of(cls, asked: Asked, result: Any, **seconds: float) -> "Response":
         """Return the neutral form of a model's path; seconds: its times."""
-        arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
         own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
-        answer = cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
-        return answer._with_shift()
+        return cls.made(asked, result, **own, **seconds)._with_shift()
 
     def _with_shift(self) -> "Response":
         """Return the answer of a pivot that estimates its path with the error of the centre shift as well."""

@@ -13,8 +13,7 @@ from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.cost import settings
 from studies.cost.limits import MATERIAL, path_limit, swing_limit
-from studies.cost.model import Failed
-from studies.cost.own import elements, spline
+from studies.cost.model import Failed, elements, spline
 from studies.cost.tried import PATH_JUDGED, SWING_ERRORS, cheapest, tried_paths, tried_swings
 from studies.kinds import Progress
 from studies.record.progress import silent

@@ -1,11 +1,18 @@
 """The models that are compared: what each answers, what all check alike, the pivot as it is given."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.motion import Motion
+from studies.answers.reference import RECORDS
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -31,10 +38,7 @@ class Model:
         return True
 
     def path(self, *args: Any, **settings: Any) -> Any:
-        """Drive the body of a design from rest to its rotation in its increments; return the path.
-
-        Args:
-            args: the design.
+        """Drive the body of a design, `args`, from rest to its rotation in its increments; return the path.
 
         Raises:
             BadInput: a design or setting out of range. Failed: the path is not reached.
@@ -42,15 +46,52 @@ class Model:
         raise NotImplementedError
 
     def swing(self, *args: Any, **settings: Any) -> Any:
-        """Let go of the body of a design at rest at its rotation; return the motion.
+        """Let go of the body of a design at rest at its rotation, for a duration [s]; return the motion.
 
-        Args:
-            args: the design, and the duration of the motion [s].
-
-        Raises:
-            BadInput: a design or setting out of range. Failed: the motion stopped early.
+        Raises: as of `path`.
         """
         raise NotImplementedError
+
+
+#: Schemes whose steps are far shorter than what happens between two records.
+EXPLICIT = ("leapfrog", "central-difference")
+
+
+@dataclass(eq=False, kw_only=True)
+class _Own(Model):
+    """A model of the suite; keywords in `settings` are those of its discretisation and its integrator."""
+
+    discretised: Callable[..., Settings]
+
+    def path(self, design: Design, *, accuracy: float | None = None, **settings: Any) -> Response:
+        """Return the path; `accuracy`: that a spline chooses its own control points for [1]."""
+        answer = answer_static(design, self.discretised(**settings), accuracy=accuracy)
+        if not answer.converged:
+            raise Failed(answer.message)
+        return answer
+
+    def swing(
+        self,
+        design: Design,
+        duration: float,
+        *,
+        integrator: str | None = None,
+        step: float | None = None,
+        **settings: Any,
+    ) -> Motion:
+        """Return the motion; the step [s] of an explicit scheme is its own, near the largest stable one."""
+        records = RECORDS if integrator in EXPLICIT else None
+        motion = answer_release(
+            *(design, self.discretised(**settings)),
+            duration=duration, records=records, integrator=integrator, step=step,
+        )  # fmt: skip
+        if not motion.converged:
+            raise Failed(motion.message)
+        return motion
+
+
+spline = _Own(name="spline", discretised=SplineSettings)
+elements = _Own(name="finite elements", discretised=FeSettings)
 
 
 def turns_of(problem: Problem) -> Array:

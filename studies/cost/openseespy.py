@@ -38,6 +38,8 @@ LINK_FACTOR = 1e6
 INCREMENT = np.pi / 40.0
 START_TOLERANCE = 1e-16
 MOST_ITERATIONS = 50
+#: Of the method of integration, 2/3 to 1: 1 has none of its damping.
+ALPHA = 0.9
 BODY = 1
 
 
@@ -74,7 +76,7 @@ class _OpenSees(Model):
             tolerance: of the energy of Newton's last iteration, in EI/L [1].
         """
         turns = turns_of(problem)
-        ops = _driven(problem, {"elements": elements, "tolerance": tolerance}, float(turns[1]), moving=False)
+        ops = _driven(problem, elements, tolerance, float(turns[1]), moving=False)
         begin, states, iterations = time.perf_counter(), [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
@@ -98,17 +100,11 @@ class _OpenSees(Model):
         step: float,
         elements: int = 20,
         tolerance: float = 1e-8,
-        alpha: float = 0.9,
     ) -> SolvedMotion:
-        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s].
-
-        Args:
-            alpha: of the method, 2/3 to 1 (1: none of its damping). Others as of `path`.
-        """
+        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s]; others as of
+        `path`."""
         steps = steps_of(duration, step)
-        ops = _let_go(
-            problem, {"elements": elements, "tolerance": tolerance, "alpha": alpha}, problem.rotation
-        )
+        ops = _let_go(problem, elements, tolerance, problem.rotation)
         begin, rotation, iterations = time.perf_counter(), np.full(steps + 1, problem.rotation), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
@@ -160,31 +156,30 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     return ops
 
 
-def _driven(problem: Problem, asked: dict[str, Any], increment: float, *, moving: bool) -> Any:
+def _driven(problem: Problem, elements: int, tolerance: float, increment: float, *, moving: bool) -> Any:
     """Return OpenSees ready to drive the body by equal increments [rad]."""
-    ops = _build(problem, asked["elements"], moving=moving)
+    ops = _build(problem, elements, moving=moving)
     ops.timeSeries("Linear", 1)
     ops.pattern("Plain", 1, 1)
     ops.load(BODY, 0.0, 0.0, 1.0)
     ops.integrator("DisplacementControl", BODY, 3, increment)
-    _solver(ops, problem, asked["tolerance"])
+    _solver(ops, problem, tolerance)
     ops.analysis("Static")
     return ops
 
 
-def _let_go(problem: Problem, asked: dict[str, Any], start: float) -> Any:
+def _let_go(problem: Problem, elements: int, tolerance: float, start: float) -> Any:
     """Return OpenSees at rest in the static state at `start`, without its moment, ready to move."""
     count = max(1, int(np.ceil(abs(start) / INCREMENT)))
-    strict = asked | {"tolerance": START_TOLERANCE}
-    ops = _driven(problem, strict, start / count, moving=True)
+    ops = _driven(problem, elements, START_TOLERANCE, start / count, moving=True)
     if ops.analyze(count) != 0:
         raise Failed(f"OpenSees: statics does not reach the start, {start:g} rad")
     moment = ops.getTime()
     ops.remove("loadPattern", 1)
     ops.wipeAnalysis()
     ops.setTime(0.0)
-    ops.integrator("HHT", asked["alpha"])
-    _solver(ops, problem, asked["tolerance"])
+    ops.integrator("HHT", ALPHA)
+    _solver(ops, problem, tolerance)
     ops.analysis("Transient")
     ops.setNodeAccel(BODY, 3, -moment / problem.body_moment_of_inertia, "-commit")
     return ops

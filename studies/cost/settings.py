@@ -12,9 +12,8 @@ from typing import Any
 
 from studies.cost.constraint_model import constraint_model
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.model import Model
+from studies.cost.model import Model, elements, spline
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.own import elements, spline
 from studies.cost.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.engine import lacking
 

@@ -15,7 +15,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.reference import SolvedPath, errors
 from studies.answers.response import Response
 from studies.cases.problem import named_case
-from studies.cost.own import spline
+from studies.cost.model import spline
 from studies.cost.settings import PSEUDO_RIGID, SURROGATES
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array

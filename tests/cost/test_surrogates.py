@@ -12,8 +12,7 @@ from studies.cases.problem import named_case
 from studies.cases.section import of_moments
 from studies.cost import one_coordinate
 from studies.cost.constraint_model import constraint_model
-from studies.cost.model import geometry_of
-from studies.cost.own import spline
+from studies.cost.model import geometry_of, spline
 from studies.cost.pseudo_rigid import (
     four_bar,
     linear_pivot,
