@@ -181,7 +181,9 @@ def _read() -> Answer:
     return {"readings": rows}
 
 
-READINGS = Study(parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)))
+READINGS = Study(
+    parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
+)
 """What the paper leaves open: how it integrates, where the centre of mass lies, gravity and damping.
 
 Coarser and finer quadratures of four control points as the paper has them, and what each open assumption
