@@ -108,7 +108,7 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 
 
-#: Duration of the motion and its steps, in swings of the first mode of the full scene: within 1e-4 of Table 1's.
+#: Duration of the motion and its steps, in swings of the first mode: within 1e-4 of that of Table 1.
 SWINGS, STEPS_A_SWING = 3.0, 240
 #: A scene whose first mode is off by more than this is not followed in motion: it is another machine.
 LOST = 1.0
