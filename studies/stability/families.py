@@ -4,21 +4,22 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain, pairwise, product
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.metrics import observed_order
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.metrics import differences, observed_order
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Part, Row
-from studies.kinds import Array
 from studies.record.digits import Digits
-from studies.stability.family import Question, Try, Way, answers_of, of_path
+from studies.stability.family import CHECK, REFINED, Question, Try, Way, answers_of, of_path
 from studies.stability.verdict import (
     COLUMNS,
     DEFAULT,
@@ -58,8 +59,7 @@ INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 def _slender_cases() -> Iterator[Question]:
     """Yield every slenderness at every rotation, and strips that cannot stretch."""
     rigid = {name: _inextensible(PATHS[name]) for name in (DEFAULT, LOCKING_FREE, SIX)}
-    refined, check = (SplineSettings(control_points=n, stretch="inextensible") for n in (14, 11))
-    finer: tuple[Way, Way] = (refined, {}), (check, {})
+    finer: tuple[Way, Way] = (_inextensible(REFINED), {}), (_inextensible(CHECK), {})
     for degrees in SLENDER_ROTATIONS:
         for slenderness in SLENDER:
             design = replace(_slender(slenderness), rotation=math.radians(degrees))
@@ -75,37 +75,32 @@ def _slender(slenderness: float) -> Problem:
     return replace(given, **of_moments(area, given.second_moment_of_area))
 
 
-def _inextensible(settings: Settings) -> Settings:
-    assert isinstance(settings, SplineSettings)
+def _inextensible(settings: Any) -> Any:
     return replace(settings, stretch="inextensible")
 
 
-def _limit() -> pd.DataFrame:
-    """Return, slenderness by slenderness, how six control points come to the inextensible strip.
+def _limit() -> Iterator[Row]:
+    """Yield, slenderness by slenderness, how six control points come to the inextensible strip.
 
     With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
     `lost_digits` is what the torques of neighbouring designs differ by beyond that law.
     """
-    six, rows = PATHS[SIX], []
-    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(six))
+    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(PATHS[SIX]))
 
-    def gap(one: Array, other: Array) -> float:
-        return float(np.abs(one - other).max() / np.abs(other).max())
+    def gap(one: Response, other: Response) -> float:
+        return float(differences(one, other, ("torque",))["torque"] or 0.0)
 
     for slenderness in SLENDER:
-        here, beside = (answer_static(_slender(slenderness * f), six) for f in (1.0, NEIGHBOUR))
-        error = gap(here.torque, rigid.torque)
-        rows.append(
-            {
-                "slenderness": slenderness,
-                "error": error,
-                "constant": error * slenderness**2,
-                "iterations": here.counters["newton_iterations"],
-                "iterations_inextensible": rigid.counters["newton_iterations"],
-                "lost_digits": abs(gap(here.torque, beside.torque) - error * (1.0 - NEIGHBOUR**-2)),
-            }
-        )
-    return pd.DataFrame(rows)
+        here, beside = (answer_static(_slender(slenderness * f), PATHS[SIX]) for f in (1.0, NEIGHBOUR))
+        error = gap(here, rigid)
+        yield {
+            "slenderness": slenderness,
+            "error": error,
+            "constant": error * slenderness**2,
+            "iterations": here.counters["newton_iterations"],
+            "iterations_inextensible": rigid.counters["newton_iterations"],
+            "lost_digits": abs(gap(here, beside) - error * (1.0 - NEIGHBOUR**-2)),
+        }
 
 
 SLENDERNESS = study(
@@ -177,11 +172,10 @@ POINTS, PAPER_POINTS = "Gauss points,\nmixed stretch", "Gauss points,\nconsisten
 def _discretised() -> Iterator[Question]:
     """Yield one path, asked with every count of axial modes, with and without slide stiffness, and of Gauss
     points; elements confirm the reference."""
-    tries = []
+    tries: list[Try] = []
 
     def add(panel: str, model: str, other: int, settings: SplineSettings) -> None:
-        place = {"panel": panel, "x": settings.points, "y": other}
-        tries.append(Try(place=place, model=model, settings=settings))
+        tries.append(({"panel": panel, "x": settings.points, "y": other}, model, settings, {}))
 
     for n in COUNTS:
         plain = SplineSettings(control_points=n)
@@ -194,7 +188,7 @@ def _discretised() -> Iterator[Question]:
             add(POINTS, VARIED, points, few)
             add(PAPER_POINTS, PAPER, points, replace(few, stretch="consistent", measure="spatial"))
     design = replace(named_case(), rotation=math.radians(45.0))
-    yield Question(place={"case": TABLE_1}, design=design, tries=tuple(tries))
+    yield Question(place={"case": TABLE_1}, design=design, tries=tries)
 
 
 AXIAL_MODES = study(
@@ -219,13 +213,13 @@ def _swinging(place: Row, step: float, **more: float) -> list[Try]:
     """Return the swings of all columns in steps of so long [s]."""
     implicit = {FE: {"integrator": "generalised-alpha"}}
     how = {name: {"step": step, **implicit.get(name, {}), **more} for name in SWINGING}
-    return [Try(place=place, model=name, settings=COLUMNS[name], how=own) for name, own in how.items()]
+    return [(place, name, COLUMNS[name], own) for name, own in how.items()]
 
 
 def _steps() -> Iterator[Question]:
     """Yield a swing from each start, asked in all steps: at least so many of them, and at most."""
     for degrees in STARTS:
-        tries = []
+        tries: list[Try] = []
         for step in STEPS:
             place = {"case": f"from {degrees} deg, {step:g} s", "x": step, "y": degrees}
             duration = min(max(round(SWING / step), FEWEST), MOST) * step
@@ -234,7 +228,7 @@ def _steps() -> Iterator[Question]:
             place={"case": f"from {degrees} deg"},
             design=named_case(),
             motion={"start": math.radians(degrees), "duration": SWING},
-            tries=tuple(tries),
+            tries=tries,
             refined=(FINE, {"step": FINE_STEP}),
             check=(FINE, {"step": COARSER_STEP}),
             arbiter=(INDEPENDENT, {}),
@@ -248,11 +242,10 @@ LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
 
 def _orders() -> pd.DataFrame:
     """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
-    motions = [
+    *answers, limit = (
         answer_release(named_case(), COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
         for step in (*ORDER_STEPS, LIMIT_STEP)
-    ]
-    *answers, limit = motions
+    )
     errors = [float(np.abs(answer.rotation - limit.rotation).max()) for answer in answers]
     orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
     resolved = ["no" if answer.resolution else "yes" for answer in answers]
@@ -304,7 +297,7 @@ def _ratios() -> Iterator[Question]:
             place={"case": case, "period_s": period},
             design=design,
             motion={"start": math.radians(START_DEG), "duration": period},
-            tries=tuple(_swinging(place, period / STEPS_A_PERIOD)),
+            tries=_swinging(place, period / STEPS_A_PERIOD),
             refined=(FINE, fine),
             check=(FINE, {"step": period / COARSER_STEPS}),
             arbiter=(INDEPENDENT, {"integrator": "generalised-alpha", **fine}),

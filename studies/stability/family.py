@@ -5,8 +5,8 @@ half of the tolerance and finite elements, which share nothing with it, agree wi
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -43,14 +43,8 @@ REFINED, CHECK = SplineSettings(control_points=14), SplineSettings(control_point
 ARBITER = FeSettings(elements=80)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Try:
-    """One answer that is asked for: its place in the tables, the column it counts for, and how it is made."""
-
-    place: Row
-    model: str
-    settings: Settings
-    how: How = field(default_factory=dict)
+#: One answer that is asked for: its place in the tables, the column it counts for, and how it is made.
+Try = tuple[Row, str, Settings, How]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +59,7 @@ class Question:
 
     place: Row
     design: Design
-    tries: tuple[Try, ...]
+    tries: Sequence[Try]
     motion: How | None = None
     refined: Way = (REFINED, {})
     check: Way = (CHECK, {})
@@ -102,7 +96,7 @@ def of_path(
     settings of columns of its own, and settings of its reference and of the check of it."""
     place = {"case": name, "x": x, "y": y}
     settings = PATHS | dict(own or {})
-    tries = tuple(Try(place=place, model=model, settings=each) for model, each in settings.items())
+    tries: list[Try] = [(place, model, each, {}) for model, each in settings.items()]
     return Question(place=place, design=design, tries=tries, refined=finer[0], check=finer[1])
 
 
@@ -110,9 +104,9 @@ def answers_of(question: Question) -> Answer:
     """Return how all who are asked end, a row each, and the row of the reference."""
     reference = question.answer(*question.refined)
     rows: list[Row] = []
-    for each in question.tries:
-        attempt = partial(question.found, each.settings, each.how, reference)
-        rows.append({**each.place, "model": each.model, **judged(attempt, TOLERANCE, each.model)})
+    for place, model, settings, how in question.tries:
+        attempt = partial(question.found, settings, how, reference)
+        rows.append({**place, "model": model, **judged(attempt, TOLERANCE, model)})
     confirmed = (row["error"] for row in rows if (row["model"], row["outcome"]) == (FE, RIGHT))
     gap = min(confirmed, default=math.inf)
     if not gap <= TOLERANCE:

@@ -49,23 +49,23 @@ def tip(angles: Array) -> Array:
     return np.stack((2.0 * ellipe(modulus**2) / first - 1.0, 2.0 * modulus / first), axis=-1)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _BucklingCase:
     """A question about a path with one number as its answer.
 
     Attributes:
-        frame: as loaded. follow_branch: whether the path is to leave the primary branch.
-        quantity: what is asked, with its unit. value: of a path; nan where the path does not have it.
+        frame: as loaded. quantity: what is asked, with its unit. value: of a path; nan where it has none.
         exact: in closed form, or nan. published: as printed, or nan.
+        follow_branch: whether the path is to leave the primary branch.
     """
 
     name: str
     frame: Frame
     quantity: str
     value: Callable[[Arc], float]
-    follow_branch: bool = False
     exact: float = math.nan
     published: float = math.nan
+    follow_branch: bool = False
 
     def arc(self, settings: Settings) -> Arc:
         """Return the path that is asked about."""
@@ -73,58 +73,37 @@ class _BucklingCase:
 
 
 def _cases() -> Iterator[_BucklingCase]:
-    """Yield all questions."""
+    """Yield all questions: of columns and frames, then of the pivot."""
     first = partial(Arc.critical_load, kind=BIFURCATION)
-    yield _BucklingCase(
-        name="column: critical load",
-        frame=published("column").frame(BEYOND),
-        quantity="bifurcation [EI/L^2]",
-        value=first,
-        # of a column that is shortened first: (1 - P / EA) P is Euler's
-        exact=SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2)),
-    )
+    # of a column that is shortened first: (1 - P / EA) P is Euler's
+    euler = SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2))
+    column, shallow = published("column"), published("williams_shallow_toggle")
+    yield _BucklingCase("column: critical load", column.frame(BEYOND), "bifurcation [EI/L^2]", first, euler)
     for degrees in PUBLISHED:
         name, angle = f"column: elastica at {degrees} deg", float(degrees)
-        yield _turned(name, bent_column(degrees), "tip angle [deg]", exact=angle, published=angle)
+        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", _turn, angle, angle, True)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
+            limit = partial(Arc.critical_load, kind=LIMIT, place=place)
+            which, unit = ("upper", "lower")[place], f"limit load [{value.unit}]"
             yield _BucklingCase(
-                name=f"{part}: {('upper', 'lower')[place]} limit load",
-                frame=published(name).frame(),
-                quantity=f"limit load [{value.unit}]",
-                value=partial(Arc.critical_load, kind=LIMIT, place=place),
-                published=value.published,
+                f"{part}: {which} limit load", published(name).frame(), unit, limit, published=value.published
             )
-    yield _BucklingCase(
-        name="toggle of rise 0.32 in: limit points",
-        frame=published("williams_shallow_toggle").frame(),
-        quantity="limit points [1]",
-        value=lambda arc: float(len(arc.critical)),
-        published=published("williams_shallow_toggle").values[0].published,
-    )
-    yield _BucklingCase(
-        name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
-        frame=pushed_pivot(SHALLOW),
-        quantity="unstable directions [1]",
-        value=lambda arc: float(arc.inertia[-1]),
-    )
-    yield _BucklingCase(
-        name="pivot pushed down: where its strips buckle",
-        frame=pushed_pivot(DEPTHS[0]),
-        quantity="bifurcation [m]",
-        value=first,
-    )
+    name, known = "toggle of rise 0.32 in: limit points", shallow.values[0].published
+    points, count = "limit points [1]", lambda arc: float(len(arc.critical))
+    yield _BucklingCase(name, shallow.frame(), points, count, published=known)
+    name, directions = f"pivot pushed down {1e3 * SHALLOW:g} mm: stable", "unstable directions [1]"
+    yield _BucklingCase(name, pushed_pivot(SHALLOW), directions, lambda arc: float(arc.inertia[-1]))
+    name = "pivot pushed down: where its strips buckle"
+    yield _BucklingCase(name, pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
     for depth in DEPTHS:
         name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
-        yield _turned(name, pushed_pivot(depth), "turn of the body [deg]")
+        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", _turn, follow_branch=True)
 
 
-def _turned(name: str, frame: Frame, quantity: str, **known: float) -> _BucklingCase:
-    """Return the question how far the other branch turns: of a column by the elastica, of the pivot beyond
-    the buckling of its strips."""
-    return _BucklingCase(
-        name=name, frame=frame, quantity=quantity, value=lambda arc: arc.turned, follow_branch=True, **known
-    )
+def _turn(arc: Arc) -> float:
+    """Return how far the other branch turns [deg]: of a column by the elastica, of the pivot by buckling."""
+    return arc.turned
 
 
 def bent_column(degrees: float) -> Frame:
