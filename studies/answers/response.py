@@ -70,9 +70,8 @@ class Answered:
         """Return what was asked, and of the model's own answer, where there is one, the settings that it has
         chosen for its accuracy and its estimate of its error."""
         estimate: Any = getattr(result, "estimate", None)
-        parts = None
-        if estimate is not None:
-            parts = asdict(estimate)
+        parts = None if estimate is None else asdict(estimate)
+        if parts is not None:
             parts |= dict(parts.pop("errors", {}))
         return {
             "design": asked.design,
@@ -113,10 +112,9 @@ class Solved(Answered):
 
     def __post_init__(self) -> None:
         """Make all arrays read only."""
-        for value in vars(self).values():
-            for array in value.values() if isinstance(value, dict) else (value,):
-                if isinstance(array, np.ndarray):
-                    read_only(array)
+        for array in (*vars(self).values(), *self.bodies.values()):
+            if isinstance(array, np.ndarray):
+                read_only(array)
 
     @property
     def rotation(self) -> Array:
@@ -247,25 +245,19 @@ class Response(Solved):
         known = next((found[name] for name in PLACES if name in found), None)
         if known is None or self.crossing is None:
             return self
-        accuracy = found["accuracy"]
         error = float(shift_error(np.array([known]), self.centre[None], self.centre_shift[None])[0])
-        remarks = [self.resolution]
-        if error > accuracy:
-            remarks.append(f"estimated error of the centre shift {error:.1e}, above {accuracy:g}")
+        above = f"estimated error of the centre shift {error:.1e}, above {found['accuracy']:g}"
+        remarks = (self.resolution, above if error > found["accuracy"] else "")
         return replace(
             self, estimate=found | {"centre_shift": error}, resolution="; ".join(filter(None, remarks))
         )
 
 
 def shift_error(error: Array, centre: Array, shift: Array) -> Array:
-    """Return errors of centre shifts (D,) [1], from those of the bodies' places, of D paths to given turns.
+    """Return errors of centre shifts (D, S, 2) [m] of D paths to given turns, in parts of the largest (D,) [1].
 
-    The shift errs as the centre does, but it is much smaller, so that in parts of the largest shift it errs
-    more. nan where nothing shifts.
-
-    Args:
-        error: of the places, in parts of the largest displacement (D,) [1].
-        centre, shift: (D, S, 2) [m].
+    The shift errs as the centre (D, S, 2) does, `error` in parts of its largest displacement, but it is much
+    smaller, so that it errs more. nan where nothing shifts.
     """
     moved, shifted = (
         np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)
@@ -302,7 +294,6 @@ def centre_shift(crossing: Any, rotation: Array, centre: Array) -> Array:
     crossing = np.asarray(crossing)[..., None, :]
     arm = crossing - centre[..., :1, :]
     cosine, sine = np.cos(rotation), np.sin(rotation)
-    turned = np.stack(
-        (cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]), axis=-1
-    )
+    along, across = cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]
+    turned = np.stack((along, across), axis=-1)
     return np.asarray(centre + turned - crossing)
