@@ -254,7 +254,7 @@ class Response(Solved):
 
 
 def shift_error(error: Array, centre: Array, shift: Array) -> Array:
-    """Return errors of centre shifts (D, S, 2) [m] of D paths to given turns, in parts of the largest (D,) [1].
+    """Return errors of centre shifts (D, S, 2) [m] of D paths to given turns, over the largest (D,) [1].
 
     The shift errs as the centre (D, S, 2) does, `error` in parts of its largest displacement, but it is much
     smaller, so that it errs more. nan where nothing shifts.

@@ -24,9 +24,8 @@ from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
-from studies.engine import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.record.digits import Digits
-from studies.record.style import BLUE, GREEN, ORANGE
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -60,82 +59,60 @@ STEPS_A_PERIOD = 20000
 BAND, SHARE, LEAST = (0.3, 10.0), 0.9, 1.0 / 3.0
 #: A true error counts if that of its reference is this many times smaller.
 MARGIN = 10.0
-QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
 
 
-def _drawn(
-    problem: Problem, bounds: Mapping[str, tuple[float, float]], *, count: int, seed: int
-) -> Iterator[Problem]:
-    """Yield `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
+def _drawn(bounds: Mapping[str, tuple[float, float]], count: int) -> Iterator[tuple[Row, Problem]]:
+    """Yield `count` pivots like Table 1 whose values fill the bounds evenly: a Latin hypercube; with the
+    columns that say which design it is.
 
-    Args:
-        problem: gives what is not drawn: length, width of the section, material, body.
-        bounds: of "slenderness" (L over the depth of the section, drawn evenly in its logarithm),
-            "crossing_ratio" [1], "inclination" [rad] and "rotation" [rad].
-        count: of pivots [1].
-        seed: of the Latin hypercube.
+    bounds: of L over the depth of the section, drawn evenly in its logarithm, crossing ratio [1], inclination
+    and rotation [rad].
     """
-    names = ("slenderness", "crossing_ratio", "inclination", "rotation")
-    low, high = np.array([bounds[name] for name in names]).T
+    given = named_case()
+    low, high = np.array([*bounds.values()]).T
     low[0], high[0] = math.log(low[0]), math.log(high[0])
-    points = qmc.scale(qmc.LatinHypercube(d=len(names), seed=seed).random(count), low, high)
-    width = problem.area / problem.depth
-    for logarithm, crossing_ratio, inclination, rotation in points:
-        depth = problem.length / math.exp(logarithm)
-        yield replace(
-            problem,
-            **of_moments(width * depth, width * depth**3 / 12.0),
-            crossing_ratio=float(crossing_ratio),
-            inclination=float(inclination),
-            rotation=float(rotation),
-        )
+    points = qmc.scale(qmc.LatinHypercube(d=len(bounds), seed=SEED).random(count), low, high)
+    width = given.area / given.depth
+    for number, (logarithm, *others) in enumerate(points):
+        depth = given.length / math.exp(logarithm)
+        values: dict[str, Any] = dict(zip([*bounds][1:], map(float, others), strict=True))
+        problem = replace(given, **of_moments(width * depth, width * depth**3 / 12.0), **values)
+        identity = {"design": number, "slenderness": problem.length / problem.depth}
+        identity |= {"crossing_ratio": problem.crossing_ratio, "inclination_rad": problem.inclination}
+        yield identity | {"rotation_rad": problem.rotation}, problem
 
 
-def _described(number: int, problem: Problem) -> dict[str, float]:
-    """Return the columns that say which design a row is of."""
-    return {
-        "design": number,
-        "slenderness": problem.length / problem.depth,
-        "crossing_ratio": problem.crossing_ratio,
-        "inclination_rad": problem.inclination,
-        "rotation_rad": problem.rotation,
-    }
-
-
-def _static(number: int, problem: Problem) -> Answer:
+def _static(design: Row, problem: Problem) -> Answer:
     """Return the rows of one design's static paths, those of the stress in a table of their own."""
-    rows: dict[str, list[dict[str, Any]]] = {"estimates": [], "stress": []}
+    rows: dict[str, list[Row]] = {"estimates": [], "stress": []}
     exact, check = (answer_static(problem, SplineSettings(control_points=n)) for n in (REFERENCE, CHECK))
     uncertainty = _path_errors(check, exact)
     for accuracy in ACCURACIES:
         answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "statics", **_described(number, problem), "accuracy": accuracy}
+        identity = {"problem": "statics", **design, "accuracy": accuracy}
         for quantity, error in _path_errors(answer, exact).items():
             row = identity | _judged(quantity, "1", error, uncertainty[quantity], answer)
             rows["stress" if quantity == "stress" else "estimates"].append(row)
     return rows
 
 
-def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
-    """Yield the rows of one design's swings."""
-    # of the slowest small swing at rest
+def _swings(design: Row, problem: Problem) -> Answer:
+    """Return the rows of one design's swings, of a period of the slowest small swing at rest."""
     period = 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     let_go = partial(answer_release, problem, duration=PERIODS * period)
     exact, check = (
         let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)
         for n in (SWING_REFERENCE, SWING_CHECK)
     )
-    uncertainty = _swing_error(check, exact)
+    rows, uncertainty = [], _swing_error(check, exact)
     for accuracy in SWING_ACCURACIES:
         answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "motion", **_described(number, problem), "accuracy": accuracy}
-        error = _swing_error(answer, exact)
-        yield identity | _judged("rotation", "rad", error, uncertainty, answer)
+        judged = _judged("rotation", "rad", _swing_error(answer, exact), uncertainty, answer)
+        rows.append({"problem": "motion", **design, "accuracy": accuracy, **judged})
+    return {"estimates": rows}
 
 
-def _judged(
-    quantity: str, unit: str, error: float, uncertainty: float, answer: Response | Motion
-) -> dict[str, Any]:
+def _judged(quantity: str, unit: str, error: float, uncertainty: float, answer: Response | Motion) -> Row:
     """Return the columns that hold an answer's estimate against a true error."""
     estimate = answer.estimate or {}
     estimated = estimate.get(quantity, math.nan)
@@ -167,7 +144,7 @@ def _swing_error(motion: Motion, exact: Motion) -> float:
     return rotation_error(motion, exact, motion.time) if whole else math.nan
 
 
-def _timed(accuracy: float) -> dict[str, Any]:
+def _timed(accuracy: float) -> Row:
     """Return what a search costs over the plain path with the control points that it chose."""
     searched = answer_static(named_case(), SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
     chosen = (searched.estimate or {})["control_points"]
@@ -181,7 +158,7 @@ def _timed(accuracy: float) -> dict[str, Any]:
     }
 
 
-def _of_problems(tables: Tables) -> Iterator[dict[str, Any]]:
+def _of_problems(tables: Tables) -> Iterator[Row]:
     """Yield, for statics, for motion, and for the largest stress in statics, how good the estimates are."""
     stress = tables["stress"]
     known = stress[stress["uncertainty"] <= stress["accuracy"]]
@@ -226,11 +203,8 @@ DIGITS: dict[str, Digits | None] = {
 
 STUDY = Study(
     parts=(
-        Part(at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)), ask=_static),
-        Part(
-            at=lambda: enumerate(_drawn(named_case(), SWING_BOUNDS, count=SWINGS, seed=SEED)),
-            ask=lambda *design: {"estimates": _swing_rows(*design)},
-        ),
+        Part(at=lambda: _drawn(BOUNDS, DESIGNS), ask=_static),
+        Part(at=lambda: _drawn(SWING_BOUNDS, SWINGS), ask=_swings),
         Part(at=lambda: ACCURACIES, ask=lambda each: {"timings": _timed(each)}, alone=True),
     ),
     claims=tuple(
