@@ -98,10 +98,8 @@ class Found:
 def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> Row:
     """Return how `attempt` of a column ends, right within `tolerance` [1], as columns of a table.
 
-    Columns: outcome, one of `OUTCOMES`; error [1]; reason in words; iterations and halvings; stopped, whether
-    it did not reach its end, and warned, whether its own check finds it unresolved, be that counted for this
-    `model` or not: with both, every model can be judged with its own warnings and without; and what was
-    measured beside.
+    Stopped and warned, the latter whether it counts for this `model` or not, are there so that every model
+    can be judged with its own warnings and without.
 
     An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
     refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
@@ -109,11 +107,10 @@ def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> R
     outcome = ""
     try:
         found = attempt()
-    except BadInput as refusal:
-        outcome, found = BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split()))
     except Exception as fault:  # whatever escapes a model is an outcome to be counted, not the study's end
-        reason = " ".join(f"{type(fault).__name__}: {fault}".split())
-        outcome, found = WRONG, Found(error=math.nan, reason=reason)
+        outcome = BAD_INPUT if isinstance(fault, BadInput) else WRONG
+        kind = "" if outcome == BAD_INPUT else f"{type(fault).__name__}: "
+        found = Found(error=math.nan, reason=" ".join(f"{kind}{fault}".split()))
     warning = "" if model in UNCHECKED else found.warning
     work = found.counters
     return {
@@ -158,15 +155,12 @@ def study(*parts: Part, **declared: Any) -> Study:
 
 def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
     """Return a row a model of `outcomes`: cases tried, one column an outcome, largest right error."""
-    rows = []
-    for model in ORDER:
-        mine = outcomes[outcomes["model"] == model]
-        if mine.empty:
-            continue
-        found = {outcome: int((mine["outcome"] == outcome).sum()) for outcome in OUTCOMES}
-        largest = mine.loc[mine["outcome"] == "right", "error"].max()
-        rows.append({"model": model, "tried": len(mine), **found, "largest_right_error": largest})
-    return pd.DataFrame(rows)
+    ended = pd.crosstab(outcomes["model"], outcomes["outcome"])
+    models = [model for model in ORDER if model in ended.index]
+    found = ended.reindex(index=models, columns=list(OUTCOMES), fill_value=0).rename_axis(columns=None)
+    found.insert(0, "tried", found.sum(axis=1))
+    right = outcomes[outcomes["outcome"] == RIGHT]
+    return found.assign(largest_right_error=right.groupby("model")["error"].max()).reset_index()
 
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
