@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 from studies.answers.reference import largest_errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import TABLE_1, named_case
+from studies.cost import tried
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.limits import MATERIAL, SHEAR, path_limits, swing_limits
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import (
@@ -37,7 +37,6 @@ from studies.cost.settings import (
     paths,
     swings,
 )
-from studies.cost.tried import PATH_JUDGED, cheapest, kept, spread, tried_paths, tried_swings
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.paper.formulations import INSTANTS
 from studies.record.marks import Level
@@ -76,28 +75,29 @@ def _codes() -> list[dict[str, str]]:
 def _paths() -> Answer:
     """Return limits, errors and times of the static path."""
     design = named_case()
-    limits, rows = path_limits(design)
+    limits, rows = tried.path_limits(design)
     finest = []
     for model, settings in FINEST.items():
         if model.installed():
-            theory = SHEAR if model.sheared else MATERIAL
+            theory = tried.SHEAR if model.sheared else tried.MATERIAL
             apart = largest_errors(model.path(design, **settings), limits[theory])
             finest.append({"model": model.name, "elements": settings["elements"], "theory": theory, **apart})
-    tried = tried_paths(paths(), design, limits)
-    return {"path_limits": rows, "finest": finest, **_apart("paths", tried)}
+    found = tried.tried_paths(paths(), design, limits)
+    return {"path_limits": rows, "finest": finest, **_apart("paths", found)}
 
 
 def _swings() -> Answer:
     """Return limits, errors and times of the swing."""
     design = named_case()
-    limits, rows = swing_limits(design, INSTANTS)
-    return {"swing_limits": rows, **_apart("swings", tried_swings(swings(), design, INSTANTS, limits))}
+    limits, rows = tried.swing_limits(design, INSTANTS)
+    found = tried.tried_swings(swings(), design, INSTANTS, limits)
+    return {"swing_limits": rows, **_apart("swings", found)}
 
 
-def _apart(name: str, tried: pd.DataFrame) -> dict[str, pd.DataFrame]:
+def _apart(name: str, found: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return errors and work, and the times, as tables of their own."""
-    timed = tried[tried["runs"] > 0]
-    return {name: tried.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*NAMED, *TIMES]]}
+    timed = found[found["runs"] > 0]
+    return {name: found.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*NAMED, *TIMES]]}
 
 
 def _joined(tables: Tables, name: str) -> pd.DataFrame:
@@ -115,21 +115,17 @@ def _ratios(name: str, judged: Sequence[str], levels: Sequence[float]) -> Callab
         rows, found = _joined(tables, name), []
         for level in levels:
             sure = rows[~rows["theory"].isin(_unsure(tables, name, level))]
-            best = {row["group"]: row for row in cheapest(sure, judged, level).to_dict("records")}
+            best = {row["group"]: row for row in tried.cheapest(sure, judged, level).to_dict("records")}
             if not best[SPLINE]["meets"]:
                 continue
             mine = best[SPLINE]["whole_s"]
-            for group in (each for each in GROUPS if each in best):
-                row = best[group]
-                told = {"setting": "", **dict.fromkeys(TIMES[:-1], np.nan)}
-                if row["meets"]:
-                    told = {each: row[each] for each in told}
-                    told["setting"] = f"{row['model']}, {row['setting']}"
-                found.append(
-                    {"level": level, "group": group, **told, "ratio": told["whole_s"] / mine}
-                    | {"spline": best[SPLINE]["setting"], "spline_s": mine}
-                    | {"spline_solve_s": best[SPLINE]["solve_s"]}
-                )
+            known = {"spline": best[SPLINE]["setting"], "spline_s": mine}
+            known["spline_solve_s"] = best[SPLINE]["solve_s"]
+            for row in (best[group] for group in GROUPS if group in best):
+                told = {each: row[each] if row["meets"] else np.nan for each in TIMES[:-1]}
+                setting = f"{row['model']}, {row['setting']}" if row["meets"] else ""
+                place = {"level": level, "group": row["group"], "setting": setting}
+                found.append(place | told | {"ratio": told["whole_s"] / mine} | known)
         return found
 
     return made
@@ -140,7 +136,7 @@ def _unsure(tables: Tables, name: str, level: float) -> list[str]:
     limits = tables[f"{name[:-1]}_limits"]
     of = "rotation_rad" if name == "swings" else "uncertainty"
     if name == "paths":
-        limits = limits[limits["quantity"].isin(PATH_JUDGED)]
+        limits = limits[limits["quantity"].isin(tried.PATH_JUDGED)]
     return list(limits.loc[CERTAINTY * limits[of] > level, "theory"])
 
 
@@ -172,7 +168,7 @@ def _waited(label: str) -> Answer:
     )
     whole = [_process(*command)[0] for _ in range(PROCESSES)]
     times = {"command line": whole, "import of the suite": imported, "first call": first}
-    rows = [{"model": label, "what": what} | spread(each, each) for what, each in times.items()]
+    rows = [{"model": label, "what": what} | tried.spread(each, each) for what, each in times.items()]
     return {"waits_of_time": [{k: v for k, v in row.items() if k != "solve_s"} for row in rows]}
 
 
@@ -199,9 +195,9 @@ def _figure(tables: Tables) -> Figure:
     path = Axis("error", "larger error of trajectory and torque [1]", log=True)
     swing = Axis("error", "largest error of the rotation [rad]", log=True)
     limits = tables["swing_limits"].set_index("theory")["rotation_rad"]
-    doubts = [Level(float(limits[SHEAR]), words="limit with shear", line=":", place=1.0)]
+    doubts = [Level(float(limits[tried.SHEAR]), words="limit with shear", line=":", place=1.0)]
     panels = [
-        _panel(tables, "paths", PATH_JUDGED, path, "Static path to 90° in 20 increments"),
+        _panel(tables, "paths", tried.PATH_JUDGED, path, "Static path to 90° in 20 increments"),
         _panel(tables, "swings", SWING_JUDGED, swing, "Free swing of 0.05 s from 90°", *doubts),
     ]
     return sheet(9.5, 4.4, [panels], legend=3)
@@ -211,7 +207,7 @@ def _panel(tables: Tables, name: str, judged: Sequence[str], y: Axis, title: str
     """Return the panel of a task: of each group the settings that keep an error which none that is faster
     keeps, as the table of ratios has them."""
     rows = _joined(tables, name)
-    rows = rows.assign(error=kept(rows, judged))
+    rows = rows.assign(error=tried.kept(rows, judged))
     rows = rows[(rows["status"] == "converged") & np.isfinite(rows["error"])].sort_values("whole_s")
     best = rows[rows["error"] == rows.groupby("group")["error"].cummin()]
     best = best[~best.duplicated(["group", "error"]) & best["group"].isin(LOOKS)]
@@ -227,7 +223,7 @@ STUDY = Study(
         Part(at=lambda: tuple(WAITED), ask=_waited, alone=True),
     ),
     made={
-        "path_ratios": _ratios("paths", PATH_JUDGED, LEVELS),
+        "path_ratios": _ratios("paths", tried.PATH_JUDGED, LEVELS),
         "swing_ratios": _ratios("swings", SWING_JUDGED, SWING_LEVELS),
     },
     varying=("path_ratios", "swing_ratios"),
