@@ -26,7 +26,7 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, checked_choice, steps_of, turns_of
+from studies.cost.model import Failed, Model, steps_of, turns_of
 from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.
@@ -82,7 +82,6 @@ class Exudyn(Model):
             relative_tolerance: of Newton's residual against that at the step's start [1].
             solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
         """
-        checked_choice("solver", solver, SOLVERS)
         system, turns = self.system_of(problem, **settings), turns_of(problem)
         asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
         solved, seconds = _driven(system, asked, turns)

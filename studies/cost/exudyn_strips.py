@@ -35,7 +35,7 @@ import numpy as np
 
 from studies.cases.problem import Problem
 from studies.cost.exudyn_solve import Exudyn, System
-from studies.cost.model import checked_count, geometry_of
+from studies.cost.model import geometry_of
 from studies.kinds import Array
 
 #: Shear correction of a rectangular section, k.
@@ -108,7 +108,6 @@ def _hold(items: Any, mbs: Any, zero: int, node: int, coordinate: int) -> None:
 
 def _cables(problem: Problem, *, elements: int = 8) -> System:
     """Return the pivot with so many ANCF cables a strip [1]."""
-    checked_count("elements", elements, 1)
 
     def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
         places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
@@ -152,7 +151,6 @@ def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None
 
 def _beams(problem: Problem, *, elements: int = 4) -> System:
     """Return the pivot with so many exact beams a strip, of three nodes each [1]."""
-    checked_count("elements", elements, 1)
     modulus = problem.youngs_modulus
     shear_modulus = modulus / (2.0 * (1.0 + problem.poisson_ratio))
 

@@ -110,18 +110,6 @@ def steps_of(duration: float, step: float) -> int:
     return max(1, round(duration / step))
 
 
-def checked_choice(name: str, value: Any, choices: tuple[Any, ...]) -> None:
-    """Raise BadInput unless `value` is one of `choices`."""
-    if value not in choices:
-        raise BadInput(f"{name}: got {value!r}, expected one of {', '.join(map(repr, choices))}")
-
-
-def checked_count(name: str, value: Any, least: int) -> None:
-    """Raise BadInput unless `value` is a whole number of at least `least`."""
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise BadInput(f"{name}: got {value!r}, expected a whole number of at least {least}")
-
-
 #: The effects of a scene that all models of the comparison have: what they leave out of these is their error.
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
@@ -153,15 +141,11 @@ def geometry_of(problem: Problem) -> Geometry:
     """
     if set(problem.effects.names) != set(EFFECTS):
         raise BadInput(f"effects: got {', '.join(problem.effects.names)}, expected {', '.join(EFFECTS)}")
-    cosine, sine = math.cos(problem.inclination), math.sin(problem.inclination)
-    crossing = np.array(problem.crossing_point)
-    direction = np.array([[cosine, sine], [-cosine, sine]])
-    root = crossing - problem.crossing_ratio * problem.length * direction
-    tip = root + problem.length * direction
+    root, tip = (np.array([getattr(strip, end) for strip in problem.strips]) for end in ("start", "end"))
     return Geometry(
         root=root,
-        direction=direction,
+        direction=(tip - root) / problem.length,
         tip=tip,
-        crossing=crossing,
-        centre=tip.mean(axis=0) + np.array(problem.centre_offset),
+        crossing=np.array(problem.crossing_point),
+        centre=np.array(problem.bodies[0].centre),
     )

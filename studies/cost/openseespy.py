@@ -30,7 +30,7 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, checked_count, geometry_of, steps_of, turns_of
+from studies.cost.model import Failed, Model, geometry_of, steps_of, turns_of
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -129,7 +129,6 @@ def _counters(ops: Any, iterations: int) -> dict[str, int]:
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     """Make nodes, strips and body anew, OpenSees having one model at a time; with masses if it is to move."""
-    checked_count("elements", elements, 1)
     ops, at_rest = _loaded(), geometry_of(problem)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)

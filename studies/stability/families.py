@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import chain, pairwise, product
 from typing import Any
 
@@ -52,6 +53,7 @@ ROTATION = study(
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
 SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
+_inextensible: Any = partial(replace, stretch="inextensible")
 #: Slenderness that stands for inextensible strips, and factor between neighbours that may lose no digits.
 INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 
@@ -73,10 +75,6 @@ def _slender(slenderness: float) -> Problem:
     given = named_case()
     area = 12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2
     return replace(given, **of_moments(area, given.second_moment_of_area))
-
-
-def _inextensible(settings: Any) -> Any:
-    return replace(settings, stretch="inextensible")
 
 
 def _limit() -> Iterator[Row]:
@@ -137,9 +135,10 @@ def _others() -> Iterator[Question]:
         "parallel strips, a tenth of a length apart": (first, _beside(first, length / 10.0)),
         "second strip 0.7 as long": (first, replace(second, start=shorter)),
         "strips at 45 and 59 degrees": (first, replace(second, start=(0.6 * second.start[0], 0.0))),
-        "second strip 10 times as stiff": (first, _thicker(second, 10.0)),
-        "second strip 100 times as stiff": (first, _thicker(second, 100.0)),
     }
+    for factor in (10.0, 100.0):  # by its depth
+        moments = of_moments(second.area * factor ** (1.0 / 3.0), second.second_moment_of_area * factor)
+        pairs[f"second strip {factor:g} times as stiff"] = (first, replace(second, **moments))
     for one, other in ((0.05, 0.05), (0.05, -0.05), (-0.05, 0.05), (0.15, 0.15), (0.15, -0.15)):
         curved = (replace(first, rise=one * length), replace(second, rise=other * length))
         pairs[f"curved at rest, sagitta {one:+g} and {other:+g} L"] = curved
@@ -151,12 +150,6 @@ def _beside(strip: Strip, by: float) -> Strip:
     """Return the second strip parallel to a first one."""
     (x, y), (end_x, end_y) = strip.start, strip.end
     return replace(strip, name=STRIPS[1], start=(x + by, y), end=(end_x + by, end_y))
-
-
-def _thicker(strip: Strip, factor: float) -> Strip:
-    """Return the strip with its depth grown so that it bends `factor` times as hard."""
-    thicker = of_moments(strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor)
-    return replace(strip, **thicker)
 
 
 GEOMETRY = study(
@@ -263,20 +256,16 @@ FACTORS, STIFFER = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6), (1e2, 1e4)
 START_DEG = 30.0
 #: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
 STEPS_A_PERIOD, REFINED_STEPS, COARSER_STEPS = 200, 1600, 800
-KINDS = ("mass and inertia", "mass alone", "inertia alone")
+_MASS, _INERTIA = "body_mass", "body_moment_of_inertia"
+KINDS = {"mass and inertia": (_MASS, _INERTIA), "mass alone": (_MASS,), "inertia alone": (_INERTIA,)}
 
 
 def _designs() -> Iterator[tuple[str, str, float, Design]]:
     """Yield all designs with a ratio at its end: name, kind (a line of the map), factor (its place there)."""
     given = named_case()
-    mass, inertia = given.body_mass, given.body_moment_of_inertia
-    for kind, factor in product(KINDS, FACTORS):
-        design = replace(
-            given,
-            body_mass=mass if kind == KINDS[2] else factor * mass,
-            body_moment_of_inertia=inertia if kind == KINDS[1] else factor * inertia,
-        )
-        yield f"body: {kind} x {factor:g}", kind, factor, design
+    for (kind, names), factor in product(KINDS.items(), FACTORS):
+        changed: Any = {name: factor * getattr(given, name) for name in names}
+        yield f"body: {kind} x {factor:g}", kind, factor, replace(given, **changed)
     yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
     without = [name for name in given.effects.names if name != "strip_inertia"]
     yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
