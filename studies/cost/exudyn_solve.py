@@ -56,6 +56,10 @@ class System:
     place: int
     reaction: int
 
+    def stored(self, sensor: int) -> Array:
+        """Return what a sensor has kept of the last run: time or load factor, then its values."""
+        return np.array(self.mbs.GetSensorStoredData(sensor))
+
 
 @dataclass(eq=False, kw_only=True)
 class Exudyn(Model):
@@ -85,9 +89,14 @@ class Exudyn(Model):
         system, turns = self.system_of(problem, **settings), turns_of(problem)
         asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
         solved, seconds = _driven(system, asked, turns)
-        centre, torque = _path(system)
+        moved, torque = (system.stored(sensor) for sensor in (system.place, system.reaction))
+        rest = np.array(system.mbs.GetNode(system.body)["referenceCoordinates"][:2])
         return SolvedPath(
-            rotation=turns, centre=centre, torque=torque, solve_s=seconds, counters=_counters(solved)
+            rotation=turns,
+            centre=moved[:, 1:3] + rest,
+            torque=torque[:, 1],
+            solve_s=seconds,
+            counters=_counters(solved),
         )
 
     def swing(
@@ -108,10 +117,13 @@ class Exudyn(Model):
         steps = steps_of(duration, step)
         system = self.system_of(problem, **settings)
         _hold_at(system, problem.rotation)
-        moving = _dynamic(system, duration, steps, relative_tolerance, spectral_radius)
-        solver = system.exu.MainSolverImplicitSecondOrder()
-        seconds = _run(system, solver, moving)
-        record = np.array(system.mbs.GetSensorStoredData(system.place))
+        asked, solver = _quiet(system), system.exu.MainSolverImplicitSecondOrder()
+        moving = asked.timeIntegration
+        moving.endTime, moving.numberOfSteps, moving.verboseMode = duration, steps, 0
+        moving.generalizedAlpha.spectralRadius = spectral_radius
+        _tune(system, asked, moving, relative_tolerance)
+        seconds = _run(system, solver, asked)
+        record = system.stored(system.place)
         return SolvedMotion(
             time=record[:, 0],
             rotation=record[:, 3],
@@ -160,14 +172,6 @@ def _run(system: System, solver: Any, asked: Any) -> float:
     return seconds
 
 
-def _path(system: System) -> tuple[Array, Array]:
-    """Return centres (S, 2) [m] and torques (S,) [N m] of the run that was recorded last."""
-    node = system.mbs.GetNode(system.body)
-    moved = np.array(system.mbs.GetSensorStoredData(system.place))[:, 1:3]
-    torque = np.array(system.mbs.GetSensorStoredData(system.reaction))[:, 1]
-    return moved + np.array(node["referenceCoordinates"][:2]), torque
-
-
 def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any:
     """Return the settings of the static solver."""
     asked = _quiet(system)
@@ -178,18 +182,6 @@ def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any
         static.computeLoadsJacobian = 0
         static.newton.modifiedNewtonContractivity = CONTRACTION
         _tune(system, asked, static, tolerance)
-    return asked
-
-
-def _dynamic(system: System, duration: float, steps: int, tolerance: float, radius: float) -> Any:
-    """Return the settings of the generalised-alpha solver."""
-    asked = _quiet(system)
-    moving = asked.timeIntegration
-    moving.endTime = duration
-    moving.numberOfSteps = steps
-    moving.verboseMode = 0
-    moving.generalizedAlpha.spectralRadius = radius
-    _tune(system, asked, moving, tolerance)
     return asked
 
 

@@ -15,7 +15,6 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -24,7 +23,7 @@ from fe_reference import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import TABLE_1, Problem, named_case
-from studies.engine import Answer, Claim, Part, Study
+from studies.engine import Answer, Claim, Part, Row, Study
 from studies.errors import BadInput
 from studies.published import case
 from studies.published.arcs import LIMIT, REACHED, Arc, arc_of
@@ -48,21 +47,16 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     Raises:
         BadInput: what the model refuses to be asked.
     """
-    problem = published(name)
-    if isinstance(problem.design, Problem):
-        found = _of_pivot(problem.design, SETTINGS[model], value)
+    design = published(name).design
+    if isinstance(design, Problem):  # the shift of the crossing point over the length at a rotation
+        response = answer_static(replace(design, rotation=math.radians(value.at)), SETTINGS[model])
+        found = float(np.hypot(*response.centre_shift[-1]) / design.length)
     elif value.quantity in AXES:
         found = _moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
         arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
     return found / value.scale
-
-
-def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
-    """Return the shift of the crossing point over the length at a rotation."""
-    response = answer_static(replace(pivot, rotation=math.radians(value.at)), settings)
-    return float(np.hypot(*response.centre_shift[-1]) / pivot.length)
 
 
 @cache
@@ -138,19 +132,16 @@ def _asked() -> Iterator[tuple[str, str, str]]:
 
 def _compared(name: str, model: str, answer: str) -> Answer:
     """Return a row a value: as it is in print, as it was found, and whether it is met."""
-    problem = published(name)
-    asked = (value for value in problem.values if model in value.models)
-    return {"values": [_row(name, model, answer, value) for value in asked]}
+    values = published(name).values
+    return {"values": [_row(name, model, answer, value) for value in values if model in value.models]}
 
 
-def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
-    problem = published(name)
+def _row(name: str, model: str, answer: str, value: Value) -> Row:
+    problem, limit = published(name), value.limits[answer]
     try:
         found, message = ours(name, model, answer, value), ""
     except BadInput as refusal:
         found, message = np.nan, str(refusal)
-    limit = value.limits[answer]
-    error = (found - value.published) / (abs(value.published) or 1.0)
     return {
         "problem": problem.title,
         "case": name,
@@ -158,7 +149,7 @@ def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
         "answer": answer,
         **{column: getattr(value, column) for column in OF_VALUES},
         "found": found,
-        "error": error,
+        "error": (found - value.published) / (abs(value.published) or 1.0),
         "limit": limit,
         "within": "yes" if value.met(found, limit) else "no",
         "message": message,
