@@ -24,25 +24,12 @@ from studies.cost import tried
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import (
-    AS_DELIVERED,
-    ELEMENTS,
-    EXUDYN,
-    GROUPS,
-    HINT,
-    ITSELF,
-    OPENSEES,
-    SPLINE,
-    missing,
-    paths,
-    swings,
-)
+from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.paper.formulations import INSTANTS
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
-from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
 #: Finest settings of the other codes, for the limits that they tend to by themselves.
 FINEST: dict[Model, dict[str, Any]] = {
@@ -177,17 +164,6 @@ def _process(*words: str) -> tuple[float, str]:
     begin = time.perf_counter()
     done = subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, check=True)
     return time.perf_counter() - begin, done.stdout
-
-
-#: Looks by group: a colour a code.
-LOOKS = {
-    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
-    ITSELF: Look(label="spline, by itself", colour=SKY, line="--", marker="D"),
-    ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
-    EXUDYN: Look(label="Exudyn, tuned", colour=PURPLE, marker="^"),
-    AS_DELIVERED: Look(label="Exudyn as delivered", colour=PURPLE, line=":", marker="v"),
-    OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
-}
 
 
 def _figure(tables: Tables) -> Figure:

@@ -14,18 +14,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.reference import (
-    QUANTITIES,
-    NoReference,
-    Reference,
-    SwingReference,
-    largest_errors,
-    reference,
-    rotation_error,
-    sampled,
-    swing_reference,
-)
+from studies.answers.reference import Reference, SwingReference, rotation_error, sampled
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
@@ -62,12 +53,12 @@ def path_limit(design: Design, theory: str) -> Reference:
         NoReference: a model does not reach the end of the path.
     """
     if theory != SPATIAL:
-        return reference(design, "corotational" if theory == MATERIAL else "reissner")
+        return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
     paper: dict[str, Any] = {"measure": theory, "stretch": "consistent"}
     fine, coarse = (answer_static(design, SplineSettings(control_points=n, **paper)) for n in SPATIAL_POINTS)
     for path in (fine, coarse):
         if not path.converged:
-            raise NoReference(path.message)
+            raise reference.NoReference(path.message)
     return Reference.of(
         fine, coarse, "spline with {} control points; its distance to one with {}".format(*SPATIAL_POINTS)
     )
@@ -81,11 +72,11 @@ def path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
             "theory": theory,
             "quantity": name,
             "uncertainty": limit.uncertainty[name],
-            "distance_to_material": largest_errors(limit, limits[MATERIAL])[name],
+            "distance_to_material": reference.largest_errors(limit, limits[MATERIAL])[name],
             "source": limit.source,
         }
         for theory, limit in limits.items()
-        for name in QUANTITIES
+        for name in reference.QUANTITIES
     ]
     return limits, rows
 
@@ -105,7 +96,7 @@ def swing_limit(
             duration=float(instants[-1]), records=RECORDS, integrator=integrator, step=step,
         )  # fmt: skip
         if not motion.converged:
-            raise NoReference(f"reference with {n} control points: {motion.message}")
+            raise reference.NoReference(f"reference with {n} control points: {motion.message}")
         found.append(sampled(motion, instants))
     fine, coarse = found
     uncertainty = {
@@ -119,7 +110,7 @@ def swing_limit(
 def swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
     """Return the swing of either theory at the instants, with rows of how certain they are."""
     with_rotary = replace(problem, effects=problem.effects.renamed([*problem.effects.names, ROTARY]))
-    sheared = swing_reference(
+    sheared = reference.swing_reference(
         with_rotary,
         duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",
     )  # fmt: skip
@@ -160,7 +151,7 @@ def tried_paths(
     """Return errors, work and times of the path of a design, a row a setting."""
 
     def errors(path: Any, theory: str) -> Row:
-        return largest_errors(path, limits[theory])
+        return reference.largest_errors(path, limits[theory])
 
     return _tried(settings, lambda each: each.model.path(design, **each.settings), errors, passes, progress)
 

@@ -11,20 +11,8 @@ from studies.answers.motion import Motion
 from studies.answers.reference import SolvedMotion, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
-from studies.paper.formulations import (
-    FE,
-    INSTANTS,
-    LOCKING_FREE,
-    LOOKS,
-    MEANING,
-    PAPER,
-    REFINED,
-    SETTINGS,
-    SIX,
-    refined_swing,
-    released,
-    resolved,
-)
+from studies.paper import formulations
+from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, MEANING, PAPER, REFINED, SETTINGS, SIX
 from studies.record.marks import Doubt
 from studies.record.panels import TIME, Axis, Curves, Panel, sheet
 from studies.record.style import GREEN, Look
@@ -55,9 +43,9 @@ def _compared() -> Answer:
     `reference` has the uncertainties of the limit: in rad, in m, relative for the frequency. All of it is one
     point, since the limit takes most of the time.
     """
-    limit = refined_swing()
+    limit = formulations.refined_swing()
     motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
-    traces = {name: sampled(motion, INSTANTS) for name, motion in motions.items()}
+    traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
     columns = (*(column for column, _, _ in QUANTITIES), "frequency")
     return {
         "motions": pd.concat(_trace(name, each, limit) for name, each in {REFINED: limit, **traces}.items()),
@@ -109,7 +97,9 @@ def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
 def _motion(name: str) -> Motion:
     """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
     settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
-    return resolved(settings) if isinstance(settings, SplineSettings) else released(settings)
+    if isinstance(settings, SplineSettings):
+        return formulations.resolved(settings)
+    return formulations.released(settings)
 
 
 def _trace(name: str, swing: SolvedMotion, limit: SolvedMotion) -> pd.DataFrame:

@@ -8,18 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
-from studies.answers.reference import (
-    MESHES,
-    RECORDS,
-    Reference,
-    SwingReference,
-    errors,
-    reference,
-    swing_reference,
-)
+from studies.answers.reference import MESHES, RECORDS, Reference, SwingReference, errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
@@ -84,7 +77,7 @@ def path_of(name: str) -> Any:
 @cache
 def refined() -> Reference:
     """Return the limit of refinement of the case's static path."""
-    return reference(named_case())
+    return reference.reference(named_case())
 
 
 #: Duration of the motion [s], and the instants at which swings are compared [s].
@@ -112,7 +105,7 @@ def resolved(settings: SplineSettings) -> Motion:
 @cache
 def refined_swing() -> SwingReference:
     """Return the swing in the limit of refinement of the finite elements."""
-    return swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
+    return reference.swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
 
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.

@@ -20,19 +20,9 @@ from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Part, Row
 from studies.record.digits import Digits
+from studies.stability import verdict
 from studies.stability.family import CHECK, REFINED, Question, Try, Way, answers_of, of_path
-from studies.stability.verdict import (
-    COLUMNS,
-    DEFAULT,
-    FE,
-    LOCKING_FREE,
-    PAPER,
-    PATHS,
-    SIX,
-    VARIED,
-    as_mechanism,
-    study,
-)
+from studies.stability.verdict import COLUMNS, DEFAULT, FE, LOCKING_FREE, PAPER, PATHS, SIX, VARIED, study
 
 #: Rotations [deg] and numbers of increments; a reference so far needs more points than at a quarter turn.
 ROTATIONS, INCREMENTS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260), (1, 2, 5, 20, 200)
@@ -125,7 +115,7 @@ def _grid() -> Iterator[Question]:
 def _others() -> Iterator[Question]:
     """Yield parallel strips, unequal strips in length, stiffness and angle, strips curved at rest."""
     given = named_case()
-    cross = as_mechanism(given, OTHER_ROTATION)
+    cross = verdict.as_mechanism(given, OTHER_ROTATION)
     first, second = cross.strips
     length = given.length
     (x, y), (end_x, end_y) = second.start, second.end
@@ -269,7 +259,7 @@ def _designs() -> Iterator[tuple[str, str, float, Design]]:
     yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
     without = [name for name in given.effects.names if name != "strip_inertia"]
     yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
-    cross = as_mechanism(given, START_DEG)
+    cross = verdict.as_mechanism(given, START_DEG)
     for factor in STIFFER:  # of another material
         second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
         stiffer = replace(cross, strips=(cross.strips[0], second))
