@@ -12,6 +12,7 @@ from studies.answers.models import Asked
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
 from studies.cases.section import Sectioned
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 #: Parts of an estimate that are no error.
@@ -50,6 +51,12 @@ class Answered:
         """Whether all that was asked for was reached."""
         return self.status == "converged"
 
+    def whole(self) -> Self:
+        """Return the answer; Unanswered unless all that was asked for was reached."""
+        if not self.converged:
+            raise Unanswered(self.message)
+        return self
+
     @property
     def errors(self) -> dict[str, float]:
         """Estimated errors by name, NaN of what there is none of; empty where nothing estimates them."""
@@ -69,8 +76,7 @@ class Answered:
     def about(asked: Asked, result: Any = None) -> dict[str, Any]:
         """Return what was asked, and of the model's own answer, where there is one, the settings that it has
         chosen for its accuracy and its estimate of its error."""
-        estimate: Any = getattr(result, "estimate", None)
-        parts = None if estimate is None else asdict(estimate)
+        parts = asdict(result.estimate) if getattr(result, "estimate", None) else None
         if parts is not None:
             parts |= dict(parts.pop("errors", {}))
         return {
@@ -195,11 +201,6 @@ class Response(Solved):
     def centre_shift(self) -> Array:
         """(S, 2) displacement of a pivot's point that lies at the strips' crossing at rest [m]."""
         return centre_shift(np.array(self.crossing), self.rotation, self.centre)
-
-    @property
-    def shape(self) -> Array:
-        """(S, G, P, 2) of the strips at the stations [m]."""
-        return np.asarray(self.solution.shape)
 
     @property
     def strain_energy(self) -> Array:

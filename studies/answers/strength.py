@@ -11,6 +11,7 @@ from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import Settings, settings_of_model
 from studies.cases.design import Design
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 #: Part of a strip within which a place is its root, its middle or its tip.
@@ -120,10 +121,6 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
     return Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
 
 
-class _Lost(RuntimeError):
-    """A path to a state between two increments that stopped."""
-
-
 def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
     """Return where between two states the share is 1, and keep what is known there; None where paths stop."""
 
@@ -138,7 +135,7 @@ def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int)
     try:
         at = float(brentq(beyond, after - 1.0, float(after), xtol=PRECISION))
         beyond(at)
-    except _Lost:
+    except Unanswered:
         return None
     return at
 
@@ -160,7 +157,7 @@ def _solved(answer: Response, place: Array) -> Response:
     asked = put(replace(design, **changes), _settings(answer))
     path = asked.static_path(raise_on_failure=False)
     if str(path.status.value) != "converged":
-        raise _Lost(path.message)
+        raise Unanswered(path.message)
     if getattr(answer.solution, "balanced", False):
         path = replace(path, balanced=True)
     return Response.of(asked, path)

@@ -12,7 +12,8 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.cost import settings, tried
-from studies.cost.model import Failed, elements, spline
+from studies.cost.model import elements, spline
+from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -74,7 +75,7 @@ def _integrator(design: Design, duration: float) -> str:
     """Return the spline's most accurate integrator that the scene allows, by trying."""
     try:
         spline.swing(design, duration, integrator="leapfrog", control_points=4)
-    except Failed:
+    except Unanswered:
         return "energy"
     return "leapfrog"
 

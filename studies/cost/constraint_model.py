@@ -28,8 +28,9 @@ from functools import partial
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, geometry_of
+from studies.cost.model import geometry_of
 from studies.cost.one_coordinate import Law, State, Surrogate
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 K0 = np.array([[12.0, -6.0], [-6.0, 4.0]])
@@ -103,7 +104,7 @@ class _Strips:
         """Return the coordinates (S, 3) at rotations (S,), reached from rest, and the derivative.
 
         Raises:
-            Failed: there is no equilibrium on the way.
+            Unanswered: there is no equilibrium on the way.
         """
         furthest = float(np.abs(p).max(initial=0.0))
         steps = max(1, math.ceil(furthest / STEP))
@@ -122,14 +123,14 @@ class _Strips:
         """Move the body's place in y (S, 3) to equilibrium; return the Hessian.
 
         Raises:
-            Failed: there is none, `furthest` being the largest rotation [rad].
+            Unanswered: there is none, `furthest` being the largest rotation [rad].
         """
         for _ in range(ITERATIONS):
             _, gradient, hessian = self.assembled(y)
             if np.abs(gradient[:, :2]).max() < TOLERANCE:
                 return hessian
             y[:, :2] -= np.linalg.solve(hessian[:, :2, :2], gradient[:, :2, None])[..., 0]
-        raise Failed(f"constraint model: no equilibrium on the way to {math.degrees(furthest):.3g} deg")
+        raise Unanswered(f"constraint model: no equilibrium on the way to {math.degrees(furthest):.3g} deg")
 
     def moving(self, y: Array, slope: Array) -> Array:
         """Return the strips' part of M over mu L^3 (S,): a cubic each."""

@@ -26,7 +26,8 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, steps_of, turns_of
+from studies.cost.model import Model, steps_of, turns_of
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.
@@ -158,7 +159,7 @@ def _driven(system: System, asked: Any, turns: Array) -> tuple[Any, float]:
 
 
 def _run(system: System, solver: Any, asked: Any) -> float:
-    """Run a solver and return what its steps took [s]; raises Failed unless it reaches the end."""
+    """Run a solver and return what its steps took [s]; raises Unanswered unless it reaches the end."""
     try:
         solver.InitializeSolver(system.mbs, asked)
         begin = time.perf_counter()
@@ -166,9 +167,9 @@ def _run(system: System, solver: Any, asked: Any) -> float:
         seconds = time.perf_counter() - begin
         solver.FinalizeSolver(system.mbs, asked)
     except (system.exu.SolverError, RuntimeError, ValueError) as error:
-        raise Failed(f"Exudyn: {str(error).splitlines()[0]}") from None
+        raise Unanswered(f"Exudyn: {str(error).splitlines()[0]}") from None
     if not reached:
-        raise Failed(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
+        raise Unanswered(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
     return seconds
 
 

@@ -18,10 +18,6 @@ from studies.errors import BadInput
 from studies.kinds import Array
 
 
-class Failed(RuntimeError):
-    """A model did not reach the end of its path or motion; one line that says where it stopped."""
-
-
 @dataclass(eq=False, kw_only=True)
 class Model:
     """A model that is compared; keywords in `settings` are its own.
@@ -41,7 +37,7 @@ class Model:
         """Drive the body of a design, `args`, from rest to its rotation in its increments; return the path.
 
         Raises:
-            BadInput: a design or setting out of range. Failed: the path is not reached.
+            BadInput: a design or setting out of range. Unanswered: the path is not reached.
         """
         raise NotImplementedError
 
@@ -65,10 +61,7 @@ class _Own(Model):
 
     def path(self, design: Design, *, accuracy: float | None = None, **settings: Any) -> Response:
         """Return the path; `accuracy`: that a spline chooses its own control points for [1]."""
-        answer = answer_static(design, self.discretised(**settings), accuracy=accuracy)
-        if not answer.converged:
-            raise Failed(answer.message)
-        return answer
+        return answer_static(design, self.discretised(**settings), accuracy=accuracy).whole()
 
     def swing(
         self,
@@ -81,13 +74,8 @@ class _Own(Model):
     ) -> Motion:
         """Return the motion; the step [s] of an explicit scheme is its own, near the largest stable one."""
         records = RECORDS if integrator in EXPLICIT else None
-        motion = answer_release(
-            *(design, self.discretised(**settings)),
-            duration=duration, records=records, integrator=integrator, step=step,
-        )  # fmt: skip
-        if not motion.converged:
-            raise Failed(motion.message)
-        return motion
+        how: dict[str, Any] = {"records": records, "integrator": integrator, "step": step}
+        return answer_release(design, self.discretised(**settings), duration=duration, **how).whole()
 
 
 spline = _Own(name="spline", discretised=SplineSettings)

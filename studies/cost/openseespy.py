@@ -30,7 +30,8 @@ import numpy as np
 
 from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, geometry_of, steps_of, turns_of
+from studies.cost.model import Model, geometry_of, steps_of, turns_of
+from studies.errors import Unanswered
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -80,7 +81,7 @@ class _OpenSees(Model):
         begin, states, iterations = time.perf_counter(), [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
-                raise Failed(f"OpenSees: no convergence at {turn:g} rad")
+                raise Unanswered(f"OpenSees: no convergence at {turn:g} rad")
             iterations += ops.testIter()
             states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
         seconds, answer = time.perf_counter() - begin, np.array(states)
@@ -108,7 +109,7 @@ class _OpenSees(Model):
         begin, rotation, iterations = time.perf_counter(), np.full(steps + 1, problem.rotation), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
-                raise Failed(f"OpenSees: no convergence at {ops.getTime():g} s")
+                raise Unanswered(f"OpenSees: no convergence at {ops.getTime():g} s")
             iterations += ops.testIter()
             rotation[row] = ops.nodeDisp(BODY)[2]
         return SolvedMotion(
@@ -172,7 +173,7 @@ def _let_go(problem: Problem, elements: int, tolerance: float, start: float) -> 
     count = max(1, int(np.ceil(abs(start) / INCREMENT)))
     ops = _driven(problem, elements, START_TOLERANCE, start / count, moving=True)
     if ops.analyze(count) != 0:
-        raise Failed(f"OpenSees: statics does not reach the start, {start:g} rad")
+        raise Unanswered(f"OpenSees: statics does not reach the start, {start:g} rad")
     moment = ops.getTime()
     ops.remove("loadPattern", 1)
     ops.wipeAnalysis()

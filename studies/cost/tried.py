@@ -20,10 +20,9 @@ from studies.answers.reference import Reference, SwingReference, rotation_error,
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.cost.model import Failed
 from studies.cost.settings import HINT, Setting
 from studies.engine import Row
-from studies.errors import BadInput
+from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
 from studies.record.progress import measure, silent
 
@@ -50,15 +49,14 @@ def path_limit(design: Design, theory: str) -> Reference:
     elements have it, so a spline finer than any that is shown, and its distance to a coarser one.
 
     Raises:
-        NoReference: a model does not reach the end of the path.
+        NoReference: the elements do not reach the end of the path.
     """
     if theory != SPATIAL:
         return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
     paper: dict[str, Any] = {"measure": theory, "stretch": "consistent"}
-    fine, coarse = (answer_static(design, SplineSettings(control_points=n, **paper)) for n in SPATIAL_POINTS)
-    for path in (fine, coarse):
-        if not path.converged:
-            raise reference.NoReference(path.message)
+    fine, coarse = (
+        answer_static(design, SplineSettings(control_points=n, **paper)).whole() for n in SPATIAL_POINTS
+    )
     return Reference.of(
         fine, coarse, "spline with {} control points; its distance to one with {}".format(*SPATIAL_POINTS)
     )
@@ -199,7 +197,7 @@ def _tried(
             continue
         try:
             answer = solve(each)
-        except (Failed, BadInput) as stopped:
+        except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
             continue
         work = {name: answer.counters.get(name, np.nan) for name in WORK}

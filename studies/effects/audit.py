@@ -11,7 +11,8 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.beyond import prices
-from studies.effects.scenes import SIZES, Answer, Outcome, Run, Unanswered, Variant
+from studies.effects.scenes import SIZES, Answer, Outcome, Run, Variant
+from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
 

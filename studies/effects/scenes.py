@@ -14,14 +14,12 @@ from spline_model.motion.leapfrog import highest_frequency, stability_limit
 from spline_model.motion.start import set_in_motion
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.models import put
-from studies.answers.motion import Motion, Spectrum
-from studies.answers.response import Response
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism as MechanismData
 from studies.cases.problem import Problem
-from studies.errors import BadInput
+from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
 
 #: Effects that a scene may do without but that could matter, with what they need beside them.
@@ -117,10 +115,6 @@ LOST = 1.0
 Given = TypeVar("Given")
 
 
-class Unanswered(RuntimeError):
-    """A scene that has no answer; the text says why."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Answer:
     """What a scene says, along the static path as the body turns, which a scene with loads begins loaded.
@@ -153,8 +147,8 @@ class Answer:
         Raises:
             BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
         """
-        static, turned = reached(answer_static(design, settings)), slice(-design.increments - 1, None)
-        modes = reached(answer_modes(design, settings, count=1)).frequency
+        static, turned = answer_static(design, settings).whole(), slice(-design.increments - 1, None)
+        modes = answer_modes(design, settings, count=1).whole().frequency
         answer = cls(
             path=np.array([*static.bodies.values()]).reshape(-1, len(static.torque), 3)[:, turned, :2],
             torque=static.torque[turned],
@@ -236,7 +230,7 @@ class Run:
         alone = motion.converged and massless and math.isnan(motion.rotation_error)
         if full is not None and (left := motion.resolution if alone else motion.message):
             return replace(answer, stopped=True, note=f"motion: {left}")
-        largest = float((reached(motion).kinetic_energy + motion.strain_energy).max())
+        largest = float((motion.whole().kinetic_energy + motion.strain_energy).max())
         return replace(
             answer,
             swing=motion.frequency if design.rotation else math.nan,
@@ -268,16 +262,6 @@ class Run:
             size=size,
             wall_s=answer.wall_s,
         )
-
-
-Reached = TypeVar("Reached", Response, Spectrum, Motion)
-
-
-def reached(answer: Reached) -> Reached:
-    """Return the answer; Unanswered unless it is complete."""
-    if not answer.converged:
-        raise Unanswered(answer.message)
-    return answer
 
 
 def _rest(design: Design, full: Answer) -> Array:

@@ -91,8 +91,8 @@ def _snapshots(name: str, answer: Response) -> pd.DataFrame:
             "rotation_rad": answer.rotation[state],
             "strip": strip + 1,
             "station": answer.stations,
-            "x_m": answer.shape[state, strip, :, 0],
-            "y_m": answer.shape[state, strip, :, 1],
+            "x_m": answer.solution.shape[state, strip, :, 0],
+            "y_m": answer.solution.shape[state, strip, :, 1],
         }
         for state in states
         for strip in (0, 1)
@@ -106,8 +106,8 @@ def _distance(answer: Response, finest: Response) -> Array:
 
     What points slide along the strip does not show in a shape and is left out. Exact to second order.
     """
-    curve = CubicSpline(finest.stations, finest.shape[: len(answer.rotation)], axis=2)
-    gap, along = answer.shape - curve(answer.stations), curve(answer.stations, 1)
+    curve = CubicSpline(finest.stations, finest.solution.shape[: len(answer.rotation)], axis=2)
+    gap, along = answer.solution.shape - curve(answer.stations), curve(answer.stations, 1)
     across = (along[..., 0] * gap[..., 1] - along[..., 1] * gap[..., 0]) / np.linalg.norm(along, axis=-1)
     return np.asarray(np.abs(across).max(axis=(1, 2)))
 

@@ -12,10 +12,11 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.cost.exudyn_solve import SOLVERS
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.model import Failed, Model, elements
+from studies.cost.model import Model, elements
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import PEERS, grid
 from studies.cost.tried import tried_paths
+from studies.errors import Unanswered
 from tests import gates
 
 CASE = named_case("cross_axis_pivot")
@@ -102,7 +103,7 @@ def test_tuning_changes_the_time_and_not_the_answer():
 @exudyn
 def test_exudyn_says_where_it_stops():
     """Requirement: a path that does not converge is an error with the place, never a wrong answer."""
-    with pytest.raises(Failed, match=r"Exudyn: .*no convergence at load factor"):
+    with pytest.raises(Unanswered, match=r"Exudyn: .*no convergence at load factor"):
         exudyn_ancf.path(CASE, elements=40, relative_tolerance=1e-14)
 
 
@@ -122,7 +123,7 @@ def test_failed_setting_keeps_its_row():
 
     class Failing(Model):
         def path(self, *_, **__):
-            raise Failed("stopped at 0.1 rad")
+            raise Unanswered("stopped at 0.1 rad")
 
     limits = {"material": reference(CASE)}
     asked = [*grid(Failing(name="failing"), "x"), *grid(elements, "y", elements=(5, 20))]
