@@ -6,9 +6,9 @@ body along the force, as far as the displacement grows.
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +36,7 @@ FINER = 20
 PART, STEPS = 0.1, 60
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Critical:
+class _Critical(NamedTuple):
     """A critical point: "limit point" or "bifurcation", its load and the place (3,) of the reported body."""
 
     kind: str
@@ -116,7 +115,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
         energy=path.bending_energy + path.axial_energy,
         inertia=path.inertia,
         critical=tuple(
-            _Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
+            _Critical(point.kind, frame.load * point.load_factor, point.z[at])
             for point in path.critical_points
         ),
         status=path.status.value,
@@ -188,20 +187,16 @@ def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
     at, rest = structure.body_slice(model.body_index(frame.body)), np.array([*frame.rest, 0.0])
     parameter = [state.parameter for state in path.states]
     place = rest + np.array([state.y[at] for state in path.states])
-    critical = tuple(
-        _Critical(
-            kind=point.kind,
-            load=frame.load * point.load_factor,
-            place=np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T]),
-        )
-        for point in path.critical
-    )
+    critical = []
+    for point in path.critical:
+        where = np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T])
+        critical.append(_Critical(point.kind, frame.load * point.load_factor, where))
     arc = Arc(
         load=frame.load * np.array(parameter),
         place=place,
         energy=_stored(structure, path),
         inertia=np.array([state.inertia for state in path.states]),
-        critical=critical,
+        critical=tuple(critical),
         status=STOPPED if path.message else REACHED,
         message=path.message or _told(critical),
     )
@@ -220,7 +215,7 @@ def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice)
     place = np.array([*frame.rest, 0.0]) + np.array([state.y[at] for state in on.states])
     pulled, moved = CubicHermiteSpline(p, load, slope), CubicHermiteSpline(p, place, rates)
     turns = pulled.derivative().roots(extrapolate=False)
-    limits = (_Critical(kind=LIMIT, load=float(pulled(turn)), place=moved(turn)) for turn in turns)
+    limits = (_Critical(LIMIT, float(pulled(turn)), moved(turn)) for turn in turns)
     critical, reached = (*arc.critical[:-1], *limits), bool(load[-1] >= frame.load)
     unstable = [state.inertia for state in on.states] + (slope < 0.0)
     return Arc(
@@ -239,6 +234,6 @@ def _stored(structure: Structure, path: Path) -> Array:
     return np.array([sum(structure.evaluate(state.y).strain) for state in path.states])
 
 
-def _told(critical: tuple[_Critical, ...]) -> str:
+def _told(critical: Iterable[_Critical]) -> str:
     """Return the critical points in words."""
     return "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical)

@@ -25,8 +25,12 @@ LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
-COLUMNS: dict[str, Settings] = {DEFAULT: SplineSettings()} | {
-    LOOKS[name].label: SETTINGS[name] for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE)
+COLUMNS: dict[str, Settings] = {
+    DEFAULT: SplineSettings(),
+    **{
+        LOOKS[each].label: SETTINGS[each]
+        for each in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE)
+    },
 }
 
 #: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
