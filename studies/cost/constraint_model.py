@@ -23,7 +23,6 @@ derived here.
 
 import math
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -158,25 +157,23 @@ def _law_of(problem: Problem) -> Law:
         centre=at_rest.centre / length,
         compliance=problem.second_moment_of_area / (problem.area * length**2),
     )
-    return partial(_state, problem, strips)
+    scale = problem.youngs_modulus * problem.second_moment_of_area / length
+    mass, turning = problem.density * problem.area * length, problem.body_moment_of_inertia / length**2
 
+    def law(p: Array) -> State:
+        y, slope = strips.turned(p)
+        energy, gradient, hessian = strips.assembled(y)
+        speed = np.einsum("si,si->s", slope[:, :2], slope[:, :2])
+        inertia = turning + problem.body_mass * speed + mass * strips.moving(y, slope)
+        return State(
+            centre=y[:, :2] * length,
+            energy=scale * energy,
+            torque=scale * gradient[:, 2],
+            stiffness=scale * np.einsum("si,si->s", hessian[:, 2], slope),
+            inertia=inertia * length**2,
+        )
 
-def _state(problem: Problem, strips: _Strips, p: Array) -> State:
-    """Return the pivot at rotations (S,)."""
-    y, slope = strips.turned(p)
-    energy, gradient, hessian = strips.assembled(y)
-    scale = problem.youngs_modulus * problem.second_moment_of_area / problem.length
-    speed = np.einsum("si,si->s", slope[:, :2], slope[:, :2])
-    mass = problem.density * problem.area * problem.length
-    turning = problem.body_moment_of_inertia / problem.length**2
-    inertia = turning + problem.body_mass * speed + mass * strips.moving(y, slope)
-    return State(
-        centre=y[:, :2] * problem.length,
-        energy=scale * energy,
-        torque=scale * gradient[:, 2],
-        stiffness=scale * np.einsum("si,si->s", hessian[:, 2], slope),
-        inertia=inertia * problem.length**2,
-    )
+    return law
 
 
 constraint_model = Surrogate(name="beam constraint model", law_of=_law_of)

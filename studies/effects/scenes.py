@@ -201,6 +201,7 @@ class Outcome:
 class Run:
     """What all scenes of an audit are asked: a static path, then a motion; duration and step [s]."""
 
+    design: Design
     settings: SplineSettings
     duration: float
     step: float
@@ -212,7 +213,8 @@ class Run:
         first = float(modes.frequency[0]) if modes.converged and len(modes.frequency) else math.nan
         if not first > 0.0:
             raise Unanswered(modes.message or f"the first natural frequency at rest is {first:.4g} Hz")
-        return cls(settings=settings, duration=SWINGS / first, step=1.0 / (STEPS_A_SWING * first))
+        step = 1.0 / (STEPS_A_SWING * first)
+        return cls(design=design, settings=settings, duration=SWINGS / first, step=step)
 
     def answer(self, design: Design, full: Answer | None = None) -> Answer:
         """Return what the design's scene says; without a motion where its first mode is far from the full
@@ -238,9 +240,9 @@ class Run:
             wall_s=wall_s + motion.wall_s,
         )
 
-    def outcome(self, variant: Variant, design: Design, full: Answer) -> Outcome:
-        """Return how far a scene of a design is from the full one's answer; one without keeps its reason."""
-        scene = variant.of(design)
+    def outcome(self, variant: Variant, full: Answer) -> Outcome:
+        """Return how far a scene is from the answer of the full one; one without an answer keeps its reason."""
+        scene = variant.of(self.design)
         found, status, reason = tried(lambda: (self.answer(scene, full), size_of(scene, self.settings)))
         if found is None:
             return Outcome(variant=variant, status=status, reason=reason)
@@ -248,7 +250,7 @@ class Run:
         torque = float(np.abs(full.torque).max())
         change = float(np.abs(answer.torque - full.torque).max())
         changes = (
-            strayed(answer.path, full.path, _rest(design, full)),
+            strayed(answer.path, full.path, _rest(self.design, full)),
             change / torque if torque > 0.0 else math.nan,
             answer.swing / full.swing - 1.0,
             answer.mode / full.mode - 1.0,

@@ -78,7 +78,7 @@ class Question:
             return Found.of(answer, path_distance(answer, reference))
         if not len(answer.time):  # statics does not reach the start
             return Found.of(answer, 0.0)
-        gain = _energy_gain(answer)
+        gain = float((answer.balance / answer.balance[0] - 1.0).max())
         much = gain > (MOST_GAIN_OF_OTHERS if how.get("integrator") else MOST_GAIN)
         fault = f"the energy grows by {gain:.2g} of itself" if much else ""
         return Found.of(answer, _swing_distance(answer, reference), fault=fault, energy_gain=gain)
@@ -132,10 +132,3 @@ def _swing_distance(motion: Motion, reference: Motion) -> float:
     if len(motion.time) < 2 or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
         return math.inf
     return rotation_error(motion, reference, motion.time) / abs(float(reference.rotation[0]))
-
-
-def _energy_gain(motion: Motion) -> float:
-    """Return the largest gain of the balance of energies over the stored one at the start [1]."""
-    stored = motion.kinetic_energy + motion.strain_energy
-    balance = stored + motion.gravity_energy - motion.work + motion.dissipated
-    return float((balance / balance[0] - 1.0).max())
