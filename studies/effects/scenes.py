@@ -241,7 +241,7 @@ class Run:
         )
 
     def outcome(self, variant: Variant, full: Answer) -> Outcome:
-        """Return how far a scene is from the answer of the full one; one without an answer keeps its reason."""
+        """Return how far a scene is from the full one's answer; one without keeps its reason."""
         scene = variant.of(self.design)
         found, status, reason = tried(lambda: (self.answer(scene, full), size_of(scene, self.settings)))
         if found is None:
