@@ -166,8 +166,8 @@ class SwingReference(SolvedMotion):
     """A motion that others are held against, at common instants.
 
     Attributes:
-        uncertainty: largest of the rotation [rad], the relative one of the frequency [1], and of a limit of
-            refinement those of the centre, x and y [m]. source: what it is.
+        uncertainty: largest of the rotation, "rotation_rad", relative of the "frequency" [1], and of a limit
+            of refinement those of the centre, "com_x_m" and "com_y_m". source: what it is.
     """
 
     uncertainty: Mapping[str, float]
@@ -190,6 +190,14 @@ def rotation_error(motion: Any, against: Any, instants: Array) -> float:
     one, other = (CubicSpline(each.time, each.rotation) for each in (motion, against))
     last = min(motion.time[-1], against.time[-1])
     return float(np.abs(one(np.minimum(instants, last)) - other(np.minimum(instants, last))).max())
+
+
+def swing_errors(motion: Any, against: SolvedMotion) -> dict[str, float]:
+    """Return the errors of a motion at the instants of another: the largest of the rotation [rad], and that
+    of the frequency of the swing [1]."""
+    frequency = sampled(motion, against.time).frequency
+    rotation = rotation_error(motion, against, against.time)
+    return {"rotation_rad": rotation, "frequency": abs(frequency / against.frequency - 1.0)}
 
 
 def swing_reference(
@@ -221,8 +229,11 @@ def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference
     before = extrapolate([swing.rotation for swing in swings[:-1]], ratio=RATIO).value
     values: dict[str, Any] = {name: limit.value for name, limit in limits.items()}
     frequency = SolvedMotion(time=instants, **values).frequency
-    unsure = {"rotation": limits["rotation"].uncertainty.max()}
-    unsure |= dict(zip("xy", limits["centre"].uncertainty.max(axis=0), strict=True))
-    unsure["frequency"] = abs(swing_frequency(instants, before).value / frequency - 1.0)
-    uncertainty = {name: float(value) for name, value in unsure.items()}
+    centre = limits["centre"].uncertainty.max(axis=0)
+    uncertainty = {
+        "rotation_rad": float(limits["rotation"].uncertainty.max()),
+        "com_x_m": float(centre[0]),
+        "com_y_m": float(centre[1]),
+        "frequency": abs(swing_frequency(instants, before).value / frequency - 1.0),
+    }
     return SwingReference(time=instants, **values, uncertainty=uncertainty, source=source)

@@ -38,7 +38,7 @@ def advise_path(design: Design, error: float, progress: Progress = silent) -> pd
     """
     asked = _askable(settings.paths(), design)
     limits = {theory: tried.path_limit(design, theory) for theory in {each.theory for each in asked}}
-    rows = tried.tried_paths(asked, design, limits, PASSES, progress)
+    rows = tried.compared(asked, design, limits, passes=PASSES, progress=progress)
     return _uncertain(tried.cheapest(rows, tried.PATH_JUDGED, error), limits)
 
 
@@ -57,10 +57,11 @@ def advise_swing(design: Design, error: float, progress: Progress = silent) -> p
     limit = tried.swing_limit(design, instants, _integrator(design, 0.1 * PERIODS / frequency), steps)
     limits = {tried.MATERIAL: limit}
     asked = [each for each in _askable(settings.swings(frequency), design) if each.theory in limits]
-    rows = tried.tried_swings(asked, design, instants, limits, PASSES, progress)
+    rows = tried.compared(asked, design, limits, instants, passes=PASSES, progress=progress)
     rows["rotation"] = rows.pop("rotation_rad") / start
-    uncertainty = {**limit.uncertainty, "rotation": limit.uncertainty["rotation"] / start}
-    best = tried.cheapest(rows, ("rotation", tried.SWING_ERRORS[1]), error)
+    known = limit.uncertainty
+    uncertainty = {"rotation": known["rotation_rad"] / start, "frequency": known["frequency"]}
+    best = tried.cheapest(rows, ("rotation", "frequency"), error)
     return _uncertain(best, {tried.MATERIAL: replace(limit, uncertainty=uncertainty)})
 
 

@@ -69,7 +69,7 @@ def _paths() -> Answer:
             theory = tried.SHEAR if model.sheared else tried.MATERIAL
             apart = largest_errors(model.path(design, **settings), limits[theory])
             finest.append({"model": model.name, "elements": settings["elements"], "theory": theory, **apart})
-    found = tried.tried_paths(paths(), design, limits)
+    found = tried.compared(paths(), design, limits)
     return {"path_limits": rows, "finest": finest, **_apart("paths", found)}
 
 
@@ -77,7 +77,7 @@ def _swings() -> Answer:
     """Return limits, errors and times of the swing."""
     design = named_case()
     limits, rows = tried.swing_limits(design, INSTANTS)
-    found = tried.tried_swings(swings(), design, INSTANTS, limits)
+    found = tried.compared(swings(), design, limits, INSTANTS)
     return {"swing_limits": rows, **_apart("swings", found)}
 
 

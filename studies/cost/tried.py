@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ import pandas as pd
 
 from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.reference import Reference, SwingReference, rotation_error, sampled
+from studies.answers.reference import Reference, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
@@ -97,11 +98,8 @@ def swing_limit(
             raise reference.NoReference(f"reference with {n} control points: {motion.message}")
         found.append(sampled(motion, instants))
     fine, coarse = found
-    uncertainty = {
-        "rotation": rotation_error(coarse, fine, instants),
-        "frequency": abs(coarse.frequency / fine.frequency - 1.0),
-    }
     told = (f"n = {n}" + (f" at {1e6 * step:g} µs" if step else "") for n, step in steps.items())
+    uncertainty = reference.swing_errors(coarse, fine)
     return SwingReference(**vars(fine), uncertainty=uncertainty, source=" and ".join(told))
 
 
@@ -116,7 +114,7 @@ def swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingRefe
     rows = [
         {
             "theory": theory,
-            "rotation_rad": limit.uncertainty["rotation"],
+            "rotation_rad": limit.uncertainty["rotation_rad"],
             "frequency_error": limit.uncertainty["frequency"],
             "distance_to_material_rad": float(np.abs(limit.rotation - limits[MATERIAL].rotation).max()),
             "source": limit.source,
@@ -134,57 +132,30 @@ AFFORDED, RUNS = 0.2, 5
 #: Counters that stand beside the errors.
 WORK = ("unknowns", "steps", "newton_iterations", "factorisations")
 
-#: Errors of a path, those that it is judged by first, and of a swing.
+#: Errors of a path, and those that it is judged by first.
 PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
-SWING_ERRORS = ("rotation_rad", "frequency")
 
 
-def tried_paths(
+def compared(
     settings: Sequence[Setting],
     design: Design,
-    limits: Mapping[str, Reference],
+    limits: Mapping[str, Any],
+    instants: Array | None = None,
+    *,
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
-    """Return errors, work and times of the path of a design, a row a setting."""
+    """Return errors, work and times of the path of a design, or of its motion to the last of instants [s].
 
-    def errors(path: Any, theory: str) -> Row:
-        return reference.largest_errors(path, limits[theory])
-
-    return _tried(settings, lambda each: each.model.path(design, **each.settings), errors, passes, progress)
-
-
-def tried_swings(
-    settings: Sequence[Setting],
-    design: Design,
-    instants: Array,
-    limits: Mapping[str, SwingReference],
-    passes: int = PASSES,
-    progress: Progress = silent,
-) -> pd.DataFrame:
-    """Return errors, work and times of the motion of a design to the last of the instants [s]."""
+    A row a setting; what is not installed has one a model. It and what fails have no errors.
+    """
 
     def solve(each: Setting) -> Any:
+        if instants is None:
+            return each.model.path(design, **each.settings)
         return each.model.swing(design, float(instants[-1]), **each.settings)
 
-    def errors(motion: Any, theory: str) -> Row:
-        limit = limits[theory]
-        return {
-            "rotation_rad": rotation_error(motion, limit, instants),
-            "frequency": abs(sampled(motion, instants).frequency / limit.frequency - 1.0),
-        }
-
-    return _tried(settings, solve, errors, passes, progress)
-
-
-def _tried(
-    settings: Sequence[Setting],
-    solve: Callable[[Setting], Any],
-    errors: Callable[[Any, str], Row],
-    passes: int,
-    progress: Progress,
-) -> pd.DataFrame:
-    """Return a row a setting; what is not installed has one a model. It and what fails have no errors."""
+    errors = reference.largest_errors if instants is None else reference.swing_errors
     rows: list[Row] = []
     for done, each in enumerate(settings):
         progress(done, len(settings))
@@ -201,7 +172,7 @@ def _tried(
             rows.append(row | {"status": "failed", "message": str(stopped)})
             continue
         work = {name: answer.counters.get(name, np.nan) for name in WORK}
-        found = errors(answer, each.theory)
+        found = errors(answer, limits[each.theory])
         rows.append(row | {"status": "converged", "message": "", "solver": each} | found | work)
     seconds = _times([row["solver"] for row in rows if "solver" in row], solve, passes)
     progress(len(settings), len(settings))
@@ -219,29 +190,19 @@ def _times(
             if longest > AFFORDED:
                 continue
             runs = 1 if not whole else int(min(RUNS, max(1.0, AFFORDED / longest)))
-            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=_alone)
+            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=attrgetter("solve_s"))
             whole += timed.seconds
             part += timed.parts
     return found
 
 
-def _alone(answer: Any) -> float:
-    return float(answer.solve_s)
-
-
 def spread(whole: Sequence[float], alone: Sequence[float]) -> dict[str, float]:
     """Return median and quartiles of whole calls, the median of what they are without set-up [s], and how
     many they are."""
-    if not len(whole):
-        return {"whole_s": math.nan, "low_s": math.nan, "high_s": math.nan, "solve_s": math.nan, "runs": 0}
-    low, median, high = np.percentile(whole, (25, 50, 75))
-    return {
-        "whole_s": float(median),
-        "low_s": float(low),
-        "high_s": float(high),
-        "solve_s": float(np.median(alone)),
-        "runs": len(whole),
-    }
+    low, median, high = np.percentile(whole, (25, 50, 75)) if len(whole) else (math.nan,) * 3
+    solve = float(np.median(alone)) if len(alone) else math.nan
+    times = {"whole_s": float(median), "low_s": float(low), "high_s": float(high), "solve_s": solve}
+    return times | {"runs": len(whole)}
 
 
 def kept(rows: pd.DataFrame, judged: Sequence[str]) -> pd.Series:

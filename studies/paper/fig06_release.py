@@ -46,15 +46,11 @@ def _compared() -> Answer:
     limit = formulations.refined_swing()
     motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
     traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
-    columns = (*(column for column, _, _ in QUANTITIES), "frequency")
     return {
         "motions": pd.concat(_trace(name, each, limit) for name, each in {REFINED: limit, **traces}.items()),
         "summary": [_summary(name, motions[name], trace, limit) for name, trace in traces.items()],
         "findings": [row for name in SPLINES for row in _findings(name, motions, traces)],
-        "reference": [
-            {"quantity": name, "uncertainty": value}
-            for name, value in zip(columns, limit.uncertainty.values(), strict=True)
-        ],
+        "reference": [{"quantity": name, "uncertainty": each} for name, each in limit.uncertainty.items()],
     }
 
 

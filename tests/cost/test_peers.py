@@ -15,7 +15,7 @@ from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import PEERS, grid
-from studies.cost.tried import tried_paths
+from studies.cost.tried import compared
 from studies.errors import Unanswered
 from tests import gates
 
@@ -112,7 +112,7 @@ def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
     """Requirement: a code that is absent is a row of the study, with what to do and without times."""
     model = PEERS[name]
     monkeypatch.setattr(model, "installed", lambda: False)
-    (row,) = tried_paths(grid(model, "x", elements=(1, 2)), CASE, {}).to_dict("records")
+    (row,) = compared(grid(model, "x", elements=(1, 2)), CASE, {}).to_dict("records")
     assert (row["status"], row["model"], row["runs"]) == ("not installed", name, 0)
     assert row["message"] == "not installed: python -m pip install '.[peers]'"
 
@@ -127,7 +127,7 @@ def test_failed_setting_keeps_its_row():
 
     limits = {"material": reference(CASE)}
     asked = [*grid(Failing(name="failing"), "x"), *grid(elements, "y", elements=(5, 20))]
-    failed, coarse, fine = tried_paths(asked, CASE, limits, 1).to_dict("records")
+    failed, coarse, fine = compared(asked, CASE, limits, passes=1).to_dict("records")
     assert (failed["status"], failed["message"], failed["runs"]) == ("failed", "stopped at 0.1 rad", 0)
     assert math.isnan(failed["torque"])
     assert fine["torque"] < 0.1 * coarse["torque"] < 0.01

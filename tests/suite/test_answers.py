@@ -153,7 +153,7 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
         )
     limit = limit_of_swings(levels, instants[::4])
     assert limit.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
-    assert limit.uncertainty["rotation"] < 1e-10
+    assert limit.uncertainty["rotation_rad"] < 1e-10
     assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-6)
     assert levels[0].energy_error == 0.0
 
