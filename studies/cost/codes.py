@@ -10,7 +10,8 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,10 +38,9 @@ FINEST: dict[Model, dict[str, Any]] = {
     exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
     openseespy_frame: {"elements": 320, "tolerance": 1e-14},
 }
-#: Errors at which times are compared: of the path [1], and of the swing [rad].
-LEVELS = (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6)
-SWING_LEVELS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)
-SWING_JUDGED = ("rotation_rad",)
+#: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].
+JUDGED = {"paths": tried.PATH_JUDGED, "swings": ("rotation_rad",)}
+LEVELS = {"paths": (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6), "swings": (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)}
 #: A limit must be this much more certain than the level that errors against it are compared at.
 CERTAINTY = 2.0
 #: Columns of what was measured in seconds, which stand in tables of their own.
@@ -94,28 +94,20 @@ def _joined(tables: Tables, name: str) -> pd.DataFrame:
     return rows.merge(times.assign(setting=times["setting"].fillna("")), on=[*NAMED], how="left")
 
 
-def _ratios(name: str, judged: Sequence[str], levels: Sequence[float]) -> Callable[[Tables], list[Row]]:
-    """Return what makes the table of the fastest settings: a row a level and group, with its time and that of
-    the spline [s], and their ratio; empty where no setting of a group keeps the level."""
-
-    def made(tables: Tables) -> list[Row]:
-        rows, found = _joined(tables, name), []
-        for level in levels:
-            sure = rows[~rows["theory"].isin(_unsure(tables, name, level))]
-            best = {row["group"]: row for row in tried.cheapest(sure, judged, level).to_dict("records")}
-            if not best[SPLINE]["meets"]:
-                continue
-            mine = best[SPLINE]["whole_s"]
-            known = {"spline": best[SPLINE]["setting"], "spline_s": mine}
-            known["spline_solve_s"] = best[SPLINE]["solve_s"]
-            for row in (best[group] for group in GROUPS if group in best):
-                told = {each: row[each] if row["meets"] else np.nan for each in TIMES[:-1]}
-                setting = f"{row['model']}, {row['setting']}" if row["meets"] else ""
-                place = {"level": level, "group": row["group"], "setting": setting}
-                found.append(place | told | {"ratio": told["whole_s"] / mine} | known)
-        return found
-
-    return made
+def _ratios(name: str, tables: Tables) -> Iterator[Row]:
+    """Yield the fastest settings: a row a level and group, with its time and that of the spline, and their
+    ratio; empty where no setting of a group keeps the level."""
+    rows = _joined(tables, name)
+    for level in LEVELS[name]:
+        sure = rows[~rows["theory"].isin(_unsure(tables, name, level))]
+        best = {row["group"]: row for row in tried.cheapest(sure, JUDGED[name], level).to_dict("records")}
+        mine = best[SPLINE]
+        known = {"spline": mine["setting"], "spline_s": mine["whole_s"], "spline_solve_s": mine["solve_s"]}
+        for row in (best[group] for group in GROUPS if group in best and mine["meets"]):
+            told = {each: row[each] if row["meets"] else np.nan for each in TIMES[:-1]}
+            setting = f"{row['model']}, {row['setting']}" if row["meets"] else ""
+            ratio = told["whole_s"] / mine["whole_s"]
+            yield {"level": level, "group": row["group"], "setting": setting, **told, "ratio": ratio, **known}
 
 
 def _unsure(tables: Tables, name: str, level: float) -> list[str]:
@@ -173,17 +165,17 @@ def _figure(tables: Tables) -> Figure:
     limits = tables["swing_limits"].set_index("theory")["rotation_rad"]
     doubts = [Level(float(limits[tried.SHEAR]), words="limit with shear", line=":", place=1.0)]
     panels = [
-        _panel(tables, "paths", tried.PATH_JUDGED, path, "Static path to 90° in 20 increments"),
-        _panel(tables, "swings", SWING_JUDGED, swing, "Free swing of 0.05 s from 90°", *doubts),
+        _panel(tables, "paths", path, "Static path to 90° in 20 increments"),
+        _panel(tables, "swings", swing, "Free swing of 0.05 s from 90°", *doubts),
     ]
     return sheet(9.5, 4.4, [panels], legend=3)
 
 
-def _panel(tables: Tables, name: str, judged: Sequence[str], y: Axis, title: str, *marks: Level) -> Panel:
+def _panel(tables: Tables, name: str, y: Axis, title: str, *marks: Level) -> Panel:
     """Return the panel of a task: of each group the settings that keep an error which none that is faster
     keeps, as the table of ratios has them."""
     rows = _joined(tables, name)
-    rows = rows.assign(error=tried.kept(rows, judged))
+    rows = rows.assign(error=tried.kept(rows, JUDGED[name]))
     rows = rows[(rows["status"] == "converged") & np.isfinite(rows["error"])].sort_values("whole_s")
     best = rows[rows["error"] == rows.groupby("group")["error"].cummin()]
     best = best[~best.duplicated(["group", "error"]) & best["group"].isin(LOOKS)]
@@ -198,10 +190,7 @@ STUDY = Study(
         Part(ask=_swings, alone=True),
         Part(at=lambda: tuple(WAITED), ask=_waited, alone=True),
     ),
-    made={
-        "path_ratios": _ratios("paths", tried.PATH_JUDGED, LEVELS),
-        "swing_ratios": _ratios("swings", SWING_JUDGED, SWING_LEVELS),
-    },
+    made={"path_ratios": partial(_ratios, "paths"), "swing_ratios": partial(_ratios, "swings")},
     varying=("path_ratios", "swing_ratios"),
     figures={"cost": _figure},
     missing=missing,
