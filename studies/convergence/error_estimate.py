@@ -8,7 +8,7 @@ and torque, and its estimate is of the stress in each state; it is judged apart.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -84,16 +84,11 @@ def _drawn(bounds: Mapping[str, tuple[float, float]], count: int) -> Iterator[tu
 
 def _static(design: Row, problem: Problem) -> Answer:
     """Return the rows of one design's static paths, those of the stress in a table of their own."""
-    rows: dict[str, list[Row]] = {"estimates": [], "stress": []}
     exact, check = (answer_static(problem, SplineSettings(control_points=n)) for n in (REFERENCE, CHECK))
-    uncertainty = _path_errors(check, exact)
-    for accuracy in ACCURACIES:
-        answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "statics", **design, "accuracy": accuracy}
-        for quantity, error in _path_errors(answer, exact).items():
-            row = identity | _judged(quantity, "1", error, uncertainty[quantity], answer)
-            rows["stress" if quantity == "stress" else "estimates"].append(row)
-    return rows
+    ask = partial(answer_static, problem, SplineSettings(control_points=FIRST))
+    rows = list(_rows({"problem": "statics", **design}, ACCURACIES, ask, _path_errors, exact, check))
+    stress = [row for row in rows if row["quantity"] == "stress"]
+    return {"estimates": [row for row in rows if row["quantity"] != "stress"], "stress": stress}
 
 
 def _swings(design: Row, problem: Problem) -> Answer:
@@ -104,29 +99,34 @@ def _swings(design: Row, problem: Problem) -> Answer:
         let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)
         for n in (SWING_REFERENCE, SWING_CHECK)
     )
-    rows, uncertainty = [], _swing_error(check, exact)
-    for accuracy in SWING_ACCURACIES:
-        answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
-        judged = _judged("rotation", "rad", _swing_error(answer, exact), uncertainty, answer)
-        rows.append({"problem": "motion", **design, "accuracy": accuracy, **judged})
+    ask = partial(let_go, SplineSettings(control_points=FIRST))
+    rows = _rows({"problem": "motion", **design}, SWING_ACCURACIES, ask, _swing_errors, exact, check)
     return {"estimates": rows}
 
 
-def _judged(quantity: str, unit: str, error: float, uncertainty: float, answer: Response | Motion) -> Row:
-    """Return the columns that hold an answer's estimate against a true error."""
-    estimate = answer.estimate or {}
-    estimated = estimate.get(quantity, math.nan)
-    return {
-        "quantity": quantity,
-        "unit": unit,
-        "status": answer.status,
-        "control_points": estimate.get("control_points", 0),
-        "estimate": estimated,
-        "true_error": error,
-        "uncertainty": uncertainty,
-        "effectivity": estimated / error,
-        "counts": bool(error >= MARGIN * uncertainty),
-    }
+def _rows(
+    design: Row, accuracies: Iterable[float], ask: Callable[..., Any], errors: Any, exact: Any, check: Any
+) -> Iterator[Row]:
+    """Yield the rows that hold estimates against true errors: a row an accuracy and quantity."""
+    uncertainty = errors(check, exact)
+    for accuracy in accuracies:
+        answer = ask(accuracy=accuracy)
+        estimate = answer.estimate or {}
+        for quantity, error in errors(answer, exact).items():
+            estimated = estimate.get(quantity, math.nan)
+            yield {
+                **design,
+                "accuracy": accuracy,
+                "quantity": quantity,
+                "unit": "rad" if quantity == "rotation" else "1",
+                "status": answer.status,
+                "control_points": estimate.get("control_points", 0),
+                "estimate": estimated,
+                "true_error": error,
+                "uncertainty": uncertainty[quantity],
+                "effectivity": estimated / error,
+                "counts": bool(error >= MARGIN * uncertainty[quantity]),
+            }
 
 
 def _path_errors(answer: Response, exact: Response) -> dict[str, float]:
@@ -138,10 +138,10 @@ def _path_errors(answer: Response, exact: Response) -> dict[str, float]:
     return {name: float(each or 0.0) if whole else math.nan for name, each in zip(names, apart, strict=True)}
 
 
-def _swing_error(motion: Motion, exact: Motion) -> float:
+def _swing_errors(motion: Motion, exact: Motion) -> dict[str, float]:
     """Return the largest error of the rotation at the motion's instants [rad]; NaN for one that stopped."""
     whole = motion.converged and exact.converged
-    return rotation_error(motion, exact, motion.time) if whole else math.nan
+    return {"rotation": rotation_error(motion, exact, motion.time) if whole else math.nan}
 
 
 def _timed(accuracy: float) -> Row:
