@@ -15,7 +15,6 @@ from studies.answers.models import Asked, put
 from studies.answers.response import Answered, Response, assembled
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.effects import Effects
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 
@@ -102,11 +101,10 @@ class _Question:
     def asked(self, settings: Settings, force: float) -> Asked:
         """Return the design under that force [N] alone, beside weight and pre-strain, as a model has it."""
         design = self.design
-        names = (*(name for name in design.effects.names if name not in LOADS), FORCE)
+        left = design.effects.renamed([name for name in design.effects.names if name not in LOADS])
         way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
         load = {"force": way} | ({} if isinstance(design, Problem) else {"body": self.body})
-        effects = Effects(names=names, tables={**design.effects.tables, FORCE: load})
-        return put(replace(design, effects=effects), settings)
+        return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
 
     def path(self, asked: Asked) -> Any:
         """Return the path of a model, or its refusal where weight and pre-strain find no equilibrium."""

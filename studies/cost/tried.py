@@ -105,7 +105,7 @@ def swing_limit(
 
 def swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
     """Return the swing of either theory at the instants, with rows of how certain they are."""
-    with_rotary = replace(problem, effects=problem.effects.renamed([*problem.effects.names, ROTARY]))
+    with_rotary = replace(problem, effects=problem.effects.plus(ROTARY))
     sheared = reference.swing_reference(
         with_rotary,
         duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",

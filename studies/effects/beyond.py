@@ -25,10 +25,9 @@ CONTROL_POINTS, ELEMENTS = 10, 160
 def with_sections(design: Either, names: tuple[str, ...] = OF_SIDES) -> Either:
     """Return a design with these effects beside its own, its sections as the rectangles of their A and I;
     roots are those of one block."""
-    effects = design.effects
-    tables = {"root_compliance": {"root": "monolithic"}} | dict(effects.tables)
-    more = [name for name in names if name not in effects.names]
-    return _sided(replace(design, effects=replace(effects, names=(*effects.names, *more), tables=tables)))
+    tables = {"root_compliance": {"root": "monolithic"}} | dict(design.effects.tables)
+    effects = replace(design.effects, tables=tables).plus(*names)
+    return _sided(replace(design, effects=effects))
 
 
 def _sided(design: Either) -> Either:

@@ -60,15 +60,14 @@ class Variant:
     def full(cls, effects: Effects, omitted: Iterable[str] = ()) -> Self:
         """Return the scene with what could matter beside its own effects, but for what is omitted."""
         added = [variant.added[0] for variant in cls.beside(effects)]
-        names = [*effects.names, *(name for name in added if name not in omitted)]
-        return cls(dropped=(), effects=effects.renamed(names))
+        return cls(dropped=(), effects=effects.plus(*(name for name in added if name not in omitted)))
 
     @classmethod
     def beside(cls, effects: Effects) -> Iterator[Self]:
         """Yield the scene with each effect that it does not have but that could matter."""
         for name, base in BESIDE.items():
             if name not in effects.names and base in effects.names:
-                yield cls(dropped=(), added=(name,), effects=effects.renamed([*effects.names, name]))
+                yield cls(dropped=(), added=(name,), effects=effects.plus(name))
 
     def without(self, dropped: Iterable[str]) -> Self:
         """Return the scene without these effects, or with their simpler forms."""

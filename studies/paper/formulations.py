@@ -14,7 +14,6 @@ from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.reference import MESHES, RECORDS, Reference, SwingReference, errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part, Study
 from studies.kinds import Array
@@ -137,14 +136,10 @@ def _readings() -> Iterator[tuple[str, Problem]]:
     rise = (1.0 - case.crossing_ratio) * case.length * sin(case.inclination)
     for name, offset in (("at the crossing", -rise), ("as far above the upper clamps", rise)):
         yield f"centre of mass {name}", replace(case, centre_offset=(0.0, offset))
-    weighed = case.effects.renamed([*case.effects.names, "gravity"])
-    yield "gravity, the ground below", replace(case, effects=weighed)
+    yield "gravity, the ground below", replace(case, effects=case.effects.plus("gravity"))
     frequency = swing_frequency(INSTANTS, _swing(case)).value
     lost = 2.0 * DAMPING * 2.0 * pi * frequency * case.body_moment_of_inertia
-    damped = Effects(
-        names=(*case.effects.names, "body_damping"),
-        tables={"body_damping": {"translation": 0.0, "rotation": lost}},
-    )
+    damped = case.effects.plus(body_damping={"translation": 0.0, "rotation": lost})
     yield f"damping, {DAMPING:.0%} of critical in the swing", replace(case, effects=damped)
 
 

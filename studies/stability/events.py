@@ -136,11 +136,7 @@ def _displaced(settings: Settings, millimetres: tuple[float, float]) -> Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
     given = as_mechanism(named_case(), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
-    effects = replace(
-        given.effects,
-        names=(*given.effects.names, "driven_displacement"),
-        tables={**given.effects.tables, "driven_displacement": target},
-    )
+    effects = given.effects.plus(driven_displacement=target)
     design = replace(given, rotation=None, increments=1, effects=effects)
     reference = answer_static(replace(design, increments=40), CHECK)
     answer = answer_static(design, settings)
