@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -76,8 +76,7 @@ def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:
     return math.log(abs(coarse / fine)) / math.log(ratio)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Extrapolated:
+class _Extrapolated(NamedTuple):
     """A limit of refinement and its uncertainty, of the same shape and unit."""
 
     value: Array
@@ -204,8 +203,7 @@ COMPARED: dict[str, Callable[[Response], Array]] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Frequency:
+class Frequency(NamedTuple):
     """Frequency of a swing [Hz], or NaN with the reason; rest: that it swings about, in its own unit."""
 
     value: float

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 
 import numpy as np
 from scipy.special import ellipe, ellipk
@@ -74,14 +75,15 @@ class _BucklingCase:
 
 def _cases() -> Iterator[_BucklingCase]:
     """Yield all questions: of columns and frames, then of the pivot."""
-    first = partial(Arc.critical_load, kind=BIFURCATION)
+    # turn of the other branch: of a column by the elastica, of the pivot beyond the buckling of its strips
+    first, turn = partial(Arc.critical_load, kind=BIFURCATION), attrgetter("turned")
     # of a column that is shortened first: (1 - P / EA) P is Euler's
     euler = SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2))
     column, shallow = published("column"), published("williams_shallow_toggle")
     yield _BucklingCase("column: critical load", column.frame(BEYOND), "bifurcation [EI/L^2]", first, euler)
     for degrees in PUBLISHED:
         name, angle = f"column: elastica at {degrees} deg", float(degrees)
-        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", _turn, angle, angle, True)
+        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", turn, angle, angle, True)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
             limit = partial(Arc.critical_load, kind=LIMIT, place=place)
@@ -98,12 +100,7 @@ def _cases() -> Iterator[_BucklingCase]:
     yield _BucklingCase(name, pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
     for depth in DEPTHS:
         name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
-        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", _turn, follow_branch=True)
-
-
-def _turn(arc: Arc) -> float:
-    """Return how far the other branch turns [deg]: of a column by the elastica, of the pivot by buckling."""
-    return arc.turned
+        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", turn, follow_branch=True)
 
 
 def bent_column(degrees: float) -> Frame:
