@@ -57,7 +57,7 @@ FORMER: dict[str, str] = {"capacity": "critical-load"}
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
 #: the line below that constant says it.
 STUDIES: dict[str, str] = {
-    "paper/fig03_snapshots": "studies.paper.fig03_snapshots",
+    "paper/fig03_snapshots": "studies.paper.static_curves:FIG03",
     "paper/fig04_trajectory": "studies.paper.static_curves:FIG04",
     "paper/fig05_stiffness": "studies.paper.static_curves:FIG05",
     "paper/fig06_release": "studies.paper.fig06_release",
