@@ -30,6 +30,9 @@ RATIO = 1.5
 #: Records of a motion [1]: some 80 a swing of Table 1, between which cubic interpolation is enough.
 RECORDS = 1000
 
+#: Part of its duration by which a motion may fall short of an instant.
+ROUND_OFF = 1e-9
+
 #: What a path is judged by, and the array of an answer that tells it.
 ARRAYS = {"trajectory": "centre", "torque": "torque", "stiffness": "stiffness", "stress": "max_stress"}
 QUANTITIES = tuple(ARRAYS)
@@ -187,9 +190,10 @@ def sampled(motion: Any, instants: Array) -> SolvedMotion:
 
 def rotation_error(motion: Any, against: Any, instants: Array) -> float:
     """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]."""
-    one, other = (CubicSpline(each.time, each.rotation) for each in (motion, against))
     last = min(motion.time[-1], against.time[-1])
-    return float(np.abs(one(np.minimum(instants, last)) - other(np.minimum(instants, last))).max())
+    both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
+    one, other = (CubicSpline(each.time, each.rotation)(both) for each in (motion, against))
+    return float(np.abs(one - other).max())
 
 
 def swing_errors(motion: Any, against: SolvedMotion) -> dict[str, float]:

@@ -20,7 +20,7 @@ from studies.answers.metrics import (
 )
 from studies.answers.models import put
 from studies.answers.motion import Motion
-from studies.answers.reference import SWING_MESHES, limit_of_swings
+from studies.answers.reference import SWING_MESHES, SolvedMotion, limit_of_swings, rotation_error
 from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -156,6 +156,16 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
     assert limit.uncertainty["rotation_rad"] < 1e-10
     assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-6)
     assert levels[0].energy_error == 0.0
+
+
+def test_motions_are_compared_as_far_as_both_go():
+    """A coarse motion that outlasts what it is held against is asked at its own records, up to its end."""
+    fine, coarse = (
+        SolvedMotion(time=time, rotation=np.cos(3.0 * time))
+        for time in (np.linspace(0.0, 1.0, 101), np.array([0.0, 0.5, 1.5, 3.0]))
+    )
+    assert rotation_error(coarse, fine, coarse.time) == pytest.approx(0.0, abs=1e-7)
+    assert rotation_error(coarse, fine, fine.time) > 0.1
 
 
 @pytest.mark.parametrize("settings", [SplineSettings(control_points=4), FeSettings(elements=4)], ids=str)
