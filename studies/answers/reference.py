@@ -189,10 +189,14 @@ def sampled(motion: Any, instants: Array) -> SolvedMotion:
 
 
 def rotation_error(motion: Any, against: Any, instants: Array) -> float:
-    """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]."""
+    """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]; a
+    motion that stopped at once has its start alone."""
     last = min(motion.time[-1], against.time[-1])
     both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
-    one, other = (CubicSpline(each.time, each.rotation)(both) for each in (motion, against))
+    one, other = (
+        CubicSpline(each.time, each.rotation)(both) if len(each.time) > 1 else each.rotation[0]
+        for each in (motion, against)
+    )
     return float(np.abs(one - other).max())
 
 

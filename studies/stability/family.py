@@ -129,6 +129,6 @@ def path_distance(path: Response, reference: Response) -> float:
 def _swing_distance(motion: Motion, reference: Motion) -> float:
     """Return the largest difference of rotation at the motion's records, as far as the reference goes, over
     the rotation at the start [1]; infinite for a motion with one that is no number."""
-    if len(motion.time) < 2 or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
+    if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
         return math.inf
     return rotation_error(motion, reference, motion.time) / abs(float(reference.rotation[0]))
