@@ -1,4 +1,4 @@
-"""Errors that a user of the command line can mend."""
+"""Errors that a user of the command line can mend, and answers that there are not."""
 
 from argparse import ArgumentTypeError
 
@@ -8,3 +8,7 @@ class BadInput(ArgumentTypeError, ValueError):
 
     Raised by what reads a word of the command line, it is told as it stands, behind the word's name.
     """
+
+
+class Unanswered(RuntimeError):
+    """A model did not reach the end of what it was asked; one line that says where it stopped."""

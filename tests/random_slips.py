@@ -27,7 +27,6 @@ CHANGED = {
     "fe_reference": "fe",
     "studies/answers/critical.py": "stability",
     "studies/answers/metrics.py": "suite",
-    "studies/answers/yielding.py": "suite",
 }
 #: Tests that any change of the code fails, or that are of pages and pictures.
 NOT_ASKED = ("bench", "docs", "interactive", "report", "suite/test_results.py", "suite/test_slips.py")

@@ -7,7 +7,7 @@ from typing import Any
 from studies.answers.models import Asked, model_of, put
 from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
-from studies.answers.settings import Settings
+from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
@@ -21,7 +21,6 @@ def answer_static(
     *,
     accuracy: float | None = None,
     repeat: int = 1,
-    raise_on_failure: bool = False,
     progress: Progress | None = None,
 ) -> Response:
     """Solve the static path of a design from load factor 0 to 1 with the model that `settings` belongs to.
@@ -37,8 +36,6 @@ def answer_static(
         accuracy: wanted error of trajectory and torque [1], which control points or elements are raised for;
             None for those of the settings.
         repeat: timed solves of the whole path [1].
-        raise_on_failure: raise the model's `ConvergenceError` rather than return the converged part of the
-            path.
         progress: called with increments done and increments in all.
 
     Raises:
@@ -48,7 +45,7 @@ def answer_static(
 
     def answer() -> Response:
         asked = put(design, settings)
-        path = asked.static_path(raise_on_failure=raise_on_failure, progress=progress, **wanted)
+        path = asked.static_path(raise_on_failure=False, progress=progress, **wanted)
         return Response.of(asked, path, solve_s=float(path.seconds["solve"]))
 
     timing = measure(answer, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=lambda each: each.solve_s)
@@ -61,7 +58,6 @@ def answer_release(
     *,
     duration: float,
     start: float | None = None,
-    records: int | None = None,
     repeat: int = 1,
     check: bool = False,
     swings: bool = True,
@@ -82,12 +78,11 @@ def answer_release(
         settings: names the model and its discretisation.
         duration: of the motion [s].
         start: rotation at the start [rad]; None for the end of the design's path.
+        repeat: timed releases [1].
         check: whether a companion motion says how far the model's control points, or elements, resolve it.
         swings: whether a body must be there, whose swing is told; if not, strips alone are followed too.
-        records: largest number of records; None for what the model keeps.
-        repeat: timed releases [1].
-        options: `step` [s], `integrator` and `accuracy` [rad], as the model names and checks them; None for
-            its own choice.
+        options: `step` [s], `integrator`, `accuracy` [rad] and the largest number of `records`, which the
+            model checks; None for its own choice.
 
     Raises:
         BadInput: a setting or option that the model refuses, a design without bodies; one line.
@@ -95,24 +90,34 @@ def answer_release(
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
-    start, model = design.rotation if start is None else start, model_of(settings)
-    given = {name: value for name, value in options.items() if value is not None} | model.release_options
-    if records is not None:
-        given[model.records] = records
+    at = design.rotation if start is None else start
+    how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
+    return _released(design, settings, at, how, repeat=repeat, check=check)
+
+
+def _released(
+    design: Design, settings: Settings, start: float | None, how: dict[str, Any], *, repeat: int, check: bool
+) -> Motion:
+    """Return the motion after a release from `start` [rad], as `answer_release` has it."""
+    model = model_of(settings)
+    if isinstance(settings, FeSettings):
+        words = {"records": "samples"}
+        how = {words.get(name, name): value for name, value in how.items()} | {"raise_on_failure": False}
 
     def solve() -> tuple[Asked, dict[str, Any], Any]:
         asked = put(design, settings, moving=True)
         with asked.refusals():
             at = {"start": start, "body": design.body} | _drive_of(asked)
-            return (
-                asked,
-                at,
-                model.dynamics.solve_motion(asked.modelled, duration=duration, check=False, **at, **given),
-            )
+            return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
 
     try:
-        timing = measure(solve, repeat=repeat, warm_up=1 if repeat > 1 else 0, part=_solve_s)
-    except model.errors.ConvergenceError as error:
+        timing = measure(
+            solve,
+            repeat=repeat,
+            warm_up=1 if repeat > 1 else 0,
+            part=lambda solved: float(solved[-1].seconds["solve"]),
+        )
+    except model.ConvergenceError as error:
         asked = put(design, settings, moving=True)
         return Motion.without_start(asked, f"statics does not reach the start: {error}")
     asked, at, result = timing.result
@@ -150,16 +155,15 @@ def answer_modes(
         BadInput: a setting or option that the model refuses; one line.
     """
     asked = put(design, settings, moving=True)
-    how: dict[str, Any] = {"count": count, "held": held, "body": design.body}
-    how |= {} if accuracy is None else {"accuracy": accuracy}
     still = rotation is None and (held or isinstance(design, Problem))
-    at = 0.0 if still else rotation
-    solve = partial(asked.model.modes.natural_frequencies, asked.modelled, rotation=at, **how)
+    how: dict[str, Any] = {"count": count, "held": held, "rotation": 0.0 if still else rotation}
+    how |= {} if accuracy is None else {"accuracy": accuracy}
+    solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
     state: dict[str, Any] = {"rotation": rotation or 0.0, "held": held}
     try:
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
-    except asked.model.errors.ConvergenceError as error:
+    except asked.model.ConvergenceError as error:
         return Spectrum.of(asked, None, message=f"statics does not reach the state: {error}", **state)
     return Spectrum.of(asked, timing.result, wall_s=timing.median, **state)
 
@@ -178,11 +182,6 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     return replace(answer, message=message, resolution="")
 
 
-def _solve_s(solved: tuple[Asked, dict[str, Any], Any]) -> float:
-    """Return what the steps of a motion took, without what is made before and after [s]."""
-    return float(solved[-1].seconds["solve"])
-
-
 def _drive_of(asked: Asked) -> dict[str, Any]:
     """Return the model's drive of a rotation that a motion goes on with, by its keyword; none if it lets go.
 
@@ -196,4 +195,4 @@ def _drive_of(asked: Asked) -> dict[str, Any]:
         return {}
     if design.rotation is None:
         raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
-    return {"drive": asked.model.drive(body=design.body, angle=design.rotation, **given)}
+    return {"drive": asked.model.DrivenRotation(body=design.body, angle=design.rotation, **given)}

@@ -15,10 +15,8 @@ from studies.answers.models import Asked, put
 from studies.answers.response import Answered, Response, assembled
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.effects import Effects
 from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 #: The effect that is raised, and those that load or lead bodies, which are left out.
 FORCE = "applied_force"
@@ -100,35 +98,32 @@ class _Question:
     held: bool
     body: str
 
-    @property
-    def unit(self) -> float:
-        """Return the Euler loads of all strips, clamped at both ends, together: 4 pi^2 EI / L^2 [N]."""
-        strips = self.design.strips
-        loads = (part.youngs_modulus * part.second_moment_of_area / part.length**2 for part in strips)
-        return 4.0 * math.pi**2 * float(sum(loads))
-
     def asked(self, settings: Settings, force: float) -> Asked:
         """Return the design under that force [N] alone, beside weight and pre-strain, as a model has it."""
         design = self.design
-        names = (*(name for name in design.effects.names if name not in LOADS), FORCE)
+        left = design.effects.renamed([name for name in design.effects.names if name not in LOADS])
         way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
-        load: dict[str, Any] = {"force": way}
-        if not isinstance(design, Problem):
-            load["body"] = self.body
-        return put(
-            replace(design, effects=Effects(names=names, tables={**design.effects.tables, FORCE: load})),
-            settings,
-        )
+        load = {"force": way} | ({} if isinstance(design, Problem) else {"body": self.body})
+        return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
 
     def path(self, asked: Asked) -> Any:
         """Return the path of a model, or its refusal where weight and pre-strain find no equilibrium."""
         how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "raise_on_failure": False}
         try:
-            return asked.model.statics.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
-        except asked.model.errors.InvalidParameter as error:
+            return asked.model.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
+        except asked.model.InvalidParameter as error:
             if hasattr(error, "critical_points"):
                 return error
             raise BadInput(f"{asked.settings.model}: {error}") from None
+
+    def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
+        """Yield forces [N], in the Euler loads of all strips, clamped at both ends, and the paths to them."""
+        strips = self.design.strips
+        loads = (part.youngs_modulus * part.second_moment_of_area / part.length**2 for part in strips)
+        unit = 4.0 * math.pi**2 * float(sum(loads))
+        for part in PARTS:
+            asked = self.asked(settings, part * unit)
+            yield part * unit, asked, self.path(asked)
 
 
 def critical_load(
@@ -219,53 +214,44 @@ def _remedy(settings: Settings) -> str:
 
 
 def _of(question: _Question, settings: Settings) -> CriticalLoad:
-    """Return the critical load with one discretisation."""
-    for part in PARTS:
-        size = part * question.unit
-        asked = question.asked(settings, size)
-        path = question.path(asked)
-        lost = [each for each in path.critical_points if each.inertia > 0]
-        if lost or not hasattr(path, "status") or path.status.value != "converged":
+    """Return the critical load with one discretisation, or that of a refusal that takes the path's place."""
+    for tried in question.paths(settings):
+        size, asked, path = tried
+        settled, lost = hasattr(path, "status"), [each for each in path.critical_points if each.inertia > 0]
+        if lost or not settled or path.status.value != "converged":
             break
-    return _told(question, asked, path, size, lost[0] if lost else None)
-
-
-def _told(question: _Question, asked: Asked, path: Any, size: float, lost: Any) -> CriticalLoad:
-    """Return the critical load of a path to a force, or of a refusal that takes its place."""
-    settled = hasattr(path, "status")
-    unstable = lost is not None and lost.preload < 1.0
     last = float(path.load_factor[-1]) if settled else 0.0
-    reached = size * float(lost.load_factor if lost is not None else last)
     there = float(path.bodies[question.body][-1, 2]) if settled else math.nan
-    if lost is not None and math.isfinite(lost.rotation):
-        there = float(lost.rotation)
-    return CriticalLoad(
-        **CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)},
-        status="converged" if lost is not None else str(path.status.value) if settled else "not_converged",
-        message="" if lost is not None or (settled and last == 1.0) else str(getattr(path, "message", path)),
-        direction=question.direction,
-        held=question.held,
-        force=None if lost is None else reached,
-        reached=reached,
-        turned=math.nan if unstable else there,
-        kind=NONE if lost is None else UNSTABLE if unstable else str(lost.kind),
-        preload=float(lost.preload) if lost is not None else 1.0,
-        uncertainty=math.nan,
-    )
+    found: dict[str, Any] = {
+        "status": str(path.status.value) if settled else "not_converged",
+        "message": "" if settled and last == 1.0 else str(getattr(path, "message", path)),
+        "reached": size * last,
+        "force": None,
+        "turned": there,
+        "kind": NONE,
+        "preload": 1.0,
+    }
+    for point in lost[:1]:
+        turned = float(point.rotation) if math.isfinite(point.rotation) else there
+        unstable, force = point.preload < 1.0, size * float(point.load_factor)
+        found = {"status": "converged", "message": "", "reached": force, "force": force} | {
+            "turned": math.nan if unstable else turned,
+            "kind": UNSTABLE if unstable else str(point.kind),
+            "preload": float(point.preload),
+        }
+    about = CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)}
+    known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
+    return CriticalLoad(**about | known | found)
 
 
 def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoad) -> CriticalLoad:
     """Return the answer of a design without a critical load with the forces at which it turns and yields."""
-    limits = [strip.yield_strength for strip in question.design.strips]
-
-    def turn(answer: Response) -> Array:
-        return np.abs(answer.bodies[question.body][:, 2]) / SOFT
-
-    def stress(answer: Response) -> Array:
-        worst = answer.strip_stress / np.array(limits, dtype=float)
-        return np.asarray(worst.max(axis=1))
-
-    shares = {"soft": turn} | ({"yields": stress} if None not in limits else {})
+    shares: dict[str, Callable[[Response], Any]] = {
+        "soft": lambda answer: np.abs(answer.bodies[question.body][:, 2]) / SOFT,
+        "yields": lambda answer: answer.yield_share,
+    }
+    if any(strip.yield_strength is None for strip in question.design.strips):
+        del shares["yields"]
     forces: dict[str, float | None] = {}
     apart = [FOUND]
     for name, share in shares.items():
@@ -278,22 +264,21 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
     return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
 
 
-def _passing(question: _Question, settings: Settings, share: Callable[[Response], Array]) -> float | None:
+def _passing(question: _Question, settings: Settings, share: Callable[[Response], Any]) -> float | None:
     """Return the force [N] at which a share of a limit first is 1, by solutions that end there; or None."""
 
-    def path(force: float) -> Array:
+    def path(force: float) -> Any:
         asked = question.asked(settings, force)
-        return share(Response.of(asked, question.path(asked), wall_s=0.0, solve_s=0.0)) - 1.0
+        return share(Response.of(asked, question.path(asked))) - 1.0
 
-    for part in PARTS:
-        size = part * question.unit
-        known = path(size)
+    for size, asked, first in question.paths(settings):
+        known = share(Response.of(asked, first)) - 1.0
         beyond = np.flatnonzero(known >= 0.0)
         if beyond.size and beyond[0] > 0:
             from scipy.optimize import brentq
 
-            first, last = ((beyond[0] - back) / INCREMENTS * size for back in (1, 0))
-            return float(brentq(lambda force: path(force)[-1], first, last, rtol=FOUND))
+            below, above = ((beyond[0] - back) / INCREMENTS * size for back in (1, 0))
+            return float(brentq(lambda force: path(force)[-1], below, above, rtol=FOUND))
         if beyond.size:
             return 0.0
     return None

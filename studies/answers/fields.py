@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import Model, effects_of, mode_bodies, model_of
+from studies.answers.models import effects_of, fields_along, mode_bodies
 from studies.answers.response import Answered, assembled, peak, stress_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import GROUND
@@ -17,10 +17,11 @@ from studies.kinds import Array
 
 #: Arrays of the design, not of its states.
 GIVEN = ("arc_length", "rest_shape", "rest_bodies")
-#: Energies of a path and of a motion, as solutions name them and as `Fields` does.
-OF_PATH = {f"{name}_energy": name for name in ("bending", "axial", "shear", "gravity")}
-OF_MOTION = {f"{name}_energy": name for name in ("kinetic", "strain", "gravity")} | {
-    "dissipated": "dissipated"
+#: What either model calls its answers -> analysis, what runs over its states, and its energies.
+KINDS = {
+    "StaticSolution": ("static", "load_factor", ("bending", "axial", "shear", "gravity")),
+    "Trajectory": ("release", "time_s", ("kinetic", "strain", "gravity", "dissipated")),
+    "Modes": ("modes", "mode", ()),
 }
 
 
@@ -154,21 +155,35 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
         raise BadInput(
             f"solution: got {got}, expected a static solution, a trajectory or modes, with their design"
         )
-    asked = _as_fine(modelled, solution)
+    analysis, series, energies = KINDS[type(solution).__name__]
+    asked = _as_fine(modelled, solution, analysis)
     settings = SplineSettings() if package == "spline_model" else FeSettings(element=asked.element)
     body = getattr(solution, "driven", None) or getattr(solution, "body", None)
-    blocks = _bodies_of(asked)
+    blocks = tuple(asked.design.bodies if hasattr(asked, "design") else asked.bodies)
+    names = [block.name for block in blocks]
+    states = np.asarray(solution.state)[None] if series == "mode" else solution.states
+    along = fields_along(settings, analysis)(asked, states)
+    arrays = {each.name: np.asarray(getattr(along, each.name), dtype=float) for each in fields(along)}
+    own = {"static": _path, "release": _motion, "modes": _modes}[analysis](solution, arrays, names)
+    known = {name: getattr(solution, f"{name}_energy", getattr(solution, name, None)) for name in energies}
+    named = effects_of(asked)
     return Fields(
         model=settings.model,
         settings={},
+        effects=assembled(named) if analysis == "static" else named,
+        status=str(solution.status.value) if series != "mode" else "converged",
+        message=getattr(solution, "message", ""),
+        analysis=analysis,
         parts=_strips_of(asked),
         blocks=blocks,
-        driven=[block.name for block in blocks].index(body) if body else 0,
-        **KINDS[type(solution).__name__](model_of(settings), asked, solution),
+        driven=names.index(body) if body else 0,
+        series=series,
+        energies={name: np.asarray(array) for name, array in known.items() if array is not None},
+        **arrays | own,
     )
 
 
-def _as_fine(asked: Any, solution: Any) -> Any:
+def _as_fine(asked: Any, solution: Any, analysis: str) -> Any:
     """Return the pivot or mechanism as it was solved: in motion, with the control points or elements that an
     accuracy has taken."""
     if hasattr(asked, "with_control_points"):
@@ -176,77 +191,37 @@ def _as_fine(asked: Any, solution: Any) -> Any:
         chosen = getattr(solution, "settings", {}).get("control_points", grid.points)
         points = getattr(solution, "control_points", chosen)
         fine = asked.on(getattr(solution, "segments", grid.segments), points)
-        return fine if KINDS[type(solution).__name__] is _path else fine.in_motion()
+        return fine if analysis == "static" else fine.in_motion()
     from fe_reference.refined import finer
 
-    meshes = getattr(solution.estimate, "meshes", ())
-    for _ in meshes[1:]:
+    for _ in getattr(solution.estimate, "meshes", ())[1:]:
         asked = finer(asked)
     return asked
 
 
-def _path(model: Model, asked: Any, result: Any) -> dict[str, Any]:
-    driven = not np.isnan(result.torque).all()
-    along = _arrays(model.static_fields(asked, result.states))
-    # as the solution has them: by balance of moments, where a spline has chosen its control points
-    own = {name: np.asarray(getattr(result, name), dtype=float) for name in ("axial_force", "bending_moment")}
-    along |= {name: forces for name, forces in own.items() if forces.shape == along[name].shape}
-    return {
-        **_ended(result, OF_PATH),
-        "analysis": "static",
-        "effects": assembled(effects_of(asked)),
-        "series": "load_factor",
-        "values": np.asarray(result.load_factor),
-        "torque": np.asarray(result.torque) if driven else None,
-        "stiffness": np.asarray(result.stiffness) if driven else None,
-        **along,
-    }
+def _path(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, Any]:
+    """Return what a path has of its own: forces by balance, where a spline has chosen its points."""
+    given = {name: np.asarray(getattr(result, name), float) for name in ("axial_force", "bending_moment")}
+    found: dict[str, Any] = {name: own for name, own in given.items() if own.shape == along[name].shape}
+    if not np.isnan(result.torque).all():
+        found |= {"torque": np.asarray(result.torque), "stiffness": np.asarray(result.stiffness)}
+    return found | {"values": np.asarray(result.load_factor)}
 
 
-def _motion(model: Model, asked: Any, result: Any) -> dict[str, Any]:
-    return {
-        **_ended(result, OF_MOTION),
-        "analysis": "release",
-        "effects": effects_of(asked),
-        "series": "time_s",
-        "values": np.asarray(result.time),
-        **_arrays(model.moving_fields(asked, result.states)),
-    }
+def _motion(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, Any]:
+    return {"values": np.asarray(result.time)}
 
 
-def _modes(model: Model, asked: Any, result: Any) -> dict[str, Any]:
+def _modes(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, Any]:
+    """Return modes, and the state that they are about as often as there are any."""
     count = len(result.frequency)
-    still = _arrays(model.mode_fields(asked, np.asarray(result.state)[None]))
-    moving = {name: np.repeat(array, count, axis=0) for name, array in still.items() if name not in GIVEN}
-    return {
-        "status": "converged",
-        "message": "",
-        "analysis": "modes",
-        "effects": effects_of(asked),
-        "series": "mode",
+    still = {name: np.repeat(array, count, axis=0) for name, array in along.items() if name not in GIVEN}
+    return still | {
         "values": np.arange(1.0, count + 1.0),
         "frequency": np.asarray(result.frequency),
         "mode_shape": np.asarray(result.shapes),
-        "mode_bodies": mode_bodies(result, [block.name for block in _bodies_of(asked)]),
-        **(still | moving),
+        "mode_bodies": mode_bodies(result, names),
     }
-
-
-#: What either model calls its answers, and who makes fields of them.
-KINDS = {"StaticSolution": _path, "Trajectory": _motion, "Modes": _modes}
-
-
-def _ended(result: Any, names: dict[str, str]) -> dict[str, Any]:
-    """Return how a path or motion ended, and its energies."""
-    energies = {
-        name: np.asarray(getattr(result, theirs)) for theirs, name in names.items() if hasattr(result, theirs)
-    }
-    return {"status": str(result.status.value), "message": result.message, "energies": energies}
-
-
-def _arrays(found: Any) -> dict[str, Any]:
-    """Return the arrays of a model's fields along the strips, by the names that `Fields` has."""
-    return {each.name: np.asarray(getattr(found, each.name), dtype=float) for each in fields(found)}
 
 
 def _strips_of(asked: Any) -> tuple[_Part, ...]:
@@ -256,18 +231,8 @@ def _strips_of(asked: Any) -> tuple[_Part, ...]:
     else:
         names = {**dict(enumerate(asked.body_names)), -1: GROUND, -2: None}
         given = [(strip, names[strip.root], names[strip.tip], strip.section) for strip in asked.strips]
+    taken = ("youngs_modulus", "area", "second_moment_of_area")
     return tuple(
-        _Part(
-            name=strip.name,
-            root=root,
-            tip=tip,
-            youngs_modulus=section.youngs_modulus,
-            area=section.area,
-            second_moment_of_area=section.second_moment_of_area,
-        )
+        _Part(name=strip.name, root=root, tip=tip, **{each: getattr(section, each) for each in taken})
         for strip, root, tip, section in given
     )
-
-
-def _bodies_of(asked: Any) -> tuple[Any, ...]:
-    return tuple(asked.design.bodies if hasattr(asked, "design") else asked.bodies)

@@ -1,8 +1,9 @@
 """Measures that compare one path with another, and the answers of models; the frequency of a swing."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -75,8 +76,7 @@ def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:
     return math.log(abs(coarse / fine)) / math.log(ratio)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Extrapolated:
+class _Extrapolated(NamedTuple):
     """A limit of refinement and its uncertainty, of the same shape and unit."""
 
     value: Array
@@ -155,28 +155,24 @@ def quasi_static_frequency(
     return 1.0 / (4.0 * quarter)
 
 
-#: What is compared, by name: arrays over the states; angles count as they are, in rad.
-COMPARED: dict[str, Callable[[Response], Array]] = {
-    "path": lambda answer: _moved(answer),
-    "torque": lambda answer: answer.torque,
-    "stiffness": lambda answer: answer.stiffness,
-    "energy": lambda answer: answer.strain_energy,
-    "stress": lambda answer: answer.max_stress,
-    "body_stiffness": lambda answer: _without_units(answer.body_stiffness),
-}
+def differences(
+    answer: Response, other: Response, names: Iterable[str] | None = None
+) -> dict[str, float | None]:
+    """Return the largest difference of quantities of `COMPARED` over the states that both reached, over their
+    largest value in `other` [1]; None where there is nothing to compare.
 
-
-def differences(answer: Response, other: Response) -> dict[str, float | None]:
-    """Return the largest difference of every quantity over the states that both reached, over its largest
-    value in `other` [1]; None where there is nothing to compare."""
+    A path that stopped may end between two states of the other: that one is left out.
+    """
     both = min(len(answer.load_factor), len(other.load_factor))
+    same = np.abs(answer.load_factor[:both] - other.load_factor[:both]) < NOTHING
     found: dict[str, float | None] = {}
-    for name, of in COMPARED.items():
-        if name == "body_stiffness" and (answer.body is None):
+    for name in names or COMPARED:
+        if name == "body_stiffness" and answer.body is None:
             continue
-        mine, theirs = of(answer)[:both], of(other)[:both]
+        mine, theirs = (COMPARED[name](each) for each in (answer, other))
         scale = float(np.abs(theirs).max(initial=0.0))
-        found[name] = float(np.abs(mine - theirs).max()) / scale if scale > 0.0 else None
+        apart = np.abs(mine[:both] - theirs[:both])[same]
+        found[name] = None if scale == 0.0 else float(apart.max()) / scale
     return found
 
 
@@ -189,14 +185,25 @@ def _moved(answer: Response) -> Array:
     return np.asarray(moved[..., 0] + 1j * moved[..., 1])
 
 
-def _without_units(stiffness: Array) -> Array:
-    """Return stiffness matrices (S, 3, 3) over the units that make the diagonal at rest one."""
-    unit = np.sqrt(np.abs(np.einsum("ii->i", stiffness[0])))
-    return np.asarray(stiffness / (unit[:, None] * unit))
+def _without_units(answer: Response) -> Array:
+    """Return the stiffness matrices of the body (S, 3, 3) over the units that make the diagonal at rest
+    one."""
+    unit = np.sqrt(np.abs(np.einsum("ii->i", answer.body_stiffness[0])))
+    return np.asarray(answer.body_stiffness / (unit[:, None] * unit))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Frequency:
+#: What is compared, by name: arrays over the states; angles count as they are, in rad.
+COMPARED: dict[str, Callable[[Response], Array]] = {
+    "path": _moved,
+    "torque": attrgetter("torque"),
+    "stiffness": attrgetter("stiffness"),
+    "energy": attrgetter("strain_energy"),
+    "stress": attrgetter("max_stress"),
+    "body_stiffness": _without_units,
+}
+
+
+class Frequency(NamedTuple):
     """Frequency of a swing [Hz], or NaN with the reason; rest: that it swings about, in its own unit."""
 
     value: float

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,61 +14,28 @@ from studies.errors import BadInput
 from studies.kinds import Array
 
 
-@dataclass(frozen=True)
-class Model:
-    """The modules of one model, the same names in both, and what differs in how they are asked.
-
-    Attributes:
-        records: keyword for the largest number of records of a motion.
-        release_options: keywords that every release takes.
-        drive: of a rotation in a motion.
-        static_fields, moving_fields, mode_fields: fields along the strips from the design in the model and
-            the states of a path, of a motion, and of what modes are about.
-    """
-
-    pivot: ModuleType
-    mechanism: ModuleType
-    statics: ModuleType
-    dynamics: ModuleType
-    modes: ModuleType
-    errors: ModuleType
-    records: str
-    release_options: dict[str, Any]
-    drive: type
-    static_fields: Callable[[Any, Any], Any]
-    moving_fields: Callable[[Any, Any], Any]
-    mode_fields: Callable[[Any, Any], Any]
-
-
-def model_of(settings: Settings) -> Model:
-    """Return the settings' model; the other one is not even imported."""
+def model_of(settings: Settings) -> Any:
+    """Return the package of the settings' model; both have the same public names. The other one is not even
+    imported."""
     if isinstance(settings, FeSettings):
-        from fe_reference import dynamics, errors, loads, mechanism, modes, section_forces, statics
+        import fe_reference
 
-        return Model(
-            *(mechanism, mechanism, statics, dynamics, modes, errors),
-            records="samples",
-            release_options={"raise_on_failure": False},
-            drive=loads.DrivenRotation,
-            static_fields=section_forces.strip_fields,
-            moving_fields=section_forces.strip_fields,
-            mode_fields=section_forces.strip_fields,
-        )
-    return _spline()
+        return fe_reference
+    import spline_model
+
+    return spline_model
 
 
-def _spline() -> Model:
-    from spline_model import dynamics, effects, errors, mechanism, modes, pivot, section_forces, statics
+def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]:
+    """Return what makes the fields along the strips from a design in the model and the states of a path
+    ("static"), of a motion ("release"), or of what modes are about ("modes")."""
+    if isinstance(settings, FeSettings):
+        from fe_reference import strip_fields
 
-    return Model(
-        *(pivot, mechanism, statics, dynamics, modes, errors),
-        records="records",
-        release_options={},
-        drive=effects.DrivenRotation,
-        static_fields=section_forces.static_fields,
-        moving_fields=section_forces.moving_fields,
-        mode_fields=section_forces.mode_fields,
-    )
+        return strip_fields
+    from spline_model.section_forces import mode_fields, moving_fields, static_fields
+
+    return {"static": static_fields, "release": moving_fields, "modes": mode_fields}[analysis]
 
 
 @dataclass(frozen=True)
@@ -78,16 +44,19 @@ class Asked:
 
     Attributes:
         design: of the case; settings: of the model.
-        model: its modules.
         moving: whether it is asked in motion, where a spline has another slide stiffness.
         modelled: the design in the model.
     """
 
     design: Design
     settings: Settings
-    model: Model
     moving: bool
     modelled: Any
+
+    @property
+    def model(self) -> Any:
+        """The package of the model."""
+        return model_of(self.settings)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -107,7 +76,7 @@ class Asked:
 
     def refusals(self) -> AbstractContextManager[None]:
         """Turn what the model refuses into one line."""
-        return _refusals(self.model, self.settings)
+        return _refusals(self.settings)
 
     def static_path(self, **how: Any) -> Any:
         """Return the model's static solution.
@@ -118,12 +87,12 @@ class Asked:
         Raises:
             BadInput: what the model refuses; one line.
         """
-        design, statics = self.design, self.model.statics
+        design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
         with self.refusals():
             if isinstance(design, Problem):
-                return statics.solve_statics(self.modelled, **given)
-            return statics.solve_mechanism(self.modelled, body=design.body, **given)
+                return self.model.solve_statics(self.modelled, **given)
+            return self.model.solve_mechanism(self.modelled, body=design.body, **given)
 
 
 def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
@@ -133,27 +102,26 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
         BadInput: a setting or an effect that the model refuses; one line.
     """
     model = model_of(settings)
-    keywords = _keywords(model, settings.keywords(), moving)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
-    with _refusals(model, settings):
+    with _refusals(settings):
+        keywords = scene | _keywords(model, settings.keywords(), moving)
         if isinstance(design, Problem):
-            modelled = model.pivot.cross_axis_pivot(**design.pivot_parameters(), **scene, **keywords)
+            modelled = model.cross_axis_pivot(**design.pivot_parameters(), **keywords)
         else:
             parts = design.mechanism_parameters()
-            modelled = model.mechanism.compliant_mechanism(
-                strips=[model.mechanism.StripDesign(**strip) for strip in parts["strips"]],
-                bodies=[model.mechanism.BodyDesign(**body) for body in parts["bodies"]],
-                **scene,
+            modelled = model.compliant_mechanism(
+                strips=[model.StripDesign(**strip) for strip in parts["strips"]],
+                bodies=[model.BodyDesign(**body) for body in parts["bodies"]],
                 **keywords,
             )
-    return Asked(design, settings, model, moving, modelled)
+    return Asked(design, settings, moving, modelled)
 
 
-def _keywords(model: Model, given: dict[str, Any], moving: bool) -> dict[str, Any]:
+def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]:
     """Return keywords of a discretisation with the slide stiffness of control points that are in motion."""
     if not moving or "control_points" not in given:
         return given
-    return {"slide_stiffness": model.pivot.swinging_slide_stiffness(given["control_points"])} | given
+    return {"slide_stiffness": model.swinging_slide_stiffness(given["control_points"])} | given
 
 
 def effects_of(modelled: Any) -> tuple[str, ...]:
@@ -163,10 +131,10 @@ def effects_of(modelled: Any) -> tuple[str, ...]:
 
 
 @contextmanager
-def _refusals(model: Model, settings: Settings) -> Iterator[None]:
+def _refusals(settings: Settings) -> Iterator[None]:
     try:
         yield
-    except model.errors.InvalidParameter as error:
+    except model_of(settings).InvalidParameter as error:
         raise BadInput(f"{settings.model}: {error}") from None
 
 

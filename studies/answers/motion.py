@@ -3,19 +3,17 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy import optimize
 
+from studies.answers import metrics
 from studies.answers.metrics import Frequency, swing_frequency
 from studies.answers.models import Asked, mode_bodies
 from studies.answers.response import Answered, Solved
-from studies.answers.signal_modes import SignalMode, signal_modes
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
-
-#: Arrays that a model may lack which keeps its constraints exactly, and everywhere.
-RESIDUALS = ("constraint_residual", "velocity_residual")
 
 #: Amplitude of the second mode over the first up to which one mode carries a motion: a passage through the
 #: rest tolerates as much of a ripple.
@@ -32,6 +30,90 @@ UNSTABLE = (
 )
 
 
+#: Amplitude of a mode in a record over that of the largest that counts: less is a ripple.
+LEAST = 0.1
+#: Half width of a line in the spectrum of a Hann window, over the inverse of the record's duration.
+WIDTH = 2.0
+#: Values of the spectrum between those of the record's own frequencies, and most modes that are told.
+FINER, MOST = 8, 6
+#: Multiples of a frequency up to which a line is its harmonic, that of a large swing which is no sine.
+HARMONICS = 9
+#: Records of which there must be so many.
+FEWEST = 16
+
+
+class SignalMode(NamedTuple):
+    """A mode in a record: its frequency [Hz], and its amplitude in the unit of the record [rad]."""
+
+    frequency_Hz: float
+    amplitude_rad: float
+
+
+def signal_modes(time: Array, value: Array) -> list[SignalMode]:
+    """Return the modes that a record (T,) contains at equal instants (T,) [s], the largest first.
+
+    Lines of its spectrum, with a Hann window, begin a fit of sines by least squares. Lines nearer than the
+    width of one to a larger one are that one's, and so are multiples of its frequency. A record of less than
+    one and a half periods has none.
+    """
+    count = len(value)
+    if count < FEWEST or float(np.ptp(value)) <= metrics.STILL:
+        return []
+    spacing = float(time[-1] - time[0]) / (count - 1)
+    lines = _lines(value, 1.0 / (spacing * count))
+    if not lines.size:
+        return []
+    at = np.linspace(0.0, spacing * (count - 1), count)
+    scale = 1.0 / (spacing * count)
+
+    def apart(shifts: Array) -> Array:
+        return _fit(at, value, lines + scale * shifts)[1]
+
+    solve: Any = optimize.least_squares  # its stub is a module's
+    fitted = solve(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1)
+    shifts = fitted.x
+    frequencies = lines + scale * shifts
+    amplitudes = _fit(at, value, frequencies)[0]
+    found = sorted(zip(amplitudes, frequencies, strict=True), reverse=True)
+    return [
+        SignalMode(float(frequency), float(amplitude))
+        for amplitude, frequency in found
+        if amplitude >= LEAST * found[0][0]
+    ]
+
+
+def _lines(value: Array, resolution: float) -> Array:
+    """Return the frequencies [Hz] of the lines of a record that stand for modes, the largest first."""
+    count = len(value)
+    window = np.hanning(count)
+    rest = float(window @ value / window.sum())
+    spectrum = np.abs(np.fft.rfft(window * (value - rest), FINER * count))
+    tops = np.flatnonzero((spectrum[1:-1] > spectrum[:-2]) & (spectrum[1:-1] >= spectrum[2:])) + 1
+    tops = tops[np.argsort(-spectrum[tops])]
+    lines: list[float] = []
+    for top in tops:
+        frequency = float(top) / FINER * resolution
+        if spectrum[top] < LEAST * spectrum[tops[0]] or len(lines) == MOST:
+            break
+        if frequency > resolution and not any(_belongs(frequency, to, resolution) for to in lines):
+            lines.append(frequency)
+    return np.array(lines)
+
+
+def _belongs(frequency: float, to: float, resolution: float) -> bool:
+    """Return whether a line is within the width of a larger one, or of a multiple of it."""
+    multiple = min(max(round(frequency / to), 1), HARMONICS)
+    return abs(frequency - multiple * to) < (WIDTH if multiple == 1 else 1.0) * resolution
+
+
+def _fit(at: Array, value: Array, frequencies: Array) -> tuple[Array, Array]:
+    """Return the amplitudes (F,) of the sines that fit a record best, and what they leave of it (T,)."""
+    angle = 2.0 * math.pi * at[:, None] * frequencies
+    columns = np.hstack((np.ones((len(at), 1)), np.cos(angle), np.sin(angle)))
+    found = np.linalg.lstsq(columns, value, rcond=None)[0]
+    return np.hypot(*found[1:].reshape(2, -1)), columns @ found - value
+
+
 @dataclass(frozen=True, kw_only=True)
 class Motion(Solved):
     """Motion of a design after its release at rest, T records, the start first.
@@ -44,7 +126,7 @@ class Motion(Solved):
         time: (T,) [s]; empty when statics does not reach the start.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
-        constraint_residual: (T,) largest gap of clamps [m]; velocity_residual: (T,) its rate [m/s].
+        constraint_residual: (T,) largest gap of clamps [m].
         starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
         wall_s: time of the whole call, the static path to its start included [s].
     """
@@ -56,20 +138,24 @@ class Motion(Solved):
     work: Array
     dissipated: Array
     constraint_residual: Array
-    velocity_residual: Array
     starts_still: bool = False
     rotation_error: float = math.nan
     displacement_error: float = math.nan
 
     @property
+    def balance(self) -> Array:
+        """(T,) energy in the design, less the work of loads and with what was lost: constant [J]."""
+        stored = self.kinetic_energy + self.strain_energy
+        return np.asarray(stored + self.gravity_energy - self.work + self.dissipated)
+
+    @property
     def energy_error(self) -> float:
         """Largest error of the balance of energies over the largest of its parts, the stored one at the
         start [1]; NaN without a record."""
-        stored = self.kinetic_energy + self.strain_energy
-        balance = stored + self.gravity_energy - self.work + self.dissipated
+        balance, stored = self.balance, (self.kinetic_energy + self.strain_energy)[:1]
         if not len(balance):
             return float("nan")
-        parts = (stored[:1], self.gravity_energy - self.gravity_energy[0], self.work, self.dissipated)
+        parts = (stored, self.gravity_energy - self.gravity_energy[0], self.work, self.dissipated)
         scale = max(float(np.abs(part).max()) for part in parts)
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
@@ -101,15 +187,14 @@ class Motion(Solved):
 
         One without a part of the design's energy in it stands still, and says so.
         """
-        exact, kinetic = np.zeros(len(result.time)), np.asarray(result.kinetic_energy)
-        given: dict[str, Any] = dict.fromkeys(RESIDUALS, exact)
-        given |= {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
-        own: dict[str, Any] = {name: np.asarray(array, dtype=float) for name, array in given.items()}
+        own = {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
         own["starts_still"] = bool(result.starts_still)
-        own |= {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
+        if not hasattr(result, "constraint_residual"):  # where constraints are kept exactly
+            own["constraint_residual"] = np.zeros(len(result.time))
+        kinetic = np.asarray(result.kinetic_energy)
         if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
             own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
-        return cls(**cls.about(asked, result) | cls.ended(result) | own | seconds)
+        return cls.made(asked, result, **own, **seconds)
 
     @classmethod
     def without_start(cls, asked: Asked, message: str) -> "Motion":

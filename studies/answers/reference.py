@@ -1,7 +1,8 @@
-"""The references that paths and motions are held against: limits of refinement of the finite elements."""
+"""Paths and motions that others are held against, their errors, and limits of refinement of the elements."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,34 +30,62 @@ RATIO = 1.5
 #: Records of a motion [1]: some 80 a swing of Table 1, between which cubic interpolation is enough.
 RECORDS = 1000
 
-
-class NoReference(RuntimeError):
-    """The finite elements do not reach the end of a path or motion, so that there is no reference."""
-
+#: Part of its duration by which a motion may fall short of an instant.
+ROUND_OFF = 1e-9
 
 #: What a path is judged by, and the array of an answer that tells it.
 ARRAYS = {"trajectory": "centre", "torque": "torque", "stiffness": "stiffness", "stress": "max_stress"}
 QUANTITIES = tuple(ARRAYS)
+#: Arrays of a motion beside its instants.
+SWUNG = ("rotation", "centre", "kinetic_energy", "strain_energy")
+
+
+class NoReference(RuntimeError):
+    """A model does not reach the end of a path or motion, so that there is no reference."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reference:
-    """Limit of refinement of the finite-element path and how uncertain it is.
+class SolvedPath:
+    """A static path, S states, the unloaded one first; a `Response` of the suite's own models has the same.
 
     Attributes:
-        finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
-        rotation: (S,) [rad]; centre: (S, 2) [m]; torque: (S,) [N m]; stiffness: (S,) [N m / rad];
-            max_stress: (S,) the largest of each state [Pa]; the limits.
-        uncertainty: largest over the path, relative, of each of `QUANTITIES` [1].
+        rotation (S,): of the body, counter-clockwise [rad]. centre (S, 2): of its mass, origin at A1 [m].
+        torque (S,): that drives the body [N m]. stiffness (S,): its derivative by the rotation [N m / rad];
+            max_stress (S,): at the strips' outer fibres [Pa]; None where the model does not give them.
+        solve_s: time of the increments alone [s]. counters: of the solve, by kind; "unknowns" is the size of
+            its system.
     """
 
-    finest: Any
     rotation: Array
     centre: Array
     torque: Array
+    stiffness: Array | None = None
+    max_stress: Array | None = None
+    solve_s: float = math.nan
+    counters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reference(SolvedPath):
+    """A path that others are held against.
+
+    Attributes:
+        uncertainty: largest over the path, relative, of each of `QUANTITIES` [1]. source: what it is.
+        finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
+    """
+
     stiffness: Array
     max_stress: Array
     uncertainty: Mapping[str, float]
+    source: str
+    finest: Response
+
+    @classmethod
+    def of(cls, path: Response, coarser: Response, source: str) -> "Reference":
+        """Return a fine path as it is; a coarser one says how uncertain it is."""
+        arrays = {name: getattr(path, name) for name in ARRAYS.values()}
+        uncertainty = largest_errors(coarser, path)
+        return cls(rotation=path.rotation, **arrays, uncertainty=uncertainty, source=source, finest=path)
 
 
 def reference(design: Design, element: str = "corotational") -> Reference:
@@ -74,79 +103,109 @@ def limit_of(answers: Sequence[Response]) -> Reference:
     Raises:
         NoReference: one of them does not reach the end of the path.
     """
+    source, finest = _extrapolated(answers), answers[-1]
+    limits = {name: extrapolate([getattr(each, array) for each in answers]) for name, array in ARRAYS.items()}
+    values: dict[str, Any] = {ARRAYS[name]: limit.value for name, limit in limits.items()}
+    uncertainty = {
+        name: float(_error(name, limit.value + limit.uncertainty, limit.value).max())
+        for name, limit in limits.items()
+    }
+    return Reference(
+        rotation=finest.rotation, **values, uncertainty=uncertainty, source=source, finest=finest
+    )
+
+
+def _extrapolated(answers: Sequence[Response | Motion]) -> str:
+    """Return the source of the limit of finite-element answers; NoReference if one stopped early."""
     for answer in answers:
         if not answer.converged:
             raise NoReference(f"reference with {answer.settings['elements']} elements: {answer.message}")
-    limits = {
-        name: extrapolate([getattr(answer, array) for answer in answers]) for name, array in ARRAYS.items()
-    }
-    values = {ARRAYS[name]: limit.value for name, limit in limits.items()}
-    uncertainty = {
-        name: float(_error_of(name)(limit.value + limit.uncertainty, limit.value).max())
-        for name, limit in limits.items()
-    }
-    finest = answers[-1]
-    return Reference(finest=finest, rotation=finest.rotation, uncertainty=uncertainty, **values)
+    meshes = ", ".join(str(answer.settings["elements"]) for answer in answers)
+    return f"{answers[0].settings['element']} elements, {meshes} a strip, extrapolated"
 
 
-def _error_of(name: str) -> Callable[[Array, Array], Array]:
-    """Return the measure of a quantity's error: of a position over the travel, else relative."""
-    return trajectory_error if name == "trajectory" else relative_error
+def _error(name: str, values: Array, expected: Array) -> Array:
+    """Return the error of a quantity: of a position over the travel, else relative."""
+    return (trajectory_error if name == "trajectory" else relative_error)(values, expected)
 
 
 def errors(answer: Any, against: Any) -> dict[str, Array]:
     """Return the errors of a path, of any model, by those of `QUANTITIES` that both give, (S,) of the states
     that it reached: of the trajectory >= 0, the others signed [1]."""
     pairs = {name: (getattr(answer, array), getattr(against, array)) for name, array in ARRAYS.items()}
-    return {name: _error_of(name)(*pair) for name, pair in pairs.items() if all(v is not None for v in pair)}
+    return {name: _error(name, *pair) for name, pair in pairs.items() if all(v is not None for v in pair)}
 
 
-def largest_errors(answer: Response, against: Reference) -> dict[str, float]:
+def largest_errors(answer: Any, against: Any) -> dict[str, float]:
     """Return the largest magnitude of each error over the path [1]."""
     return {name: float(np.abs(error).max()) for name, error in errors(answer, against).items()}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Swing:
-    """A motion at common instants, T of them.
+class SolvedMotion:
+    """Motion after a release at rest, T records, the start first; a `Motion` has the same.
 
     Attributes:
-        time (T,) [s]; rotation (T,) [rad]; centre (T, 2) [m]; kinetic_energy, strain_energy (T,) [J].
+        time (T,): [s]. rotation (T,): of the body [rad]. centre (T, 2): [m]; kinetic_energy, strain_energy
+            (T,): [J]; None where the model does not give them. solve_s, counters: as of a path, of the steps.
     """
 
     time: Array
     rotation: Array
-    centre: Array
-    kinetic_energy: Array
-    strain_energy: Array
+    centre: Any = None
+    kinetic_energy: Any = None
+    strain_energy: Any = None
+    solve_s: float = math.nan
+    counters: Mapping[str, float] = field(default_factory=dict)
 
-
-#: Arrays of a swing beside its instants.
-SWUNG = [each.name for each in fields(Swing) if each.name != "time"]
+    @property
+    def frequency(self) -> float:
+        """Frequency of the swing [Hz]."""
+        return swing_frequency(self.time, self.rotation).value
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwingReference:
-    """Limit of refinement of a swing and how uncertain it is.
+class SwingReference(SolvedMotion):
+    """A motion that others are held against, at common instants.
 
     Attributes:
-        swing: the limit at the common instants.
-        frequency: of the limit [Hz].
-        uncertainty: (T,) of the rotation [rad]; centre_uncertainty: (T, 2) [m].
-        frequency_uncertainty: relative [1].
+        uncertainty: largest of the rotation, "rotation_rad", relative of the "frequency" [1], and of a limit
+            of refinement those of the centre, "com_x_m" and "com_y_m". source: what it is.
     """
 
-    swing: Swing
-    frequency: float
-    uncertainty: Array
-    centre_uncertainty: Array
-    frequency_uncertainty: float
+    uncertainty: Mapping[str, float]
+    source: str
 
 
-def sampled(motion: Motion, instants: Array) -> Swing:
-    """Return `motion` at `instants` [s] by cubic interpolation between its records."""
-    found = {name: CubicSpline(motion.time, getattr(motion, name))(instants) for name in SWUNG}
-    return Swing(time=instants, **found)
+def sampled(motion: Any, instants: Array) -> SolvedMotion:
+    """Return a motion at `instants` [s] by cubic interpolation between its records.
+
+    A last record may fall short of the last instant by round-off.
+    """
+    known = {name: array for name in SWUNG if (array := getattr(motion, name)) is not None}
+    at = np.minimum(instants, motion.time[-1])
+    found: dict[str, Any] = {name: CubicSpline(motion.time, array)(at) for name, array in known.items()}
+    return SolvedMotion(time=instants, **found)
+
+
+def rotation_error(motion: Any, against: Any, instants: Array) -> float:
+    """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]; a
+    motion that stopped at once has its start alone."""
+    last = min(motion.time[-1], against.time[-1])
+    both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
+    one, other = (
+        CubicSpline(each.time, each.rotation)(both) if len(each.time) > 1 else each.rotation[0]
+        for each in (motion, against)
+    )
+    return float(np.abs(one - other).max())
+
+
+def swing_errors(motion: Any, against: SolvedMotion) -> dict[str, float]:
+    """Return the errors of a motion at the instants of another: the largest of the rotation [rad], and that
+    of the frequency of the swing [1]."""
+    frequency = sampled(motion, against.time).frequency
+    rotation = rotation_error(motion, against, against.time)
+    return {"rotation_rad": rotation, "frequency": abs(frequency / against.frequency - 1.0)}
 
 
 def swing_reference(
@@ -162,27 +221,27 @@ def swing_reference(
     Raises:
         NoReference: a motion stopped early.
     """
-    levels = []
-    for elements in meshes:
-        settings = FeSettings(elements=elements, element=element)
-        answer = answer_release(problem, settings, duration=duration, records=RECORDS)
-        if not answer.converged:
-            raise NoReference(f"reference with {elements} elements: {answer.message}")
-        levels.append(answer)
+    settings = (FeSettings(elements=count, element=element) for count in meshes)
+    levels = [answer_release(problem, each, duration=duration, records=RECORDS) for each in settings]
     return limit_of_swings(levels, instants)
 
 
 def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
-    """Return the limit of motions on meshes that are each finer by `RATIO` than the one before."""
-    swings = [sampled(level, instants) for level in levels]
+    """Return the limit of motions on meshes that are each finer by `RATIO` than the one before.
+
+    Raises:
+        NoReference: one of them stopped early.
+    """
+    source, swings = _extrapolated(levels), [sampled(level, instants) for level in levels]
     limits = {name: extrapolate([getattr(swing, name) for swing in swings], ratio=RATIO) for name in SWUNG}
-    rotation = limits["rotation"]
     before = extrapolate([swing.rotation for swing in swings[:-1]], ratio=RATIO).value
-    frequency = swing_frequency(instants, rotation.value).value
-    return SwingReference(
-        swing=Swing(time=instants, **{name: limit.value for name, limit in limits.items()}),
-        frequency=frequency,
-        uncertainty=rotation.uncertainty,
-        centre_uncertainty=limits["centre"].uncertainty,
-        frequency_uncertainty=abs(swing_frequency(instants, before).value / frequency - 1.0),
-    )
+    values: dict[str, Any] = {name: limit.value for name, limit in limits.items()}
+    frequency = SolvedMotion(time=instants, **values).frequency
+    centre = limits["centre"].uncertainty.max(axis=0)
+    uncertainty = {
+        "rotation_rad": float(limits["rotation"].uncertainty.max()),
+        "com_x_m": float(centre[0]),
+        "com_y_m": float(centre[1]),
+        "frequency": abs(swing_frequency(instants, before).value / frequency - 1.0),
+    }
+    return SwingReference(time=instants, **values, uncertainty=uncertainty, source=source)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from studies.answers.models import Asked
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
 from studies.cases.section import Sectioned
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 #: Parts of an estimate that are no error.
@@ -50,6 +51,12 @@ class Answered:
         """Whether all that was asked for was reached."""
         return self.status == "converged"
 
+    def whole(self) -> Self:
+        """Return the answer; Unanswered unless all that was asked for was reached."""
+        if not self.converged:
+            raise Unanswered(self.message)
+        return self
+
     @property
     def errors(self) -> dict[str, float]:
         """Estimated errors by name, NaN of what there is none of; empty where nothing estimates them."""
@@ -69,10 +76,8 @@ class Answered:
     def about(asked: Asked, result: Any = None) -> dict[str, Any]:
         """Return what was asked, and of the model's own answer, where there is one, the settings that it has
         chosen for its accuracy and its estimate of its error."""
-        estimate: Any = getattr(result, "estimate", None)
-        parts = None
-        if estimate is not None:
-            parts = asdict(estimate)
+        parts = asdict(result.estimate) if getattr(result, "estimate", None) else None
+        if parts is not None:
             parts |= dict(parts.pop("errors", {}))
         return {
             "design": asked.design,
@@ -113,10 +118,9 @@ class Solved(Answered):
 
     def __post_init__(self) -> None:
         """Make all arrays read only."""
-        for value in vars(self).values():
-            for array in value.values() if isinstance(value, dict) else (value,):
-                if isinstance(array, np.ndarray):
-                    read_only(array)
+        for array in (*vars(self).values(), *self.bodies.values()):
+            if isinstance(array, np.ndarray):
+                read_only(array)
 
     @property
     def rotation(self) -> Array:
@@ -133,16 +137,20 @@ class Solved(Answered):
         """Return the names of the arrays that are taken over from a model's own answer as they are."""
         return [each.name for each in fields(cls) if each.type == Array]
 
-    @staticmethod
-    def ended(result: Any) -> dict[str, Any]:
-        """Return how the bodies moved and how that ended; only some models say how well they resolve it."""
-        return {
+    @classmethod
+    def made(cls, asked: Asked, result: Any, **own: Any) -> Self:
+        """Return the neutral form of a model's path or motion, which has the arrays by the same names; `own`
+        are its times, and what else stands in their place. Only some models say how well they resolve it."""
+        arrays = {name: getattr(result, name) for name in cls.arrays() if hasattr(result, name)}
+        ended: dict[str, Any] = {
             "bodies": {name: np.asarray(place, dtype=float) for name, place in result.bodies.items()},
             "status": str(result.status.value),
             "message": result.message,
             "resolution": getattr(result, "resolution", ""),
             "counters": dict(result.counters),
         }
+        ended |= {name: np.asarray(array, dtype=float) for name, array in arrays.items()}
+        return cls(**cls.about(asked, result) | ended | own)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,6 +187,12 @@ class Response(Solved):
         return getattr(self.design, "crossing_point", None)
 
     @property
+    def places(self) -> Array:
+        """(S, 2) load factor [1] and rotation [rad], NaN where no body turns."""
+        turns = np.full(len(self.load_factor), np.nan) if self.body is None else self.rotation
+        return np.stack((self.load_factor, turns), axis=1)
+
+    @property
     def centres(self) -> dict[str, Array]:
         """(S, 2) centres of mass of the bodies by name [m]."""
         return {name: place[:, :2] for name, place in self.bodies.items()}
@@ -187,11 +201,6 @@ class Response(Solved):
     def centre_shift(self) -> Array:
         """(S, 2) displacement of a pivot's point that lies at the strips' crossing at rest [m]."""
         return centre_shift(np.array(self.crossing), self.rotation, self.centre)
-
-    @property
-    def shape(self) -> Array:
-        """(S, G, P, 2) of the strips at the stations [m]."""
-        return np.asarray(self.solution.shape)
 
     @property
     def strain_energy(self) -> Array:
@@ -213,6 +222,15 @@ class Response(Solved):
         """(S,) the largest of all strips [Pa]."""
         return np.asarray(self.strip_stress.max(axis=1, initial=0.0))
 
+    @property
+    def yield_share(self) -> Array | None:
+        """(S,) largest stress over the yield strength of its strip [1]; None where a strip has none."""
+        limits = [strip.yield_strength for strip in self.design.strips]
+        if None in limits:
+            return None
+        worst = self.strip_stress / np.array(limits, dtype=float)
+        return np.asarray(worst.max(axis=1))
+
     @cached_property
     def body_stiffness(self) -> Array:
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
@@ -224,10 +242,8 @@ class Response(Solved):
     @classmethod
     def of(cls, asked: Asked, result: Any, **seconds: float) -> "Response":
         """Return the neutral form of a model's path; seconds: its times."""
-        arrays = {name: np.asarray(getattr(result, name), dtype=float) for name in cls.arrays()}
         own = {"critical_points": tuple(result.critical_points), "effects": assembled(asked.effects)}
-        answer = cls(**cls.about(asked, result) | cls.ended(result) | arrays | own | seconds)
-        return answer._with_shift()
+        return cls.made(asked, result, **own, **seconds)._with_shift()
 
     def _with_shift(self) -> "Response":
         """Return the answer of a pivot that estimates its path with the error of the centre shift as well."""
@@ -235,25 +251,19 @@ class Response(Solved):
         known = next((found[name] for name in PLACES if name in found), None)
         if known is None or self.crossing is None:
             return self
-        accuracy = found["accuracy"]
         error = float(shift_error(np.array([known]), self.centre[None], self.centre_shift[None])[0])
-        remarks = [self.resolution]
-        if error > accuracy:
-            remarks.append(f"estimated error of the centre shift {error:.1e}, above {accuracy:g}")
+        above = f"estimated error of the centre shift {error:.1e}, above {found['accuracy']:g}"
+        remarks = (self.resolution, above if error > found["accuracy"] else "")
         return replace(
             self, estimate=found | {"centre_shift": error}, resolution="; ".join(filter(None, remarks))
         )
 
 
 def shift_error(error: Array, centre: Array, shift: Array) -> Array:
-    """Return errors of centre shifts (D,) [1], from those of the bodies' places, of D paths to given turns.
+    """Return errors of centre shifts (D, S, 2) [m] of D paths to given turns, over the largest (D,) [1].
 
-    The shift errs as the centre does, but it is much smaller, so that in parts of the largest shift it errs
-    more. nan where nothing shifts.
-
-    Args:
-        error: of the places, in parts of the largest displacement (D,) [1].
-        centre, shift: (D, S, 2) [m].
+    The shift errs as the centre (D, S, 2) does, `error` in parts of its largest displacement, but it is much
+    smaller, so that it errs more. nan where nothing shifts.
     """
     moved, shifted = (
         np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)
@@ -299,7 +309,6 @@ def centre_shift(crossing: Any, rotation: Array, centre: Array, rest: Array | No
     crossing = np.asarray(crossing)[..., None, :]
     arm = crossing - (centre[..., :1, :] if rest is None else rest)
     cosine, sine = np.cos(rotation), np.sin(rotation)
-    turned = np.stack(
-        (cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]), axis=-1
-    )
+    along, across = cosine * arm[..., 0] - sine * arm[..., 1], sine * arm[..., 0] + cosine * arm[..., 1]
+    turned = np.stack((along, across), axis=-1)
     return np.asarray(centre + turned - crossing)

@@ -1,16 +1,49 @@
-"""What an answer bears: stress at the outer fibres, where it is largest, and where it yields."""
+"""What an answer bears: its largest stress, and from which load factor and rotation on a strip yields."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
+from studies.answers.models import put
 from studies.answers.response import Response
-from studies.answers.yielding import Yield, first_yield
+from studies.answers.settings import Settings, settings_of_model
+from studies.cases.design import Design
+from studies.errors import Unanswered
+from studies.kinds import Array
 
 #: Part of a strip within which a place is its root, its middle or its tip.
 NEAR = 0.02
 #: Part of a stress below which two are the same: the strips of a symmetric pivot.
 SAME = 1e-9
+#: What is in proportion to the load factor, by effect.
+SCALED = {
+    "applied_force": "force",
+    "applied_moment": "moment",
+    "tip_force": "force",
+    "driven_displacement": "displacement",
+}
+#: What the models call the error of the largest stress.
+STRESS = ("stress", "largest_stress")
+#: Part of an increment to which the place is solved for.
+PRECISION = 1e-7
+
+
+@dataclass(frozen=True, kw_only=True)
+class Yield:
+    """Where a strip begins to yield.
+
+    Attributes:
+        load_factor: [1]; rotation: [rad], NaN where no body turns.
+        error: estimated, in parts of the rotation or, where that does not change, of the load factor [1]; NaN
+            where it is not estimated.
+    """
+
+    load_factor: float
+    rotation: float
+    error: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,22 +79,104 @@ class Strength:
 def strength(answer: Response) -> Strength:
     """Return the largest stress of an answer, and what of its path the material bears."""
     stress, strips = answer.strip_stress, answer.design.strips
-    limits = [strip.yield_strength for strip in strips]
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip = map(int, np.unravel_index(first, stress.shape))
     along = answer.extreme_fibre_stress[state, strip]
     station = int(np.argmax(along >= (1.0 - SAME) * along.max()))
-    turns = np.full(len(answer.load_factor), np.nan) if answer.body is None else answer.rotation
-    places = np.stack((answer.load_factor, turns), axis=1)
-    known = all(limit is not None for limit in limits)
-    share = (stress / np.array(limits, dtype=float)).max(axis=1) if known else None
+    load_factor, rotation = map(float, answer.places[state])
+    share = answer.yield_share
     return Strength(
         stress=float(stress.max()),
         strip=strips[strip].name,
         station=float(answer.stations[station]),
-        load_factor=float(places[state, 0]),
-        rotation=float(places[state, 1]),
-        yield_strength=limits[strip],
+        load_factor=load_factor,
+        rotation=rotation,
+        yield_strength=strips[strip].yield_strength,
         safety=float(1.0 / share.max()) if share is not None and share.max() > 0.0 else None,
-        yields=None if share is None else first_yield(answer, share),
+        yields=None if share is None else _first_yield(answer, share),
     )
+
+
+def _first_yield(answer: Response, share: Array) -> Yield | None:
+    """Return where the share (S,) of the yield strength is first 1 on the path of an answer; None if nowhere.
+
+    The states between two increments are solved for, with the discretisation of the answer.
+    """
+    beyond = np.flatnonzero(share >= 1.0)
+    if not beyond.size:
+        return None
+    places, after = answer.places, int(beyond[0])
+    if after == 0:
+        return Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
+    known: dict[float, tuple[float, Array]] = {
+        float(k): (share[k] - 1.0, places[k]) for k in (after - 1, after)
+    }
+    stress = next((answer.errors[name] for name in STRESS if name in answer.errors), np.nan)
+    error = stress * float(share.max()) / float(share[after] - share[after - 1])
+    at = _root(answer, known, after)
+    if at is None:  # the path between the increments is not found: their line is all that is known
+        at, error = after - 1 + (1.0 - share[after - 1]) / (share[after] - share[after - 1]), np.nan
+        known[at] = 0.0, _between(places, at)
+    found, step = known[at][1], places[after] - places[after - 1]
+    turned = bool(abs(step[1]) > 0.0 and found[1] != 0.0)
+    part = abs(step[1] / found[1]) if turned else abs(step[0] / found[0])
+    return Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
+
+
+def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
+    """Return where between two states the share is 1, and keep what is known there; None where paths stop."""
+
+    def beyond(at: float) -> float:
+        if at not in known:
+            place = _between(answer.places, at)
+            there = _solved(answer, place)
+            assert there.yield_share is not None
+            known[at] = float(there.yield_share[-1]) - 1.0, np.array([place[0], there.places[-1, 1]])
+        return known[at][0]
+
+    try:
+        at = float(brentq(beyond, after - 1.0, float(after), xtol=PRECISION))
+        beyond(at)
+    except Unanswered:
+        return None
+    return at
+
+
+def _between(places: Array, at: float) -> Array:
+    """Return load factor and rotation (2,) of a place between states: both are linear there where led."""
+    return np.array([np.interp(at, np.arange(len(places)), column) for column in places.T])
+
+
+def _solved(answer: Response, place: Array) -> Response:
+    """Return the answer to a path that ends at a load factor and rotation on that of an answer."""
+    design: Design = answer.design
+    effects = design.effects
+    if set(effects.names) & SCALED.keys():
+        effects = replace(effects, tables=_scaled(effects.parameters(), float(place[0])))
+    changes: dict[str, Any] = {"effects": effects}
+    if design.rotation is not None:
+        changes["rotation"] = float(place[1])
+    asked = put(replace(design, **changes), _settings(answer))
+    path = asked.static_path(raise_on_failure=False)
+    if str(path.status.value) != "converged":
+        raise Unanswered(path.message)
+    if getattr(answer.solution, "balanced", False):
+        path = replace(path, balanced=True)
+    return Response.of(asked, path)
+
+
+def _scaled(parameters: Mapping[str, Mapping[str, Any]], factor: float) -> dict[str, dict[str, Any]]:
+    """Return parameters of effects with the loads and led displacements times a factor."""
+    found = {name: dict(values) for name, values in parameters.items()}
+    for name, key in SCALED.items():
+        if name in found:
+            value = np.multiply(found[name][key], factor)
+            found[name][key] = float(value) if value.ndim == 0 else tuple(map(float, value))
+    return found
+
+
+def _settings(answer: Response) -> Settings:
+    """Return the settings that an answer was reached with."""
+    make: Callable[..., Settings] = settings_of_model
+    names = {each.name for each in fields(make(answer.model))} - {"element"}
+    return make(answer.model, **{name: value for name, value in answer.settings.items() if name in names})

@@ -59,6 +59,11 @@ class Effects:
         """Return the scene with other names and the same tables."""
         return replace(self, names=tuple(names))
 
+    def plus(self, *names: str, **tables: Mapping[str, Any]) -> "Effects":
+        """Return the scene with these effects as well, and those that have parameters with them."""
+        every = dict.fromkeys((*self.names, *names, *tables))
+        return replace(self, names=tuple(every), tables={**self.tables, **tables})
+
     def changed(self, text: str) -> "Effects":
         """Return the scene after "+gravity,-strip_inertia", or of the whole list "bending,stretching".
 

@@ -27,7 +27,8 @@ from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
-from studies.effects.scenes import Outcome, Unanswered
+from studies.effects.scenes import Outcome
+from studies.errors import Unanswered
 from studies.record.progress import Bar
 
 

@@ -8,7 +8,7 @@ and torque, and its estimate is of the stress in each state; it is judged apart.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,15 +17,15 @@ import numpy as np
 from scipy.stats import qmc
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.metrics import differences
 from studies.answers.motion import Motion
-from studies.answers.reference import sampled
+from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
-from studies.engine import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.record.digits import Digits
-from studies.record.style import BLUE, GREEN, ORANGE
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -59,119 +59,92 @@ STEPS_A_PERIOD = 20000
 BAND, SHARE, LEAST = (0.3, 10.0), 0.9, 1.0 / 3.0
 #: A true error counts if that of its reference is this many times smaller.
 MARGIN = 10.0
-QUANTITIES = {"trajectory": BLUE, "torque": ORANGE, "rotation": GREEN}
 
 
-def _drawn(
-    problem: Problem, bounds: Mapping[str, tuple[float, float]], *, count: int, seed: int
-) -> Iterator[Problem]:
-    """Yield `count` pivots like `problem` whose values fill the bounds evenly: a Latin hypercube.
+def _drawn(bounds: Mapping[str, tuple[float, float]], count: int) -> Iterator[tuple[Row, Problem]]:
+    """Yield `count` pivots like Table 1 whose values fill the bounds evenly: a Latin hypercube; with the
+    columns that say which design it is.
 
-    Args:
-        problem: gives what is not drawn: length, width of the section, material, body.
-        bounds: of "slenderness" (L over the depth of the section, drawn evenly in its logarithm),
-            "crossing_ratio" [1], "inclination" [rad] and "rotation" [rad].
-        count: of pivots [1].
-        seed: of the Latin hypercube.
+    bounds: of L over the depth of the section, drawn evenly in its logarithm, crossing ratio [1], inclination
+    and rotation [rad].
     """
-    names = ("slenderness", "crossing_ratio", "inclination", "rotation")
-    low, high = np.array([bounds[name] for name in names]).T
+    given = named_case()
+    low, high = np.array([*bounds.values()]).T
     low[0], high[0] = math.log(low[0]), math.log(high[0])
-    points = qmc.scale(qmc.LatinHypercube(d=len(names), seed=seed).random(count), low, high)
-    width = problem.area / problem.depth
-    for logarithm, crossing_ratio, inclination, rotation in points:
-        depth = problem.length / math.exp(logarithm)
-        yield replace(
-            problem,
-            **of_moments(width * depth, width * depth**3 / 12.0),
-            crossing_ratio=float(crossing_ratio),
-            inclination=float(inclination),
-            rotation=float(rotation),
-        )
+    points = qmc.scale(qmc.LatinHypercube(d=len(bounds), seed=SEED).random(count), low, high)
+    width = given.area / given.depth
+    for number, (logarithm, *others) in enumerate(points):
+        depth = given.length / math.exp(logarithm)
+        values: dict[str, Any] = dict(zip([*bounds][1:], map(float, others), strict=True))
+        problem = replace(given, **of_moments(width * depth, width * depth**3 / 12.0), **values)
+        identity = {"design": number, "slenderness": problem.length / problem.depth}
+        identity |= {"crossing_ratio": problem.crossing_ratio, "inclination_rad": problem.inclination}
+        yield identity | {"rotation_rad": problem.rotation}, problem
 
 
-def _described(number: int, problem: Problem) -> dict[str, float]:
-    """Return the columns that say which design a row is of."""
-    return {
-        "design": number,
-        "slenderness": problem.length / problem.depth,
-        "crossing_ratio": problem.crossing_ratio,
-        "inclination_rad": problem.inclination,
-        "rotation_rad": problem.rotation,
-    }
-
-
-def _static(number: int, problem: Problem) -> Answer:
+def _static(design: Row, problem: Problem) -> Answer:
     """Return the rows of one design's static paths, those of the stress in a table of their own."""
-    rows: dict[str, list[dict[str, Any]]] = {"estimates": [], "stress": []}
     exact, check = (answer_static(problem, SplineSettings(control_points=n)) for n in (REFERENCE, CHECK))
-    uncertainty = _path_errors(check, exact)
-    for accuracy in ACCURACIES:
-        answer = answer_static(problem, SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "statics", **_described(number, problem), "accuracy": accuracy}
-        for quantity, error in _path_errors(answer, exact).items():
-            row = identity | _judged(quantity, "1", error, uncertainty[quantity], answer)
-            rows["stress" if quantity == "stress" else "estimates"].append(row)
-    return rows
+    ask = partial(answer_static, problem, SplineSettings(control_points=FIRST))
+    rows = list(_rows({"problem": "statics", **design}, ACCURACIES, ask, _path_errors, exact, check))
+    stress = [row for row in rows if row["quantity"] == "stress"]
+    return {"estimates": [row for row in rows if row["quantity"] != "stress"], "stress": stress}
 
 
-def _swing_rows(number: int, problem: Problem) -> Iterator[dict[str, Any]]:
-    """Yield the rows of one design's swings."""
-    # of the slowest small swing at rest
+def _swings(design: Row, problem: Problem) -> Answer:
+    """Return the rows of one design's swings, of a period of the slowest small swing at rest."""
     period = 1.0 / float(answer_modes(problem, SplineSettings(control_points=6), count=1).frequency[0])
     let_go = partial(answer_release, problem, duration=PERIODS * period)
     exact, check = (
         let_go(SplineSettings(control_points=n), integrator="leapfrog", step=period / STEPS_A_PERIOD)
         for n in (SWING_REFERENCE, SWING_CHECK)
     )
-    uncertainty = _rotation_error(check, exact)
-    for accuracy in SWING_ACCURACIES:
-        answer = let_go(SplineSettings(control_points=FIRST), accuracy=accuracy)
-        identity = {"problem": "motion", **_described(number, problem), "accuracy": accuracy}
-        error = _rotation_error(answer, exact)
-        yield identity | _judged("rotation", "rad", error, uncertainty, answer)
+    ask = partial(let_go, SplineSettings(control_points=FIRST))
+    rows = _rows({"problem": "motion", **design}, SWING_ACCURACIES, ask, _swing_errors, exact, check)
+    return {"estimates": rows}
 
 
-def _judged(
-    quantity: str, unit: str, error: float, uncertainty: float, answer: Response | Motion
-) -> dict[str, Any]:
-    """Return the columns that hold an answer's estimate against a true error."""
-    estimate = answer.estimate or {}
-    estimated = estimate.get(quantity, math.nan)
-    return {
-        "quantity": quantity,
-        "unit": unit,
-        "status": answer.status,
-        "control_points": estimate.get("control_points", 0),
-        "estimate": estimated,
-        "true_error": error,
-        "uncertainty": uncertainty,
-        "effectivity": estimated / error,
-        "counts": bool(error >= MARGIN * uncertainty),
-    }
+def _rows(
+    design: Row, accuracies: Iterable[float], ask: Callable[..., Any], errors: Any, exact: Any, check: Any
+) -> Iterator[Row]:
+    """Yield the rows that hold estimates against true errors: a row an accuracy and quantity."""
+    uncertainty = errors(check, exact)
+    for accuracy in accuracies:
+        answer = ask(accuracy=accuracy)
+        estimate = answer.estimate or {}
+        for quantity, error in errors(answer, exact).items():
+            estimated = estimate.get(quantity, math.nan)
+            yield {
+                **design,
+                "accuracy": accuracy,
+                "quantity": quantity,
+                "unit": "rad" if quantity == "rotation" else "1",
+                "status": answer.status,
+                "control_points": estimate.get("control_points", 0),
+                "estimate": estimated,
+                "true_error": error,
+                "uncertainty": uncertainty[quantity],
+                "effectivity": estimated / error,
+                "counts": bool(error >= MARGIN * uncertainty[quantity]),
+            }
 
 
 def _path_errors(answer: Response, exact: Response) -> dict[str, float]:
     """Return the largest errors of a path over travel and peak torque and stress [1]; NaN for one that
     stopped."""
-    if len(answer.rotation) != len(exact.rotation):
-        return dict.fromkeys(("trajectory", "torque", "stress"), math.nan)
-    travel = np.linalg.norm(exact.centre - exact.centre[0], axis=1).max()
-    return {
-        "trajectory": float(np.linalg.norm(answer.centre - exact.centre, axis=1).max() / travel),
-        "torque": float(np.abs(answer.torque - exact.torque).max() / np.abs(exact.torque).max()),
-        "stress": float(np.abs(answer.max_stress - exact.max_stress).max() / exact.max_stress.max()),
-    }
+    apart = differences(answer, exact, ("path", "torque", "stress")).values()
+    whole = len(answer.rotation) == len(exact.rotation)
+    names = ("trajectory", "torque", "stress")
+    return {name: float(each or 0.0) if whole else math.nan for name, each in zip(names, apart, strict=True)}
 
 
-def _rotation_error(motion: Motion, exact: Motion) -> float:
+def _swing_errors(motion: Motion, exact: Motion) -> dict[str, float]:
     """Return the largest error of the rotation at the motion's instants [rad]; NaN for one that stopped."""
-    if not (motion.converged and exact.converged):
-        return math.nan
-    return float(np.abs(motion.rotation - sampled(exact, motion.time).rotation).max())
+    whole = motion.converged and exact.converged
+    return {"rotation": rotation_error(motion, exact, motion.time) if whole else math.nan}
 
 
-def _timed(accuracy: float) -> dict[str, Any]:
+def _timed(accuracy: float) -> Row:
     """Return what a search costs over the plain path with the control points that it chose."""
     searched = answer_static(named_case(), SplineSettings(control_points=FIRST), accuracy=accuracy, repeat=9)
     chosen = (searched.estimate or {})["control_points"]
@@ -185,7 +158,7 @@ def _timed(accuracy: float) -> dict[str, Any]:
     }
 
 
-def _of_problems(tables: Tables) -> Iterator[dict[str, Any]]:
+def _of_problems(tables: Tables) -> Iterator[Row]:
     """Yield, for statics, for motion, and for the largest stress in statics, how good the estimates are."""
     stress = tables["stress"]
     known = stress[stress["uncertainty"] <= stress["accuracy"]]
@@ -230,11 +203,8 @@ DIGITS: dict[str, Digits | None] = {
 
 STUDY = Study(
     parts=(
-        Part(at=lambda: enumerate(_drawn(named_case(), BOUNDS, count=DESIGNS, seed=SEED)), ask=_static),
-        Part(
-            at=lambda: enumerate(_drawn(named_case(), SWING_BOUNDS, count=SWINGS, seed=SEED)),
-            ask=lambda *design: {"estimates": _swing_rows(*design)},
-        ),
+        Part(at=lambda: _drawn(BOUNDS, DESIGNS), ask=_static),
+        Part(at=lambda: _drawn(SWING_BOUNDS, SWINGS), ask=_swings),
         Part(at=lambda: ACCURACIES, ask=lambda each: {"timings": _timed(each)}, alone=True),
     ),
     claims=tuple(

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
 from itertools import product
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -18,12 +18,10 @@ from studies.record.marks import Level, Slope
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import GREEN, GREY, ORANGE, RED, Look
 
-SETTINGS = SplineSettings(control_points=6)
-
 #: Group of modes -> settings of a spline whose fastest mode belongs to it: strips that stretch, strips that
 #: only bend, and strips whose shape follows the body, so that nothing but the swing is left.
 GROUPS: dict[str, SplineSettings] = {
-    "axial": SETTINGS,
+    "axial": SplineSettings(control_points=6),
     "bending": SplineSettings(control_points=5, axial_modes=4, stretch="inextensible", slide_stiffness=0.0),
     "swing": SplineSettings(control_points=4, axial_modes=3, stretch="inextensible", slide_stiffness=0.0),
 }
@@ -59,13 +57,6 @@ def _designs() -> dict[str, Problem]:
     return {"Table 1": given, "polymer": polymer}
 
 
-@cache
-def _pivot(design: str, settings: SplineSettings = SETTINGS) -> Pivot:
-    """Return a design as a spline in motion."""
-    found: Pivot = put(_designs()[design], settings, moving=True).modelled
-    return found
-
-
 def _limits() -> Iterator[tuple[str, str, int | None]]:
     """Yield designs, groups of modes and numbers of sweeps."""
     for design, group in product(_designs(), GROUPS):
@@ -74,38 +65,23 @@ def _limits() -> Iterator[tuple[str, str, int | None]]:
 
 
 def _limit(design: str, group: str, count: int | None) -> Answer:
-    """Return the printed form's measured limit.
+    """Return the largest step at which a small swing of the printed form stays bounded, by bisection.
 
     Columns: sweeps (0 for the direct solution), predicted_s = 2 / omega of the highest frequency at rest,
     measured_s, ratio.
     """
-    pivot = _pivot(design, GROUPS[group])
+    pivot: Pivot = put(_designs()[design], GROUPS[group], moving=True).modelled
     predicted = stability_limit(pivot)
-    ratio = _measured_limit(pivot, predicted, count)
-    row = {"design": design, "group": group, "sweeps": count or 0, "predicted_s": predicted}
-    return {"limits": row | {"measured_s": ratio * predicted, "ratio": ratio}}
-
-
-def _measured_limit(pivot: Pivot, predicted: float, sweeps: int | None) -> float:
-    """Return the largest step at which a small swing stays bounded, over the predicted one, by bisection."""
-
-    def stable(part: float) -> bool:
-        run = solve_impulses(
-            pivot,
-            start=SMALL,
-            duration=TRIAL * part * predicted,
-            step=part * predicted,
-            form="printed",
-            records=1,
-            sweeps=sweeps,
-        )
-        return bool(run.status.value == "converged")
-
+    how: dict[str, Any] = {"start": SMALL, "form": "printed", "records": 1, "sweeps": count}
     low, high = 0.0, 1.5
     while high - low > BRACKET:
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if stable(middle) else (low, middle)
-    return 0.5 * (low + high)
+        step = middle * predicted
+        run = solve_impulses(pivot, duration=TRIAL * step, step=step, **how)
+        low, high = (middle, high) if run.status.value == "converged" else (low, middle)
+    ratio = 0.5 * (low + high)
+    row = {"design": design, "group": group, "sweeps": count or 0, "predicted_s": predicted}
+    return {"limits": row | {"measured_s": ratio * predicted, "ratio": ratio}}
 
 
 def _figure(tables: Tables) -> Figure:

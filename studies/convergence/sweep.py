@@ -1,11 +1,13 @@
 """Sweeps over refinement: one row a discretisation with its largest errors, failed ones included."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
@@ -15,20 +17,19 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine import Answer, Claim, Part, Study, Tables
+from studies.engine import Answer, Claim, Part, Row, Study, Tables, percent
 from studies.kinds import Progress
+from studies.paper.formulations import FE, LOOKS, SIX, refined
 from studies.record.marks import Doubt
-from studies.record.panels import CONTROL_POINTS, MESH, Axis, Curves, Panel, sheet
+from studies.record.panels import CONTROL_POINTS, MESH, STRIP_POINTS, Axis, Curves, Panel, sheet
 from studies.record.progress import silent, watched
-from studies.record.style import ELEMENTS, LOOKS
-
-ERROR_COLUMNS = tuple(f"error_{name}" for name in QUANTITIES)
+from studies.record.style import ELEMENTS, STRETCH, page
 
 #: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
 FINEST = 160
 
 
-def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> dict[str, Any]:
+def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> Row:
     """Return what a spline is, how it ended, its errors, its work.
 
     Columns: segments, measure, stretch, control_points (of a segment), strip_points (of a strip, those that
@@ -37,7 +38,13 @@ def spline_row(problem: Design, setting: SplineSettings, against: Reference) -> 
     error_stress (largest magnitudes over the path; empty when the path was not completed),
     newton_iterations, message.
     """
-    return _described(setting) | _outcome(answer_static(problem, setting), against)
+    modes = setting.axial_modes
+    if modes is None and setting.stretch != "consistent":
+        modes = setting.points - 2
+    row = {name: getattr(setting, name) for name in ("segments", "measure", "stretch")}
+    row |= {"control_points": setting.points, "axial_modes": modes}
+    row["strip_points"] = setting.segments * (setting.points - 1) + 1
+    return row | _outcome(answer_static(problem, setting), against)
 
 
 def element_sweep(
@@ -68,11 +75,9 @@ def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
     """Return `table`, sorted by the column `count`, with the observed order of each error beside it."""
     table = table.sort_values(count).reset_index(drop=True)
     for name in QUANTITIES:
-        values, counts = table[f"error_{name}"].to_numpy(float), table[count].to_numpy(float)
-        orders = [np.nan] + [
-            observed_order(values[i - 1], values[i], counts[i] / counts[i - 1]) for i in range(1, len(values))
-        ]
-        table[f"order_{name}"] = orders
+        pairs = pairwise(zip(table[f"error_{name}"].astype(float), table[count], strict=True))
+        orders = [observed_order(coarse, fine, m / n) for (coarse, n), (fine, m) in pairs]
+        table[f"order_{name}"] = [np.nan, *orders]
     return table
 
 
@@ -89,26 +94,15 @@ def reaching(
     return None if counts.empty else int(counts.min())
 
 
-def _described(setting: SplineSettings) -> dict[str, Any]:
-    modes = setting.axial_modes
-    if modes is None and setting.stretch != "consistent":
-        modes = setting.points - 2
+def _outcome(answer: Response, against: Reference) -> Row:
+    errors = largest_errors(answer, against) if answer.converged else dict.fromkeys(QUANTITIES, np.nan)
     return {
-        "segments": setting.segments,
-        "measure": setting.measure,
-        "stretch": setting.stretch,
-        "control_points": setting.points,
-        "strip_points": setting.segments * (setting.points - 1) + 1,
-        "axial_modes": modes,
+        "status": answer.status,
+        "reached_rad": answer.rotation[-1],
+        **{f"error_{name}": value for name, value in errors.items()},
+        "newton_iterations": answer.counters["newton_iterations"],
+        "message": answer.message,
     }
-
-
-def _outcome(answer: Response, against: Reference) -> dict[str, Any]:
-    row: dict[str, Any] = {"status": answer.status, "reached_rad": answer.rotation[-1]}
-    row |= dict.fromkeys(ERROR_COLUMNS, np.nan)
-    if answer.converged:
-        row |= {f"error_{name}": value for name, value in largest_errors(answer, against).items()}
-    return row | {"newton_iterations": answer.counters["newton_iterations"], "message": answer.message}
 
 
 def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Figure:
@@ -122,8 +116,8 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     for quantity in QUANTITIES:
         y = Axis(f"error_{quantity}", f"error of the {quantity} [1]", log=True)
         doubt = Doubt(limit.uncertainty[quantity])
-        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS["n = 6"]), doubt)))
-        below.append(Panel(MESH, y, (Curves(elements, LOOKS["FE, 20 elements"]), doubt)))
+        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))
+        below.append(Panel(MESH, y, (Curves(elements, LOOKS[FE]), doubt)))
     above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
     return sheet(11.5, 6.0, (above, below))
 
@@ -139,7 +133,7 @@ def _refined(element: str) -> Answer:
     return {"meshes": element_sweep(named_case(), MESHES, element)[0]}
 
 
-def _at(tables: Tables, count: int) -> list[dict[str, Any]]:
+def _at(tables: Tables, count: int) -> list[Row]:
     """Return error and observed order of each quantity and element on one mesh."""
     rows = tables["meshes"].query("elements == @count").to_dict("records")
     return [
@@ -176,3 +170,126 @@ ELEMENT_STUDY = Study(
     ),
 )
 """Convergence of the finite elements with their number: errors and observed orders."""
+
+#: Control points of a segment, by segments a strip.
+COUNTS = {1: range(4, 13), 2: range(4, 9)}
+#: Segments of a strip with so many control points each.
+SEGMENTS, EACH = range(1, 6), 5
+MEASURES = ("material", "spatial")
+#: Error that is asked of trajectory and torque [1].
+CLOSE = 1e-4
+
+
+def _settings() -> list[SplineSettings]:
+    """Return every discretisation: segments, n, measure, stretch form, and m = 1 ... n - 1 modes.
+
+    With more segments than those of the map m is n - 2.
+    """
+    grids = [(segments, n) for segments, counts in COUNTS.items() for n in counts]
+    grids += [(segments, EACH) for segments in SEGMENTS if segments not in COUNTS]
+    forms: list[tuple[int, int, str, str, int | None]] = []
+    for segments, n in grids:
+        modes = range(1, n) if segments in COUNTS else (n - 2,)
+        forms += [(segments, n, measure, "consistent", None) for measure in MEASURES]
+        forms += [
+            (segments, n, "material", stretch, m) for stretch in ("mixed", "inextensible") for m in modes
+        ]
+    return [
+        SplineSettings(segments=segments, measure=measure, control_points=n, stretch=stretch, axial_modes=m)
+        for segments, n, measure, stretch, m in forms
+    ]
+
+
+def _default_modes(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of the default m = n - 2, and those of consistent stretch, which has no modes."""
+    return rows[(rows["stretch"] == "consistent") | (rows["axial_modes"] == rows["control_points"] - 2)]
+
+
+def _lines(tables: Tables) -> Figure:
+    rows, limits = _default_modes(tables["map"]), tables["reference"]
+    lines = []
+    for quantity in ("trajectory", "torque"):
+        y = Axis(f"error_{quantity}", f"largest error of the {quantity} [1]", log=True)
+        doubt = Doubt(float(limits["uncertainty"][limits["quantity"] == quantity].max()))
+        refined_by = (rows[rows["segments"] == 1], rows[rows["control_points"] == EACH])
+        forms = [Curves(each, STRETCH, by=("stretch", "measure")) for each in refined_by]
+        lines.append([Panel(STRIP_POINTS, y, (curves, doubt)) for curves in forms])
+    titles = ["one segment, more control points", f"more segments of {EACH} control points"]
+    return sheet(9.5, 6.6, lines, columns=titles, legend=3)
+
+
+def _maps(tables: Tables) -> Figure:
+    figure = page(9.5, 4.4)
+    panels = figure.subplots(1, 2, sharey=True)
+    rows = tables["map"].query("stretch == 'mixed' and measure == 'material'")
+    norm = LogNorm(1e-10, 1.0)
+    for panel, (segments, counts) in zip(panels, COUNTS.items(), strict=True):
+        _map(panel, rows[rows["segments"] == segments], counts, norm)
+        panel.set_title("one segment" if segments == 1 else f"{segments} segments")
+        panel.set_xlabel("control points a segment, n")
+    panels[0].set_ylabel("axial-force modes a segment, m")
+    figure.suptitle("Numbers: decimal exponent of the error; rings: the default m = n - 2; x: not converged")
+    figure.colorbar(panels[0].collections[0], ax=panels, label="largest error of the torque [1]")
+    return figure
+
+
+def _map(panel: Axes, rows: pd.DataFrame, counts: range, norm: LogNorm) -> None:
+    """Draw the errors as coloured squares with their decimal exponent; a failed point is a cross."""
+    modes = np.arange(1, max(counts))
+    told: list[str] = ["axial_modes", "control_points", "error_torque"]
+    for m, n, error in rows[told].itertuples(index=False):
+        text = f"{np.log10(error):.0f}" if np.isfinite(error) else "x"
+        colour = "white" if error < 1e-5 else "black"
+        panel.text(n, m, text, ha="center", va="center", fontsize=7.5, color=colour)
+    grid = rows.pivot(index=told[0], columns=told[1], values=told[2]).reindex(index=modes, columns=counts)
+    edges = np.arange(counts[0] - 0.5, counts[-1] + 1.0)
+    panel.pcolormesh(edges, np.arange(0.5, len(modes) + 1.0), grid, norm=norm, cmap="viridis")
+    panel.grid(False)
+    panel.plot(counts, np.array(counts) - 2, "o", markersize=15, markerfacecolor="none", color="white")
+    panel.set(xticks=list(counts), yticks=list(modes))
+
+
+def _forms(tables: Tables) -> Iterator[Row]:
+    """Yield, for each stretch form of one segment with its default modes, the error of the torque with four
+    control points, the least of any, and from which count on trajectory and torque are close."""
+    chosen = _default_modes(tables["map"]).query("measure == 'material' and segments == 1")
+    for stretch, curve in chosen.groupby("stretch"):
+        count = reaching(curve, "control_points", CLOSE)
+        yield {
+            "name": f"{stretch} stretch",
+            "four": curve.query("control_points == 4")["error_torque"].iloc[0],
+            "best": curve["error_torque"].min(),
+            "reaches": count is not None,
+            "place": f" (within it from n = {count})" if count else "",
+        }
+
+
+MAP_STUDY = Study(
+    parts=(
+        Part(at=_settings, ask=lambda each: {"map": spline_row(named_case(), each, refined())}),
+        Part(
+            at=lambda: QUANTITIES,
+            ask=lambda name: {"reference": {"quantity": name, "uncertainty": refined().uncertainty[name]}},
+        ),
+    ),
+    claims=(
+        Claim(
+            claim="Four control points give the torque to 3 % on the whole path",
+            formulation="{name}",
+            quantity="the largest error of the torque with four control points",
+            rows=_forms,
+            value="four",
+            most=0.03,
+        ),
+        Claim(
+            claim=f"At most {COUNTS[1][-1]} control points give trajectory and torque to {percent(CLOSE)}",
+            formulation="{name}",
+            quantity="the smallest error of the torque{place}",
+            rows=_forms,
+            value="best",
+            holds=lambda row: row["reaches"],
+        ),
+    ),
+    figures={"control_points": _lines, "locking_map": _maps},
+)
+"""Convergence of the splines with their control points in every form: the locking map."""

@@ -1,5 +1,7 @@
 """The cheapest setting of every model that meets an error on one design, found by trying them all."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,11 +11,9 @@ from studies.answers.adapters import answer_modes
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.cost import settings
-from studies.cost.limits import MATERIAL, Limit, path_limit, swing_limit
-from studies.cost.model import Failed
-from studies.cost.own import elements, spline
-from studies.cost.tried import PATH_JUDGED, SWING_ERRORS, cheapest, tried_paths, tried_swings
+from studies.cost import settings, tried
+from studies.cost.model import elements, spline
+from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -36,10 +36,10 @@ def advise_path(design: Design, error: float, progress: Progress = silent) -> pd
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    tried = _askable(settings.paths(), design)
-    limits = {theory: path_limit(design, theory) for theory in {each.theory for each in tried}}
-    rows = tried_paths(tried, design, limits, PASSES, progress)
-    return _uncertain(cheapest(rows, PATH_JUDGED, error), limits)
+    asked = _askable(settings.paths(), design)
+    limits = {theory: tried.path_limit(design, theory) for theory in {each.theory for each in asked}}
+    rows = tried.compared(asked, design, limits, passes=PASSES, progress=progress)
+    return _uncertain(tried.cheapest(rows, tried.PATH_JUDGED, error), limits)
 
 
 def advise_swing(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
@@ -54,32 +54,34 @@ def advise_swing(design: Design, error: float, progress: Progress = silent) -> p
     frequency = float(answer_modes(design, SplineSettings(control_points=6), count=1).frequency[0])
     instants, start = np.linspace(0.0, PERIODS / frequency, INSTANTS), abs(design.rotation or 0.0)
     steps: dict[int, float | None] = dict.fromkeys(REFERENCE)
-    limit = swing_limit(design, instants, _integrator(design, 0.1 * PERIODS / frequency), steps)
-    tried = [each for each in _askable(settings.swings(frequency), design) if each.theory == MATERIAL]
-    rows = tried_swings(tried, design, instants, {MATERIAL: limit}, PASSES, progress)
+    limit = tried.swing_limit(design, instants, _integrator(design, 0.1 * PERIODS / frequency), steps)
+    limits = {tried.MATERIAL: limit}
+    asked = [each for each in _askable(settings.swings(frequency), design) if each.theory in limits]
+    rows = tried.compared(asked, design, limits, instants, passes=PASSES, progress=progress)
     rows["rotation"] = rows.pop("rotation_rad") / start
-    uncertainty = limit.uncertainty | {"rotation": limit.uncertainty["rotation"] / start}
-    told = Limit(found=None, uncertainty=uncertainty, source=limit.source)
-    return _uncertain(cheapest(rows, ("rotation", SWING_ERRORS[1]), error), {MATERIAL: told})
+    known = limit.uncertainty
+    uncertainty = {"rotation": known["rotation_rad"] / start, "frequency": known["frequency"]}
+    best = tried.cheapest(rows, ("rotation", "frequency"), error)
+    return _uncertain(best, {tried.MATERIAL: replace(limit, uncertainty=uncertainty)})
 
 
-def _askable(tried: list[settings.Setting], design: Design) -> list[settings.Setting]:
+def _askable(given: list[settings.Setting], design: Design) -> list[settings.Setting]:
     """Return the settings of installed models; of a mechanism those of the suite's own."""
     own = (spline, elements)
     pivot = isinstance(design, Problem)
-    return [each for each in tried if each.model.installed() and (pivot or each.model in own)]
+    return [each for each in given if each.model.installed() and (pivot or each.model in own)]
 
 
 def _integrator(design: Design, duration: float) -> str:
     """Return the spline's most accurate integrator that the scene allows, by trying."""
     try:
         spline.swing(design, duration, integrator="leapfrog", control_points=4)
-    except Failed:
+    except Unanswered:
         return "energy"
     return "leapfrog"
 
 
-def _uncertain(found: pd.DataFrame, limits: dict[str, Limit]) -> pd.DataFrame:
+def _uncertain(found: pd.DataFrame, limits: Mapping[str, Any]) -> pd.DataFrame:
     """Return the advice with how uncertain the limit of each quantity is."""
     names = next(iter(limits.values())).uncertainty
     columns: dict[str, list[Any]] = {

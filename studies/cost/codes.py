@@ -10,39 +10,27 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from studies.answers.reference import largest_errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import TABLE_1, named_case
+from studies.cost import tried
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.limits import MATERIAL, SHEAR, largest_errors, path_limits, swing_limits
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import (
-    AS_DELIVERED,
-    ELEMENTS,
-    EXUDYN,
-    GROUPS,
-    HINT,
-    ITSELF,
-    OPENSEES,
-    SPLINE,
-    missing,
-    paths,
-    swings,
-)
-from studies.cost.tried import PATH_JUDGED, cheapest, kept, spread, tried_paths, tried_swings
+from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.paper.formulations import INSTANTS
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
-from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
 #: Finest settings of the other codes, for the limits that they tend to by themselves.
 FINEST: dict[Model, dict[str, Any]] = {
@@ -50,10 +38,9 @@ FINEST: dict[Model, dict[str, Any]] = {
     exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
     openseespy_frame: {"elements": 320, "tolerance": 1e-14},
 }
-#: Errors at which times are compared: of the path [1], and of the swing [rad].
-LEVELS = (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6)
-SWING_LEVELS = (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)
-SWING_JUDGED = ("rotation_rad",)
+#: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].
+JUDGED = {"paths": tried.PATH_JUDGED, "swings": ("rotation_rad",)}
+LEVELS = {"paths": (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6), "swings": (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)}
 #: A limit must be this much more certain than the level that errors against it are compared at.
 CERTAINTY = 2.0
 #: Columns of what was measured in seconds, which stand in tables of their own.
@@ -75,28 +62,29 @@ def _codes() -> list[dict[str, str]]:
 def _paths() -> Answer:
     """Return limits, errors and times of the static path."""
     design = named_case()
-    limits, rows = path_limits(design)
+    limits, rows = tried.path_limits(design)
     finest = []
     for model, settings in FINEST.items():
         if model.installed():
-            theory = SHEAR if model.sheared else MATERIAL
-            apart = largest_errors(model.path(design, **settings), limits[theory].found)
+            theory = tried.SHEAR if model.sheared else tried.MATERIAL
+            apart = largest_errors(model.path(design, **settings), limits[theory])
             finest.append({"model": model.name, "elements": settings["elements"], "theory": theory, **apart})
-    tried = tried_paths(paths(), design, limits)
-    return {"path_limits": rows, "finest": finest, **_apart("paths", tried)}
+    found = tried.compared(paths(), design, limits)
+    return {"path_limits": rows, "finest": finest, **_apart("paths", found)}
 
 
 def _swings() -> Answer:
     """Return limits, errors and times of the swing."""
     design = named_case()
-    limits, rows = swing_limits(design, INSTANTS)
-    return {"swing_limits": rows, **_apart("swings", tried_swings(swings(), design, INSTANTS, limits))}
+    limits, rows = tried.swing_limits(design, INSTANTS)
+    found = tried.compared(swings(), design, limits, INSTANTS)
+    return {"swing_limits": rows, **_apart("swings", found)}
 
 
-def _apart(name: str, tried: pd.DataFrame) -> dict[str, pd.DataFrame]:
+def _apart(name: str, found: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return errors and work, and the times, as tables of their own."""
-    timed = tried[tried["runs"] > 0]
-    return {name: tried.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*NAMED, *TIMES]]}
+    timed = found[found["runs"] > 0]
+    return {name: found.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*NAMED, *TIMES]]}
 
 
 def _joined(tables: Tables, name: str) -> pd.DataFrame:
@@ -106,32 +94,20 @@ def _joined(tables: Tables, name: str) -> pd.DataFrame:
     return rows.merge(times.assign(setting=times["setting"].fillna("")), on=[*NAMED], how="left")
 
 
-def _ratios(name: str, judged: Sequence[str], levels: Sequence[float]) -> Callable[[Tables], list[Row]]:
-    """Return what makes the table of the fastest settings: a row a level and group, with its time and that of
-    the spline [s], and their ratio; empty where no setting of a group keeps the level."""
-
-    def made(tables: Tables) -> list[Row]:
-        rows, found = _joined(tables, name), []
-        for level in levels:
-            sure = rows[~rows["theory"].isin(_unsure(tables, name, level))]
-            best = {row["group"]: row for row in cheapest(sure, judged, level).to_dict("records")}
-            if not best[SPLINE]["meets"]:
-                continue
-            mine = best[SPLINE]["whole_s"]
-            for group in (each for each in GROUPS if each in best):
-                row = best[group]
-                told = {"setting": "", **dict.fromkeys(TIMES[:-1], np.nan)}
-                if row["meets"]:
-                    told = {each: row[each] for each in told}
-                    told["setting"] = f"{row['model']}, {row['setting']}"
-                found.append(
-                    {"level": level, "group": group, **told, "ratio": told["whole_s"] / mine}
-                    | {"spline": best[SPLINE]["setting"], "spline_s": mine}
-                    | {"spline_solve_s": best[SPLINE]["solve_s"]}
-                )
-        return found
-
-    return made
+def _ratios(name: str, tables: Tables) -> Iterator[Row]:
+    """Yield the fastest settings: a row a level and group, with its time and that of the spline, and their
+    ratio; empty where no setting of a group keeps the level."""
+    rows = _joined(tables, name)
+    for level in LEVELS[name]:
+        sure = rows[~rows["theory"].isin(_unsure(tables, name, level))]
+        best = {row["group"]: row for row in tried.cheapest(sure, JUDGED[name], level).to_dict("records")}
+        mine = best[SPLINE]
+        known = {"spline": mine["setting"], "spline_s": mine["whole_s"], "spline_solve_s": mine["solve_s"]}
+        for row in (best[group] for group in GROUPS if group in best and mine["meets"]):
+            told = {each: row[each] if row["meets"] else np.nan for each in TIMES[:-1]}
+            setting = f"{row['model']}, {row['setting']}" if row["meets"] else ""
+            ratio = told["whole_s"] / mine["whole_s"]
+            yield {"level": level, "group": row["group"], "setting": setting, **told, "ratio": ratio, **known}
 
 
 def _unsure(tables: Tables, name: str, level: float) -> list[str]:
@@ -139,7 +115,7 @@ def _unsure(tables: Tables, name: str, level: float) -> list[str]:
     limits = tables[f"{name[:-1]}_limits"]
     of = "rotation_rad" if name == "swings" else "uncertainty"
     if name == "paths":
-        limits = limits[limits["quantity"].isin(PATH_JUDGED)]
+        limits = limits[limits["quantity"].isin(tried.PATH_JUDGED)]
     return list(limits.loc[CERTAINTY * limits[of] > level, "theory"])
 
 
@@ -171,7 +147,7 @@ def _waited(label: str) -> Answer:
     )
     whole = [_process(*command)[0] for _ in range(PROCESSES)]
     times = {"command line": whole, "import of the suite": imported, "first call": first}
-    rows = [{"model": label, "what": what} | spread(each, each) for what, each in times.items()]
+    rows = [{"model": label, "what": what} | tried.spread(each, each) for what, each in times.items()]
     return {"waits_of_time": [{k: v for k, v in row.items() if k != "solve_s"} for row in rows]}
 
 
@@ -182,35 +158,24 @@ def _process(*words: str) -> tuple[float, str]:
     return time.perf_counter() - begin, done.stdout
 
 
-#: Looks by group: a colour a code.
-LOOKS = {
-    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
-    ITSELF: Look(label="spline, by itself", colour=SKY, line="--", marker="D"),
-    ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
-    EXUDYN: Look(label="Exudyn, tuned", colour=PURPLE, marker="^"),
-    AS_DELIVERED: Look(label="Exudyn as delivered", colour=PURPLE, line=":", marker="v"),
-    OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
-}
-
-
 def _figure(tables: Tables) -> Figure:
     """Draw the error over the time of the best settings of each group, for the path and the swing."""
     path = Axis("error", "larger error of trajectory and torque [1]", log=True)
     swing = Axis("error", "largest error of the rotation [rad]", log=True)
     limits = tables["swing_limits"].set_index("theory")["rotation_rad"]
-    doubts = [Level(float(limits[SHEAR]), words="limit with shear", line=":", place=1.0)]
+    doubts = [Level(float(limits[tried.SHEAR]), words="limit with shear", line=":", place=1.0)]
     panels = [
-        _panel(tables, "paths", PATH_JUDGED, path, "Static path to 90° in 20 increments"),
-        _panel(tables, "swings", SWING_JUDGED, swing, "Free swing of 0.05 s from 90°", *doubts),
+        _panel(tables, "paths", path, "Static path to 90° in 20 increments"),
+        _panel(tables, "swings", swing, "Free swing of 0.05 s from 90°", *doubts),
     ]
     return sheet(9.5, 4.4, [panels], legend=3)
 
 
-def _panel(tables: Tables, name: str, judged: Sequence[str], y: Axis, title: str, *marks: Level) -> Panel:
+def _panel(tables: Tables, name: str, y: Axis, title: str, *marks: Level) -> Panel:
     """Return the panel of a task: of each group the settings that keep an error which none that is faster
     keeps, as the table of ratios has them."""
     rows = _joined(tables, name)
-    rows = rows.assign(error=kept(rows, judged))
+    rows = rows.assign(error=tried.kept(rows, JUDGED[name]))
     rows = rows[(rows["status"] == "converged") & np.isfinite(rows["error"])].sort_values("whole_s")
     best = rows[rows["error"] == rows.groupby("group")["error"].cummin()]
     best = best[~best.duplicated(["group", "error"]) & best["group"].isin(LOOKS)]
@@ -225,10 +190,7 @@ STUDY = Study(
         Part(ask=_swings, alone=True),
         Part(at=lambda: tuple(WAITED), ask=_waited, alone=True),
     ),
-    made={
-        "path_ratios": _ratios("paths", PATH_JUDGED, LEVELS),
-        "swing_ratios": _ratios("swings", SWING_JUDGED, SWING_LEVELS),
-    },
+    made={"path_ratios": partial(_ratios, "paths"), "swing_ratios": partial(_ratios, "swings")},
     varying=("path_ratios", "swing_ratios"),
     figures={"cost": _figure},
     missing=missing,

@@ -23,13 +23,13 @@ derived here.
 
 import math
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, geometry_of
+from studies.cost.model import geometry_of
 from studies.cost.one_coordinate import Law, State, Surrogate
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 K0 = np.array([[12.0, -6.0], [-6.0, 4.0]])
@@ -103,7 +103,7 @@ class _Strips:
         """Return the coordinates (S, 3) at rotations (S,), reached from rest, and the derivative.
 
         Raises:
-            Failed: there is no equilibrium on the way.
+            Unanswered: there is no equilibrium on the way.
         """
         furthest = float(np.abs(p).max(initial=0.0))
         steps = max(1, math.ceil(furthest / STEP))
@@ -122,14 +122,14 @@ class _Strips:
         """Move the body's place in y (S, 3) to equilibrium; return the Hessian.
 
         Raises:
-            Failed: there is none, `furthest` being the largest rotation [rad].
+            Unanswered: there is none, `furthest` being the largest rotation [rad].
         """
         for _ in range(ITERATIONS):
             _, gradient, hessian = self.assembled(y)
             if np.abs(gradient[:, :2]).max() < TOLERANCE:
                 return hessian
             y[:, :2] -= np.linalg.solve(hessian[:, :2, :2], gradient[:, :2, None])[..., 0]
-        raise Failed(f"constraint model: no equilibrium on the way to {math.degrees(furthest):.3g} deg")
+        raise Unanswered(f"constraint model: no equilibrium on the way to {math.degrees(furthest):.3g} deg")
 
     def moving(self, y: Array, slope: Array) -> Array:
         """Return the strips' part of M over mu L^3 (S,): a cubic each."""
@@ -157,25 +157,23 @@ def _law_of(problem: Problem) -> Law:
         centre=at_rest.centre / length,
         compliance=problem.second_moment_of_area / (problem.area * length**2),
     )
-    return partial(_state, problem, strips)
+    scale = problem.youngs_modulus * problem.second_moment_of_area / length
+    mass, turning = problem.density * problem.area * length, problem.body_moment_of_inertia / length**2
 
+    def law(p: Array) -> State:
+        y, slope = strips.turned(p)
+        energy, gradient, hessian = strips.assembled(y)
+        speed = np.einsum("si,si->s", slope[:, :2], slope[:, :2])
+        inertia = turning + problem.body_mass * speed + mass * strips.moving(y, slope)
+        return State(
+            centre=y[:, :2] * length,
+            energy=scale * energy,
+            torque=scale * gradient[:, 2],
+            stiffness=scale * np.einsum("si,si->s", hessian[:, 2], slope),
+            inertia=inertia * length**2,
+        )
 
-def _state(problem: Problem, strips: _Strips, p: Array) -> State:
-    """Return the pivot at rotations (S,)."""
-    y, slope = strips.turned(p)
-    energy, gradient, hessian = strips.assembled(y)
-    scale = problem.youngs_modulus * problem.second_moment_of_area / problem.length
-    speed = np.einsum("si,si->s", slope[:, :2], slope[:, :2])
-    mass = problem.density * problem.area * problem.length
-    turning = problem.body_moment_of_inertia / problem.length**2
-    inertia = turning + problem.body_mass * speed + mass * strips.moving(y, slope)
-    return State(
-        centre=y[:, :2] * problem.length,
-        energy=scale * energy,
-        torque=scale * gradient[:, 2],
-        stiffness=scale * np.einsum("si,si->s", hessian[:, 2], slope),
-        inertia=inertia * problem.length**2,
-    )
+    return law
 
 
 constraint_model = Surrogate(name="beam constraint model", law_of=_law_of)

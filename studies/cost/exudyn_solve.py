@@ -24,8 +24,10 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Failed, Model, SolvedMotion, SolvedPath, checked_choice, steps_of, turns_of
+from studies.cost.model import Model, steps_of, turns_of
+from studies.errors import Unanswered
 from studies.kinds import Array
 
 #: Coordinates from which on the sparse solver is the faster one.
@@ -55,6 +57,10 @@ class System:
     place: int
     reaction: int
 
+    def stored(self, sensor: int) -> Array:
+        """Return what a sensor has kept of the last run: time or load factor, then its values."""
+        return np.array(self.mbs.GetSensorStoredData(sensor))
+
 
 @dataclass(eq=False, kw_only=True)
 class Exudyn(Model):
@@ -81,13 +87,17 @@ class Exudyn(Model):
             relative_tolerance: of Newton's residual against that at the step's start [1].
             solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
         """
-        checked_choice("solver", solver, SOLVERS)
         system, turns = self.system_of(problem, **settings), turns_of(problem)
         asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
         solved, seconds = _driven(system, asked, turns)
-        centre, torque = _path(system)
+        moved, torque = (system.stored(sensor) for sensor in (system.place, system.reaction))
+        rest = np.array(system.mbs.GetNode(system.body)["referenceCoordinates"][:2])
         return SolvedPath(
-            rotation=turns, centre=centre, torque=torque, solve_s=seconds, counters=_counters(solved)
+            rotation=turns,
+            centre=moved[:, 1:3] + rest,
+            torque=torque[:, 1],
+            solve_s=seconds,
+            counters=_counters(solved),
         )
 
     def swing(
@@ -108,10 +118,13 @@ class Exudyn(Model):
         steps = steps_of(duration, step)
         system = self.system_of(problem, **settings)
         _hold_at(system, problem.rotation)
-        moving = _dynamic(system, duration, steps, relative_tolerance, spectral_radius)
-        solver = system.exu.MainSolverImplicitSecondOrder()
-        seconds = _run(system, solver, moving)
-        record = np.array(system.mbs.GetSensorStoredData(system.place))
+        asked, solver = _quiet(system), system.exu.MainSolverImplicitSecondOrder()
+        moving = asked.timeIntegration
+        moving.endTime, moving.numberOfSteps, moving.verboseMode = duration, steps, 0
+        moving.generalizedAlpha.spectralRadius = spectral_radius
+        _tune(system, asked, moving, relative_tolerance)
+        seconds = _run(system, solver, asked)
+        record = system.stored(system.place)
         return SolvedMotion(
             time=record[:, 0],
             rotation=record[:, 3],
@@ -146,7 +159,7 @@ def _driven(system: System, asked: Any, turns: Array) -> tuple[Any, float]:
 
 
 def _run(system: System, solver: Any, asked: Any) -> float:
-    """Run a solver and return what its steps took [s]; raises Failed unless it reaches the end."""
+    """Run a solver and return what its steps took [s]; raises Unanswered unless it reaches the end."""
     try:
         solver.InitializeSolver(system.mbs, asked)
         begin = time.perf_counter()
@@ -154,18 +167,10 @@ def _run(system: System, solver: Any, asked: Any) -> float:
         seconds = time.perf_counter() - begin
         solver.FinalizeSolver(system.mbs, asked)
     except (system.exu.SolverError, RuntimeError, ValueError) as error:
-        raise Failed(f"Exudyn: {str(error).splitlines()[0]}") from None
+        raise Unanswered(f"Exudyn: {str(error).splitlines()[0]}") from None
     if not reached:
-        raise Failed(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
+        raise Unanswered(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
     return seconds
-
-
-def _path(system: System) -> tuple[Array, Array]:
-    """Return centres (S, 2) [m] and torques (S,) [N m] of the run that was recorded last."""
-    node = system.mbs.GetNode(system.body)
-    moved = np.array(system.mbs.GetSensorStoredData(system.place))[:, 1:3]
-    torque = np.array(system.mbs.GetSensorStoredData(system.reaction))[:, 1]
-    return moved + np.array(node["referenceCoordinates"][:2]), torque
 
 
 def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any:
@@ -178,18 +183,6 @@ def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any
         static.computeLoadsJacobian = 0
         static.newton.modifiedNewtonContractivity = CONTRACTION
         _tune(system, asked, static, tolerance)
-    return asked
-
-
-def _dynamic(system: System, duration: float, steps: int, tolerance: float, radius: float) -> Any:
-    """Return the settings of the generalised-alpha solver."""
-    asked = _quiet(system)
-    moving = asked.timeIntegration
-    moving.endTime = duration
-    moving.numberOfSteps = steps
-    moving.verboseMode = 0
-    moving.generalizedAlpha.spectralRadius = radius
-    _tune(system, asked, moving, tolerance)
     return asked
 
 

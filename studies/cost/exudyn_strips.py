@@ -10,9 +10,7 @@ d(angle)/ds0: the theory of the spline and of the corotational finite elements, 
 Two nodes with position and slope, cubic between them. Source: Gerstmayr and Shabana, Nonlinear Dynamics 45
 (2006) 109-130; manual of Exudyn 1.13.
 
-`integration` is Exudyn's `useReducedOrderIntegration`: 0 Gauss rules of order 9 (axial) and 5 (bending), 1
-of 7 and 3, 2 mixed Lobatto and Gauss. Their errors differ by a factor of two or three, now one and now the
-other being the smallest; 1 and 2 save 5 to 10 % of the time.
+Exudyn's reduced rules of integration save 5 to 10 % of the time; no rule has the smallest error throughout.
 
 `exudyn_exact`: planar geometrically exact beams, `ObjectBeamGeometricallyExact2D`. Law: Reissner's rod:
 extension and shear from the position's derivative in the axes of the section, curvature from the section's
@@ -20,12 +18,10 @@ own angle over the length at rest, with shear compliance 1 / (k G A), k = 5/6, a
 sections' rotation. This is another theory than that of a rod without shear: its answers are to be held
 against their own limit, which is that of this repository's Reissner elements to 2e-9.
 
-Shear is kept because Table 1 has it. `shear_stiffness_factor` multiplies k G A: 1000 leaves 2e-6 of the
-difference to the rod without shear, with the same errors of the elements, which do not lock, but takes three
-times as long; at 1e4 Newton's method no longer meets its tolerance.
+Shear is kept because Table 1 has it.
 
-Elements with three nodes are the default: 1e-3 takes 20 of those with two, and three of these. Source:
-manual of Exudyn 1.13; Simo and Vu-Quoc, CMAME 58 (1986) 79-116.
+Elements have three nodes: 1e-3 takes 20 of those with two, and three of these. Source: manual of Exudyn
+1.13; Simo and Vu-Quoc, CMAME 58 (1986) 79-116.
 """
 
 import contextlib
@@ -39,7 +35,7 @@ import numpy as np
 
 from studies.cases.problem import Problem
 from studies.cost.exudyn_solve import Exudyn, System
-from studies.cost.model import checked_choice, checked_count, geometry_of
+from studies.cost.model import geometry_of
 from studies.kinds import Array
 
 #: Shear correction of a rectangular section, k.
@@ -110,10 +106,8 @@ def _hold(items: Any, mbs: Any, zero: int, node: int, coordinate: int) -> None:
     mbs.AddObject(items.CoordinateConstraint(markerNumbers=[zero, marker]))
 
 
-def _cables(problem: Problem, *, elements: int = 8, integration: int = 0) -> System:
-    """Return the pivot with so many ANCF cables a strip [1]; integration: rule, 0, 1 or 2."""
-    checked_count("elements", elements, 1)
-    checked_choice("integration", integration, (0, 1, 2))
+def _cables(problem: Problem, *, elements: int = 8) -> System:
+    """Return the pivot with so many ANCF cables a strip [1]."""
 
     def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
         places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
@@ -129,7 +123,6 @@ def _cables(problem: Problem, *, elements: int = 8, integration: int = 0) -> Sys
                     bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
                     axialStiffness=problem.youngs_modulus * problem.area,
                     nodeNumbers=list(pair),
-                    useReducedOrderIntegration=integration,
                 )
             )
         _clamp(items, mbs, zero, nodes[0], direction)
@@ -156,21 +149,17 @@ def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None
     )
 
 
-def _beams(
-    problem: Problem, *, elements: int = 4, nodes: int = 3, shear_stiffness_factor: float = 1.0
-) -> System:
-    """Return the pivot with so many exact beams a strip, of 2 or 3 nodes each, and a factor on k G A [1]."""
-    checked_count("elements", elements, 1)
-    checked_choice("nodes", nodes, (2, 3))
-    modulus, spans = problem.youngs_modulus, nodes - 1
+def _beams(problem: Problem, *, elements: int = 4) -> System:
+    """Return the pivot with so many exact beams a strip, of three nodes each [1]."""
+    modulus = problem.youngs_modulus
     shear_modulus = modulus / (2.0 * (1.0 + problem.poisson_ratio))
 
     def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
         numbers = [
             mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*(root + s * direction), 0.0]))
-            for s in np.linspace(0.0, problem.length, spans * elements + 1)
+            for s in np.linspace(0.0, problem.length, 2 * elements + 1)
         ]
-        for first in range(0, spans * elements, spans):
+        for first in range(0, 2 * elements, 2):
             mbs.AddObject(
                 items.ObjectBeamGeometricallyExact2D(
                     length=problem.length / elements,
@@ -178,8 +167,8 @@ def _beams(
                     crossSectionInertia=problem.density * problem.second_moment_of_area,
                     bendingStiffness=modulus * problem.second_moment_of_area,
                     axialStiffness=modulus * problem.area,
-                    shearStiffness=shear_stiffness_factor * SHEAR_CORRECTION * shear_modulus * problem.area,
-                    nodeNumbers=numbers[first : first + nodes],
+                    shearStiffness=SHEAR_CORRECTION * shear_modulus * problem.area,
+                    nodeNumbers=numbers[first : first + 3],
                 )
             )
         for coordinate in range(3):

@@ -1,54 +1,21 @@
 """The models that are compared: what each answers, what all check alike, the pivot as it is given."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.motion import Motion
+from studies.answers.reference import RECORDS
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.errors import BadInput
 from studies.kinds import Array
-
-
-class Failed(RuntimeError):
-    """A model did not reach the end of its path or motion; one line that says where it stopped."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolvedPath:
-    """A static path, S states, the unloaded one first; a `Response` of the suite's own models has the same.
-
-    Attributes:
-        rotation (S,): of the body, counter-clockwise [rad]. centre (S, 2): of its mass, origin at A1 [m].
-        torque (S,): that drives the body [N m]. stiffness (S,): its derivative by the rotation [N m / rad];
-            max_stress (S,): at the strips' outer fibres [Pa]; None where the model does not give them.
-        solve_s: time of the increments alone [s]. counters: of the solve, by kind; "unknowns" is the size of
-            its system.
-    """
-
-    rotation: Array
-    centre: Array
-    torque: Array
-    stiffness: Array | None = None
-    max_stress: Array | None = None
-    solve_s: float = math.nan
-    counters: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True)
-class SolvedMotion:
-    """Motion after a release at rest, T records, the start first; a `Motion` has the same.
-
-    Attributes:
-        time (T,): [s]. rotation (T,): of the body [rad]. solve_s, counters: as of a path, of the steps.
-    """
-
-    time: Array
-    rotation: Array
-    solve_s: float = math.nan
-    counters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(eq=False, kw_only=True)
@@ -67,26 +34,52 @@ class Model:
         return True
 
     def path(self, *args: Any, **settings: Any) -> Any:
-        """Drive the body of a design from rest to its rotation in its increments; return the path.
-
-        Args:
-            args: the design.
+        """Drive the body of a design, `args`, from rest to its rotation in its increments; return the path.
 
         Raises:
-            BadInput: a design or setting out of range. Failed: the path is not reached.
+            BadInput: a design or setting out of range. Unanswered: the path is not reached.
         """
         raise NotImplementedError
 
     def swing(self, *args: Any, **settings: Any) -> Any:
-        """Let go of the body of a design at rest at its rotation; return the motion.
+        """Let go of the body of a design at rest at its rotation, for a duration [s]; return the motion.
 
-        Args:
-            args: the design, and the duration of the motion [s].
-
-        Raises:
-            BadInput: a design or setting out of range. Failed: the motion stopped early.
+        Raises: as of `path`.
         """
         raise NotImplementedError
+
+
+#: Schemes whose steps are far shorter than what happens between two records.
+EXPLICIT = ("leapfrog", "central-difference")
+
+
+@dataclass(eq=False, kw_only=True)
+class _Own(Model):
+    """A model of the suite; keywords in `settings` are those of its discretisation and its integrator."""
+
+    discretised: Callable[..., Settings]
+
+    def path(self, design: Design, *, accuracy: float | None = None, **settings: Any) -> Response:
+        """Return the path; `accuracy`: that a spline chooses its own control points for [1]."""
+        return answer_static(design, self.discretised(**settings), accuracy=accuracy).whole()
+
+    def swing(
+        self,
+        design: Design,
+        duration: float,
+        *,
+        integrator: str | None = None,
+        step: float | None = None,
+        **settings: Any,
+    ) -> Motion:
+        """Return the motion; the step [s] of an explicit scheme is its own, near the largest stable one."""
+        records = RECORDS if integrator in EXPLICIT else None
+        how: dict[str, Any] = {"records": records, "integrator": integrator, "step": step}
+        return answer_release(design, self.discretised(**settings), duration=duration, **how).whole()
+
+
+spline = _Own(name="spline", discretised=SplineSettings)
+elements = _Own(name="finite elements", discretised=FeSettings)
 
 
 def turns_of(problem: Problem) -> Array:
@@ -103,18 +96,6 @@ def steps_of(duration: float, step: float) -> int:
     if not 0.0 < step <= duration < math.inf:
         raise BadInput(f"step: got {step} for {duration} s, expected a positive part of the duration [s]")
     return max(1, round(duration / step))
-
-
-def checked_choice(name: str, value: Any, choices: tuple[Any, ...]) -> None:
-    """Raise BadInput unless `value` is one of `choices`."""
-    if value not in choices:
-        raise BadInput(f"{name}: got {value!r}, expected one of {', '.join(map(repr, choices))}")
-
-
-def checked_count(name: str, value: Any, least: int) -> None:
-    """Raise BadInput unless `value` is a whole number of at least `least`."""
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise BadInput(f"{name}: got {value!r}, expected a whole number of at least {least}")
 
 
 #: The effects of a scene that all models of the comparison have: what they leave out of these is their error.
@@ -148,15 +129,11 @@ def geometry_of(problem: Problem) -> Geometry:
     """
     if set(problem.effects.names) != set(EFFECTS):
         raise BadInput(f"effects: got {', '.join(problem.effects.names)}, expected {', '.join(EFFECTS)}")
-    cosine, sine = math.cos(problem.inclination), math.sin(problem.inclination)
-    crossing = np.array(problem.crossing_point)
-    direction = np.array([[cosine, sine], [-cosine, sine]])
-    root = crossing - problem.crossing_ratio * problem.length * direction
-    tip = root + problem.length * direction
+    root, tip = (np.array([getattr(strip, end) for strip in problem.strips]) for end in ("start", "end"))
     return Geometry(
         root=root,
-        direction=direction,
+        direction=(tip - root) / problem.length,
         tip=tip,
-        crossing=crossing,
-        centre=tip.mean(axis=0) + np.array(problem.centre_offset),
+        crossing=np.array(problem.crossing_point),
+        centre=np.array(problem.bodies[0].centre),
     )

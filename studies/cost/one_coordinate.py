@@ -17,8 +17,9 @@ import numpy as np
 from numba import njit
 from numpy.polynomial import chebyshev
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import Model, SolvedMotion, SolvedPath, steps_of, turns_of
+from studies.cost.model import Model, steps_of, turns_of
 from studies.kinds import Array
 
 #: Highest degree of the series, and the part of their largest coefficient below which they end.

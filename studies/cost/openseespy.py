@@ -28,17 +28,10 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.problem import Problem
-from studies.cost.model import (
-    Failed,
-    Model,
-    SolvedMotion,
-    SolvedPath,
-    checked_count,
-    geometry_of,
-    steps_of,
-    turns_of,
-)
+from studies.cost.model import Model, geometry_of, steps_of, turns_of
+from studies.errors import Unanswered
 
 #: Stiffness of the links that stand for the body, over the strips': 1e4 still moves the torque by 6e-5.
 LINK_FACTOR = 1e6
@@ -46,6 +39,8 @@ LINK_FACTOR = 1e6
 INCREMENT = np.pi / 40.0
 START_TOLERANCE = 1e-16
 MOST_ITERATIONS = 50
+#: Of the method of integration, 2/3 to 1: 1 has none of its damping.
+ALPHA = 0.9
 BODY = 1
 
 
@@ -82,11 +77,11 @@ class _OpenSees(Model):
             tolerance: of the energy of Newton's last iteration, in EI/L [1].
         """
         turns = turns_of(problem)
-        ops = _driven(problem, {"elements": elements, "tolerance": tolerance}, float(turns[1]), moving=False)
+        ops = _driven(problem, elements, tolerance, float(turns[1]), moving=False)
         begin, states, iterations = time.perf_counter(), [np.zeros(3)], 0
         for turn in turns[1:]:
             if ops.analyze(1) != 0:
-                raise Failed(f"OpenSees: no convergence at {turn:g} rad")
+                raise Unanswered(f"OpenSees: no convergence at {turn:g} rad")
             iterations += ops.testIter()
             states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
         seconds, answer = time.perf_counter() - begin, np.array(states)
@@ -106,21 +101,15 @@ class _OpenSees(Model):
         step: float,
         elements: int = 20,
         tolerance: float = 1e-8,
-        alpha: float = 0.9,
     ) -> SolvedMotion:
-        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s].
-
-        Args:
-            alpha: of the method, 2/3 to 1 (1: none of its damping). Others as of `path`.
-        """
+        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s]; others as of
+        `path`."""
         steps = steps_of(duration, step)
-        ops = _let_go(
-            problem, {"elements": elements, "tolerance": tolerance, "alpha": alpha}, problem.rotation
-        )
+        ops = _let_go(problem, elements, tolerance, problem.rotation)
         begin, rotation, iterations = time.perf_counter(), np.full(steps + 1, problem.rotation), 0
         for row in range(1, steps + 1):
             if ops.analyze(1, duration / steps) != 0:
-                raise Failed(f"OpenSees: no convergence at {ops.getTime():g} s")
+                raise Unanswered(f"OpenSees: no convergence at {ops.getTime():g} s")
             iterations += ops.testIter()
             rotation[row] = ops.nodeDisp(BODY)[2]
         return SolvedMotion(
@@ -141,7 +130,6 @@ def _counters(ops: Any, iterations: int) -> dict[str, int]:
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     """Make nodes, strips and body anew, OpenSees having one model at a time; with masses if it is to move."""
-    checked_count("elements", elements, 1)
     ops, at_rest = _loaded(), geometry_of(problem)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)
@@ -168,31 +156,30 @@ def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
     return ops
 
 
-def _driven(problem: Problem, asked: dict[str, Any], increment: float, *, moving: bool) -> Any:
+def _driven(problem: Problem, elements: int, tolerance: float, increment: float, *, moving: bool) -> Any:
     """Return OpenSees ready to drive the body by equal increments [rad]."""
-    ops = _build(problem, asked["elements"], moving=moving)
+    ops = _build(problem, elements, moving=moving)
     ops.timeSeries("Linear", 1)
     ops.pattern("Plain", 1, 1)
     ops.load(BODY, 0.0, 0.0, 1.0)
     ops.integrator("DisplacementControl", BODY, 3, increment)
-    _solver(ops, problem, asked["tolerance"])
+    _solver(ops, problem, tolerance)
     ops.analysis("Static")
     return ops
 
 
-def _let_go(problem: Problem, asked: dict[str, Any], start: float) -> Any:
+def _let_go(problem: Problem, elements: int, tolerance: float, start: float) -> Any:
     """Return OpenSees at rest in the static state at `start`, without its moment, ready to move."""
     count = max(1, int(np.ceil(abs(start) / INCREMENT)))
-    strict = asked | {"tolerance": START_TOLERANCE}
-    ops = _driven(problem, strict, start / count, moving=True)
+    ops = _driven(problem, elements, START_TOLERANCE, start / count, moving=True)
     if ops.analyze(count) != 0:
-        raise Failed(f"OpenSees: statics does not reach the start, {start:g} rad")
+        raise Unanswered(f"OpenSees: statics does not reach the start, {start:g} rad")
     moment = ops.getTime()
     ops.remove("loadPattern", 1)
     ops.wipeAnalysis()
     ops.setTime(0.0)
-    ops.integrator("HHT", asked["alpha"])
-    _solver(ops, problem, asked["tolerance"])
+    ops.integrator("HHT", ALPHA)
+    _solver(ops, problem, tolerance)
     ops.analysis("Transient")
     ops.setNodeAccel(BODY, 3, -moment / problem.body_moment_of_inertia, "-commit")
     return ops

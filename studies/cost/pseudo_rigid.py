@@ -75,11 +75,6 @@ def shift_coefficient(problem: Problem) -> float:
     return -(9.0 * away**2 - 9.0 * away + 1.0) * problem.length / (15.0 * math.sin(problem.inclination))
 
 
-def _stiffness_coefficient(ratio: float) -> float:
-    """Return K_Theta at n = `ratio` [1]."""
-    return float(np.polynomial.polynomial.polyval(ratio, COEFFICIENTS))
-
-
 def _centre(at_rest: Geometry, p: Array, shift: Any) -> Array:
     """Return the centre of mass (S, 2) of a body whose point at the crossing moves by x + iy [m]."""
     z = shift + _arm(at_rest) * np.exp(1j * p)
@@ -147,7 +142,8 @@ def _pinned_law(problem: Problem) -> Law:
         raise BadInput(f"{PIN_JOINT}: got height / width {ratio:.3g}, expected {RANGE[0]:g} to {RANGE[1]:g}")
     rigidity = problem.youngs_modulus * problem.second_moment_of_area
     strips = 2.0 * problem.density * problem.area * (0.5 * problem.length) ** 3 / 3.0
-    return _constant(problem, _stiffness_coefficient(ratio) * rigidity / (2.0 * problem.length), strips)
+    coefficient = float(np.polynomial.polynomial.polyval(ratio, COEFFICIENTS))
+    return _constant(problem, coefficient * rigidity / (2.0 * problem.length), strips)
 
 
 def link_length(problem: Problem) -> float:

@@ -12,11 +12,11 @@ from typing import Any
 
 from studies.cost.constraint_model import constraint_model
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.model import Model
+from studies.cost.model import Model, elements, spline
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.own import elements, spline
 from studies.cost.pseudo_rigid import four_bar, linear_pivot, pin_joint
 from studies.engine import lacking
+from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
 #: Models of which the rotation is the only coordinate, the one whose beams have others that are eliminated,
 #: and other codes.
@@ -28,6 +28,15 @@ PEERS: dict[str, Model] = {each.name: each for each in (exudyn_ancf, exudyn_exac
 SPLINE, ITSELF, ELEMENTS, SHEAR = "spline", "spline, by itself", "finite elements", "elements with shear"
 EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE = "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates"
 GROUPS = (ITSELF, ELEMENTS, SHEAR, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
+#: Looks of those that are drawn: a colour a code.
+LOOKS = {
+    SPLINE: Look(label="spline", colour=BLUE, marker="x"),
+    ITSELF: Look(label="spline, by itself", colour=SKY, line="--", marker="D"),
+    ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
+    EXUDYN: Look(label="Exudyn, tuned", colour=PURPLE, marker="^"),
+    AS_DELIVERED: Look(label="Exudyn as delivered", colour=PURPLE, line=":", marker="v"),
+    OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
+}
 
 #: What to do about a peer that is not there.
 HINT = "not installed: python -m pip install '.[peers]'"

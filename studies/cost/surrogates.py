@@ -12,18 +12,17 @@ import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_static
-from studies.answers.reference import errors
+from studies.answers.reference import SolvedPath, errors, largest_errors
 from studies.answers.response import Response
 from studies.cases.problem import named_case
-from studies.cost.model import SolvedPath
-from studies.cost.own import spline
+from studies.cost.model import spline
 from studies.cost.settings import PSEUDO_RIGID, SURROGATES
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
-SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, "n = 6")
+SPLINES = (formulations.PAPER, formulations.LOCKING_FREE, formulations.SIX)
 #: Control points of the reference, and those whose difference to it is its uncertainty.
 REFINED, CHECK = 12, 10
 
@@ -38,14 +37,11 @@ def _paths() -> Answer:
     problem = replace(named_case(), increments=STATES - 1)
     limit, near = (spline.path(problem, control_points=n) for n in (REFINED, CHECK))
     paths = {name: each.path(problem) for name, each in SURROGATES.items()}
-    beside = {name: answer_static(problem, formulations.SETTINGS[name]) for name in SPLINES}
-    found = [_errors(name, path, limit) for name, path in (paths | beside).items()]
-    uncertainty = _errors("check", near, limit)[list(QUANTITIES)].abs().max()
+    paths |= {name: answer_static(problem, formulations.SETTINGS[name]) for name in SPLINES}
+    known = largest_errors(near, limit)
     return {
-        "errors": pd.concat(found),
-        "reference": [
-            {"quantity": name, "unit": "1", "uncertainty": value} for name, value in uncertainty.items()
-        ],
+        "errors": pd.concat(_errors(name, path, limit) for name, path in paths.items()),
+        "reference": [{"quantity": name, "unit": "1", "uncertainty": known[name]} for name in QUANTITIES],
     }
 
 

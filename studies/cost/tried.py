@@ -1,4 +1,4 @@
-"""Settings tried one after another: errors against the limit of each theory, times, and the cheapest of them.
+"""Settings tried one after another against the limit of each theory of the rod: errors, times, the cheapest.
 
 A time is that of a whole call, once all is compiled and loaded: from the design in memory to the answer in
 common terms, set-up included, and of a swing the static path to its start. What the model says of its
@@ -7,20 +7,122 @@ increments or steps alone stands beside it.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from studies.answers import reference
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.reference import Reference, SwingReference, sampled
+from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
-from studies.cost.limits import Limit, at, frequency_error, largest_errors
-from studies.cost.model import Failed
+from studies.cases.problem import Problem
 from studies.cost.settings import HINT, Setting
 from studies.engine import Row
-from studies.errors import BadInput
+from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
 from studies.record.progress import measure, silent
+
+#: Theories of a strip, by what their energies are measured in: bending per reference length without shear,
+#: per current length as the paper's Eq 10, and per reference length with shear.
+MATERIAL, SPATIAL, SHEAR = "material", "spatial", "shear"
+#: Control points of the spatial limit, and of the one below that says how uncertain it is.
+SPATIAL_POINTS = (15, 13)
+#: Control points and steps [s] of the splines that are the limit of a swing, the finer one first.
+SWINGS = {16: 3e-7, 14: 4e-7}
+#: Records of these: the strips' own oscillations are some 40 times as fast as the swing, and cubic
+#: interpolation between so many errs by less than 1e-6 rad.
+RECORDS = 4000
+#: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
+SHEAR_MESHES = (36, 54, 81, 121)
+#: What the other codes' rods with shear have beside it.
+ROTARY = "section_rotary_inertia"
+
+
+def path_limit(design: Design, theory: str) -> Reference:
+    """Return the limit of a theory on the path of a design.
+
+    Material and shear: the elements' limit of refinement, which shares no code with the splines. Spatial: no
+    elements have it, so a spline finer than any that is shown, and its distance to a coarser one.
+
+    Raises:
+        NoReference: the elements do not reach the end of the path.
+    """
+    if theory != SPATIAL:
+        return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
+    paper: dict[str, Any] = {"measure": theory, "stretch": "consistent"}
+    fine, coarse = (
+        answer_static(design, SplineSettings(control_points=n, **paper)).whole() for n in SPATIAL_POINTS
+    )
+    return Reference.of(
+        fine, coarse, "spline with {} control points; its distance to one with {}".format(*SPATIAL_POINTS)
+    )
+
+
+def path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
+    """Return the limits of all theories, and rows of how certain they are and how far apart."""
+    limits = {theory: path_limit(design, theory) for theory in (MATERIAL, SPATIAL, SHEAR)}
+    rows = [
+        {
+            "theory": theory,
+            "quantity": name,
+            "uncertainty": limit.uncertainty[name],
+            "distance_to_material": reference.largest_errors(limit, limits[MATERIAL])[name],
+            "source": limit.source,
+        }
+        for theory, limit in limits.items()
+        for name in reference.QUANTITIES
+    ]
+    return limits, rows
+
+
+def swing_limit(
+    design: Design, instants: Array, integrator: str, steps: Mapping[int, float | None]
+) -> SwingReference:
+    """Return the swing without shear, by the finest splines: control points and steps, the finer one first.
+
+    Raises:
+        NoReference: one of them stops early.
+    """
+    found = []
+    for n, step in steps.items():
+        motion = answer_release(
+            *(design, SplineSettings(control_points=n)),
+            duration=float(instants[-1]), records=RECORDS, integrator=integrator, step=step,
+        )  # fmt: skip
+        if not motion.converged:
+            raise reference.NoReference(f"reference with {n} control points: {motion.message}")
+        found.append(sampled(motion, instants))
+    fine, coarse = found
+    told = (f"n = {n}" + (f" at {1e6 * step:g} µs" if step else "") for n, step in steps.items())
+    uncertainty = reference.swing_errors(coarse, fine)
+    return SwingReference(**vars(fine), uncertainty=uncertainty, source=" and ".join(told))
+
+
+def swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
+    """Return the swing of either theory at the instants, with rows of how certain they are."""
+    with_rotary = replace(problem, effects=problem.effects.plus(ROTARY))
+    sheared = reference.swing_reference(
+        with_rotary,
+        duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",
+    )  # fmt: skip
+    limits = {MATERIAL: swing_limit(problem, instants, "leapfrog", SWINGS), SHEAR: sheared}
+    rows = [
+        {
+            "theory": theory,
+            "rotation_rad": limit.uncertainty["rotation_rad"],
+            "frequency_error": limit.uncertainty["frequency"],
+            "distance_to_material_rad": float(np.abs(limit.rotation - limits[MATERIAL].rotation).max()),
+            "source": limit.source,
+        }
+        for theory, limit in limits.items()
+    ]
+    return limits, rows
+
 
 #: Passes through all settings, far apart in time: what else the machine does lasts longer than one setting.
 PASSES = 3
@@ -29,60 +131,31 @@ PASSES = 3
 AFFORDED, RUNS = 0.2, 5
 #: Counters that stand beside the errors.
 WORK = ("unknowns", "steps", "newton_iterations", "factorisations")
-#: Columns that name a row.
-NAMED = ("model", "group", "setting")
 
-#: Errors of a path, those that it is judged by first, and of a swing.
+#: Errors of a path, and those that it is judged by first.
 PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
-SWING_ERRORS = ("rotation_rad", "frequency")
 
 
-def tried_paths(
+def compared(
     settings: Sequence[Setting],
     design: Design,
-    limits: Mapping[str, Limit],
+    limits: Mapping[str, Any],
+    instants: Array | None = None,
+    *,
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
-    """Return errors, work and times of the path of a design, a row a setting."""
+    """Return errors, work and times of the path of a design, or of its motion to the last of instants [s].
 
-    def errors(path: Any, theory: str) -> Row:
-        return largest_errors(path, limits[theory].found)
-
-    return _tried(settings, lambda each: each.model.path(design, **each.settings), errors, passes, progress)
-
-
-def tried_swings(
-    settings: Sequence[Setting],
-    design: Design,
-    instants: Array,
-    limits: Mapping[str, Limit],
-    passes: int = PASSES,
-    progress: Progress = silent,
-) -> pd.DataFrame:
-    """Return errors, work and times of the motion of a design to the last of the instants [s]."""
+    A row a setting; what is not installed has one a model. It and what fails have no errors.
+    """
 
     def solve(each: Setting) -> Any:
+        if instants is None:
+            return each.model.path(design, **each.settings)
         return each.model.swing(design, float(instants[-1]), **each.settings)
 
-    def errors(motion: Any, theory: str) -> Row:
-        rotation, limit = at(motion, instants), limits[theory].found
-        return {
-            "rotation_rad": float(np.abs(rotation - limit).max()),
-            "frequency": frequency_error(rotation, limit, instants),
-        }
-
-    return _tried(settings, solve, errors, passes, progress)
-
-
-def _tried(
-    settings: Sequence[Setting],
-    solve: Callable[[Setting], Any],
-    errors: Callable[[Any, str], Row],
-    passes: int,
-    progress: Progress,
-) -> pd.DataFrame:
-    """Return a row a setting; what is not installed has one a model. It and what fails have no errors."""
+    errors = reference.largest_errors if instants is None else reference.swing_errors
     rows: list[Row] = []
     for done, each in enumerate(settings):
         progress(done, len(settings))
@@ -95,11 +168,11 @@ def _tried(
             continue
         try:
             answer = solve(each)
-        except (Failed, BadInput) as stopped:
+        except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
             continue
         work = {name: answer.counters.get(name, np.nan) for name in WORK}
-        found = errors(answer, each.theory)
+        found = errors(answer, limits[each.theory])
         rows.append(row | {"status": "converged", "message": "", "solver": each} | found | work)
     seconds = _times([row["solver"] for row in rows if "solver" in row], solve, passes)
     progress(len(settings), len(settings))
@@ -117,29 +190,19 @@ def _times(
             if longest > AFFORDED:
                 continue
             runs = 1 if not whole else int(min(RUNS, max(1.0, AFFORDED / longest)))
-            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=_alone)
+            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=attrgetter("solve_s"))
             whole += timed.seconds
             part += timed.parts
     return found
 
 
-def _alone(answer: Any) -> float:
-    return float(answer.solve_s)
-
-
 def spread(whole: Sequence[float], alone: Sequence[float]) -> dict[str, float]:
     """Return median and quartiles of whole calls, the median of what they are without set-up [s], and how
     many they are."""
-    if not len(whole):
-        return {"whole_s": math.nan, "low_s": math.nan, "high_s": math.nan, "solve_s": math.nan, "runs": 0}
-    low, median, high = np.percentile(whole, (25, 50, 75))
-    return {
-        "whole_s": float(median),
-        "low_s": float(low),
-        "high_s": float(high),
-        "solve_s": float(np.median(alone)),
-        "runs": len(whole),
-    }
+    low, median, high = np.percentile(whole, (25, 50, 75)) if len(whole) else (math.nan,) * 3
+    solve = float(np.median(alone)) if len(alone) else math.nan
+    times = {"whole_s": float(median), "low_s": float(low), "high_s": float(high), "solve_s": solve}
+    return times | {"runs": len(whole)}
 
 
 def kept(rows: pd.DataFrame, judged: Sequence[str]) -> pd.Series:

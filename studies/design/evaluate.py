@@ -236,7 +236,7 @@ def _to_one_side(
     with asked.refusals():
         try:
             path = asked.static_path(rotation=end)
-        except asked.model.errors.ConvergenceError as error:
+        except asked.model.ConvergenceError as error:
             raise PathEnds(str(error)) from None
         if path.critical_points and held_states(design) != [-1]:
             raise PathEnds(path.message)

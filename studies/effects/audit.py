@@ -1,8 +1,8 @@
 """Audit of a design: what each effect of its scene is worth, and the cheapest scene within a tolerance."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, compress
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,8 @@ from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.effects.beyond import prices
-from studies.effects.scenes import SIZES, Answer, Outcome, Run, Unanswered, Variant
+from studies.effects.scenes import SIZES, Outcome, Run, Variant
+from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
 
@@ -81,29 +82,28 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     """
     upset = _upsetting(design, settings)
     scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])
-    whole = scene.of(design)
-    run = Run.of(whole, settings)
-    base = run.answer(whole)
-    full = run.outcome(scene, design, base)
+    run = Run.of(scene.of(design), settings)
+    base = run.answer(run.design)
+    full = run.outcome(scene, base)
     names = scene.effects.names
     rows = []
     for done, name in enumerate(names):
         progress(done, len(names) + 2)
-        rows.append(run.outcome(scene.without([name]), design, base))
-    tried = _combined(rows, scene, design, run, base, tolerance)
+        rows.append(run.outcome(scene.without([name]), base))
+    tried = [run.outcome(scene.without(those), base) for those in _combined(rows, tolerance)]
     progress(len(names), len(names) + 2)
-    full, *others = _timed([full, *rows, *tried], design, run)
+    full, *others = _timed([full, *rows, *tried], run)
     progress(len(names) + 1, len(names) + 2)
     cheapest = _cheapest([full, *others], tolerance)
-    one, other = _in_turn((full, cheapest), design, run, DUELS)
+    one, other = _in_turn((full, cheapest), run, DUELS)
     return Audit(
         tolerance=tolerance,
         run=run,
         full=full,
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
-        beyond=prices(whole),
-        cheapest=replace(run.outcome(cheapest.variant, design, base), wall_s=other),
+        beyond=prices(run.design),
+        cheapest=replace(run.outcome(cheapest.variant, base), wall_s=other),
         seconds=(one, other),
     )
 
@@ -120,24 +120,19 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
     return rows
 
 
-def _combined(
-    rows: Sequence[Outcome], scene: Variant, design: Design, run: Run, base: Answer, tolerance: float
-) -> list[Outcome]:
-    """Return the scenes without two and more of the effects that can each be left out."""
+def _combined(rows: Sequence[Outcome], tolerance: float) -> Iterator[list[str]]:
+    """Yield two and more of the effects that can each be left out."""
     within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
     names = [row.variant.dropped[0] for row in within]
     always, free = names[:-MOST_COMBINED], names[-MOST_COMBINED:]
-    found = []
     for count in range(len(free) + 1):
-        for chosen in combinations(free, count):
-            if len(always) + count >= 2:
-                found.append(run.outcome(scene.without([*always, *chosen]), design, base))
-    return found
+        if len(always) + count >= 2:
+            yield from ([*always, *chosen] for chosen in combinations(free, count))
 
 
-def _in_turn(outcomes: Sequence[Outcome], design: Design, run: Run, rounds: int) -> list[float]:
+def _in_turn(outcomes: Sequence[Outcome], run: Run, rounds: int) -> list[float]:
     """Return the median times of static path and motion of scenes, taken round by round [s]."""
-    scenes = [each.variant.of(design) for each in outcomes]
+    scenes = [each.variant.of(run.design) for each in outcomes]
 
     def wall_s(scene: Design) -> float:
         motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
@@ -147,13 +142,14 @@ def _in_turn(outcomes: Sequence[Outcome], design: Design, run: Run, rounds: int)
     return [float(each) for each in np.median(walls, axis=0)]
 
 
-def _timed(outcomes: Sequence[Outcome], design: Design, run: Run) -> list[Outcome]:
-    """Return the scenes with their median times, taken round by round in turn."""
-    limit = SLOW * outcomes[0].wall_s
-    again = [each for each in outcomes if each.wall_s <= limit]
-    walls = _in_turn(again, design, run, ROUNDS)
-    found = dict(zip(map(id, again), walls, strict=True))
-    return [replace(each, wall_s=found[id(each)]) if id(each) in found else each for each in outcomes]
+def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
+    """Return the scenes with their median times, taken round by round in turn, but for slow ones."""
+    again = [each.wall_s <= SLOW * outcomes[0].wall_s for each in outcomes]
+    walls = iter(_in_turn([*compress(outcomes, again)], run, ROUNDS))
+    return [
+        replace(each, wall_s=next(walls)) if timed else each
+        for each, timed in zip(outcomes, again, strict=True)
+    ]
 
 
 def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
@@ -161,8 +157,8 @@ def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
     within = [each for each in outcomes if each.largest <= tolerance]
     fastest = min(each.wall_s for each in within)
     near = [each for each in within if each.wall_s <= (1.0 + SAME_TIME) * fastest]
-    return min(near, key=_extent)
 
+    def extent(each: Outcome) -> tuple[int, float, float]:
+        return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
 
-def _extent(each: Outcome) -> tuple[int, float, float]:
-    return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
+    return min(near, key=extent)

@@ -1,19 +1,17 @@
 """What planar beams leave out, priced: how the answers of a design change with each such effect."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
-from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import OF_SIDES
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.effects.scenes import Unanswered, reached, strayed
-from studies.errors import BadInput
+from studies.effects.scenes import Answer, strayed, tried
 
 Either = TypeVar("Either", bound=Problem | Mechanism)
 
@@ -27,10 +25,9 @@ CONTROL_POINTS, ELEMENTS = 10, 160
 def with_sections(design: Either, names: tuple[str, ...] = OF_SIDES) -> Either:
     """Return a design with these effects beside its own, its sections as the rectangles of their A and I;
     roots are those of one block."""
-    effects = design.effects
-    tables = {"root_compliance": {"root": "monolithic"}} | dict(effects.tables)
-    more = [name for name in names if name not in effects.names]
-    return _sided(replace(design, effects=replace(effects, names=(*effects.names, *more), tables=tables)))
+    tables = {"root_compliance": {"root": "monolithic"}} | dict(design.effects.tables)
+    effects = replace(design.effects, tables=tables).plus(*names)
+    return _sided(replace(design, effects=effects))
 
 
 def _sided(design: Either) -> Either:
@@ -56,58 +53,32 @@ def prices(design: Design) -> list[dict[str, Any]]:
     """
     spline = SplineSettings(control_points=CONTROL_POINTS)
     design = _sided(design)
-    own = _answers(design, spline)
+    own = Answer.of(design, spline)[0]
     missing = tuple(name for name in OF_SIDES if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
     stiff = FeSettings(elements=ELEMENTS)
     sheared = replace(stiff, element="reissner")
-    return [*found, _price(SHEAR, design, sheared, lambda: _answers(design, stiff))]
+    return [*found, _price(SHEAR, design, sheared, lambda: Answer.of(design, stiff)[0])]
 
 
-def _answers(design: Design, settings: Settings) -> dict[str, Any]:
-    """Return what a price is of: centres of bodies as the body turns, stiffness at the begin of that, torque
-    and stress at its end, and first mode at rest [Hz]."""
-    path, begin = reached(answer_static(design, settings)), -design.increments - 1
-    modes = reached(answer_modes(design, settings, count=1)).frequency
-    return {
-        "centres": {name: each[begin:] for name, each in path.centres.items()},
-        "stiffness": path.stiffness[begin],
-        "torque": path.torque[-1],
-        "stress": path.max_stress[-1],
-        "first_mode": float(modes[0]) if len(modes) else np.nan,
-    }
-
-
-def _changes(found: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, float]:
+def _changes(found: Answer, own: Answer) -> dict[str, float]:
     """Return how far answers are from the own ones."""
-    begins = {name: path[:1] for name, path in own["centres"].items()}
-    trajectory = _rounded(strayed(found["centres"], own["centres"], begins))
-    others = {name: relative_change(found[name], own[name]) for name in CHANGED[1:]}
-    return {CHANGED[0]: trajectory, **others}
+    pairs = (
+        (found.stiffness[0], own.stiffness[0]),
+        (found.torque[-1], own.torque[-1]),
+        (found.stress[-1], own.stress[-1]),
+        (found.mode, own.mode),
+    )
+    ratios = [one / other - 1.0 if other else np.nan for one, other in pairs]
+    changes = (strayed(found.path, own.path, own.path[:, 0]), *ratios)
+    # rounded to nine decimals, behind which both models have round-off
+    return {name: round(float(change), 9) + 0.0 for name, change in zip(CHANGED, changes, strict=True)}
 
 
-def _price(
-    effect: str, design: Design, settings: Settings, own: Callable[[], dict[str, Any]]
-) -> dict[str, Any]:
+def _price(effect: str, design: Design, settings: Settings, own: Callable[[], Answer]) -> dict[str, Any]:
     """Return a row of `prices`; without changes where there was no answer."""
-    changes, status, reason = dict.fromkeys(CHANGED, np.nan), "converged", ""
-    try:
-        without = own()
-        changes = _changes(_answers(design, settings), without)
-    except BadInput as error:
-        status, reason = "refused", str(error)
-    except Unanswered as error:
-        status, reason = "not_converged", str(error)
+    found, status, reason = tried(lambda: (own(), Answer.of(design, settings)[0]))
+    changes = dict.fromkeys(CHANGED, np.nan) if found is None else _changes(found[1], found[0])
     largest = np.fmax.reduce(np.abs([*changes.values()]))
     return {"effect": effect, "status": status, **changes, "largest": largest, "reason": reason}
-
-
-def relative_change(value: float, own: float) -> float:
-    """Return a value over the own one less one, rounded; NaN where that is zero."""
-    return _rounded(value / own - 1.0) if own != 0.0 else np.nan
-
-
-def _rounded(change: float) -> float:
-    """Return a change to nine decimals, behind which both models have round-off."""
-    return round(float(change), 9) + 0.0

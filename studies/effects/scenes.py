@@ -1,7 +1,7 @@
 """The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self, TypeVar
 
@@ -14,14 +14,12 @@ from spline_model.motion.leapfrog import highest_frequency, stability_limit
 from spline_model.motion.start import set_in_motion
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.models import put
-from studies.answers.motion import Motion, Spectrum
-from studies.answers.response import Response
-from studies.answers.settings import SplineSettings
+from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Mechanism as MechanismData
 from studies.cases.problem import Problem
-from studies.errors import BadInput
+from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
 
 #: Effects that a scene may do without but that could matter, with what they need beside them.
@@ -39,9 +37,8 @@ class Variant:
     """A scene in place of the full one.
 
     Attributes:
-        dropped: effects of the full scene that were left out or simplified.
-        added: those that were put in though the full scene could not have them.
-        effects: of the scene.
+        dropped: effects of the full scene that were left out or simplified; added: those that were put in
+            though the full scene could not have them. effects: of the scene.
     """
 
     dropped: tuple[str, ...]
@@ -63,15 +60,14 @@ class Variant:
     def full(cls, effects: Effects, omitted: Iterable[str] = ()) -> Self:
         """Return the scene with what could matter beside its own effects, but for what is omitted."""
         added = [variant.added[0] for variant in cls.beside(effects)]
-        names = [*effects.names, *(name for name in added if name not in omitted)]
-        return cls(dropped=(), effects=effects.renamed(names))
+        return cls(dropped=(), effects=effects.plus(*(name for name in added if name not in omitted)))
 
     @classmethod
     def beside(cls, effects: Effects) -> Iterator[Self]:
         """Yield the scene with each effect that it does not have but that could matter."""
         for name, base in BESIDE.items():
             if name not in effects.names and base in effects.names:
-                yield cls(dropped=(), added=(name,), effects=effects.renamed([*effects.names, name]))
+                yield cls(dropped=(), added=(name,), effects=effects.plus(name))
 
     def without(self, dropped: Iterable[str]) -> Self:
         """Return the scene without these effects, or with their simpler forms."""
@@ -89,13 +85,12 @@ CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
 def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
     """Return the size of the design's scene in motion, let go from the end of its path.
 
-    Keys: unknowns (coordinates, axial forces and multipliers of a step's equations), degrees_of_freedom
-    (independent coordinates that have inertia), highest_frequency_Hz (at rest and at the start of the motion)
-    and explicit_step_s (largest stable step of the leapfrog there).
+    Unknowns are coordinates, axial forces and multipliers of a step's equations, degrees of freedom the
+    independent coordinates that have inertia; the highest frequency is that at rest and at the start, where
+    the leapfrog has that largest stable step.
 
     Raises:
-        BadInput: what the model refuses; one line. spline_model.errors.ConvergenceError: statics does not
-        reach the start.
+        BadInput: what the model refuses. spline_model.errors.ConvergenceError: no start is reached.
     """
     asked = put(design, settings, moving=True)
     mechanism: Mechanism = asked.modelled
@@ -110,38 +105,67 @@ def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
     return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
 
 
-#: Duration of the motion and its steps, in swings of the first mode of the full scene. With so many steps the
-#: frequency of Table 1's swing is within 1e-4 of the limit.
+#: Duration of the motion and its steps, in swings of the first mode: within 1e-4 of that of Table 1.
 SWINGS, STEPS_A_SWING = 3.0, 240
 #: A scene whose first mode is off by more than this is not followed in motion: it is another machine.
 LOST = 1.0
 
 
-class Unanswered(RuntimeError):
-    """A scene that has no answer; the text says why."""
+Given = TypeVar("Given")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What a scene says.
+    """What a scene says, along the static path as the body turns, which a scene with loads begins loaded.
 
     Attributes:
-        path: (S, 2) centres of all bodies along the static path, side by side [m]; torque: (S,) [N m].
-        mode: first natural frequency at rest [Hz].
+        path: (B, S, 2) centres of all bodies [m]; torque: (S,) [N m]; stiffness: (S,) [N m/rad]; stress: (S,)
+            the largest [Pa].
+        mode: first natural frequency at rest [Hz], NaN without one.
         swing: frequency of the swing after the release [Hz], NaN where none is driven or none is whole.
         loss: energy dissipated in the motion over the largest kinetic and strain energy [1].
         wall_s: of the static path and the motion [s]; NaN without a whole motion.
         stopped: whether the motion stopped early; note: why there is no whole motion.
     """
 
-    path: dict[str, Array]
+    path: Array
     torque: Array
+    stiffness: Array
+    stress: Array
     mode: float
     swing: float = math.nan
     loss: float = math.nan
     wall_s: float = math.nan
     stopped: bool = False
     note: str = ""
+
+    @classmethod
+    def of(cls, design: Design, settings: Settings) -> tuple[Self, float]:
+        """Return the answer without a motion, and what its path took [s].
+
+        Raises:
+            BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
+        """
+        static, turned = answer_static(design, settings).whole(), slice(-design.increments - 1, None)
+        modes = answer_modes(design, settings, count=1).whole().frequency
+        answer = cls(
+            path=np.array([*static.bodies.values()]).reshape(-1, len(static.torque), 3)[:, turned, :2],
+            torque=static.torque[turned],
+            stiffness=static.stiffness[turned],
+            stress=static.max_stress[turned],
+            mode=float(modes[0]) if len(modes) else math.nan,
+        )
+        return answer, static.wall_s
+
+
+def tried(ask: Callable[[], Given]) -> tuple[Given | None, str, str]:
+    """Return what asking gives or None, the status, and the reason why there is nothing."""
+    try:
+        return ask(), "converged", ""
+    except BadInput as error:
+        return None, "refused", str(error)
+    except Unanswered as error:
+        return None, "not_converged", str(error)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,11 +175,9 @@ class Outcome:
     Attributes:
         variant: the scene. status: "converged", "refused", "not_converged" or "unstable"; reason: in a line,
             also why there was no motion.
-        changes: each of `CHANGES` [1], NaN where there is none: trajectory (largest distance of a body's
-            centre along the static path over the largest travel), torque (largest along the path over the
-            largest torque), the frequencies, and the energy lost.
-        size: of `size_of`; empty where the scene has no answer.
-        wall_s: time of static path and motion, the median where it was timed more than once [s].
+        changes: each of `CHANGES` [1], NaN where there is none; trajectory and torque are the largest along
+            the path, over the largest travel and torque.
+        size: of `size_of`; empty where the scene has no answer. wall_s: the median of its times [s].
     """
 
     variant: Variant
@@ -176,25 +198,22 @@ class Outcome:
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """What all scenes of an audit are asked: a static path, then a motion of `duration` in steps of `step`
-    [s]."""
+    """What all scenes of an audit are asked: a static path, then a motion; duration and step [s]."""
 
+    design: Design
     settings: SplineSettings
     duration: float
     step: float
 
     @classmethod
     def of(cls, design: Design, settings: SplineSettings) -> Self:
-        """Return the motion to ask of a design's scenes: some swings of its first mode.
-
-        Raises:
-            BadInput: what the model refuses. Unanswered: the design is not stable at rest.
-        """
+        """Return the motion to ask of a design's scenes; Unanswered if the design is not stable at rest."""
         modes = answer_modes(design, settings, count=1)
         first = float(modes.frequency[0]) if modes.converged and len(modes.frequency) else math.nan
         if not first > 0.0:
             raise Unanswered(modes.message or f"the first natural frequency at rest is {first:.4g} Hz")
-        return cls(settings=settings, duration=SWINGS / first, step=1.0 / (STEPS_A_SWING * first))
+        step = 1.0 / (STEPS_A_SWING * first)
+        return cls(design=design, settings=settings, duration=SWINGS / first, step=step)
 
     def answer(self, design: Design, full: Answer | None = None) -> Answer:
         """Return what the design's scene says; without a motion where its first mode is far from the full
@@ -203,13 +222,8 @@ class Run:
         Raises:
             BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
         """
-        static = reached(answer_static(design, self.settings))
-        mode = float(reached(answer_modes(design, self.settings, count=1)).frequency[0])
-        # as the body turns: a scene without loads has no states before
-        turned = slice(-design.increments - 1, None)
-        path = {name: each[turned] for name, each in static.centres.items()}
-        answer = Answer(path=path, torque=static.torque[turned], mode=mode)
-        if full is not None and abs(mode / full.mode - 1.0) > LOST:
+        answer, wall_s = Answer.of(design, self.settings)
+        if full is not None and abs(answer.mode / full.mode - 1.0) > LOST:
             return replace(answer, note="no motion: the first mode is another")
         # massless strips may snap through between two states of a long step, unseen: then a companion stops
         massless = "strip_inertia" not in design.effects.names
@@ -217,76 +231,52 @@ class Run:
         alone = motion.converged and massless and math.isnan(motion.rotation_error)
         if full is not None and (left := motion.resolution if alone else motion.message):
             return replace(answer, stopped=True, note=f"motion: {left}")
-        reached(motion)
-        driven = bool(design.rotation)
+        largest = float((motion.whole().kinetic_energy + motion.strain_energy).max())
         return replace(
             answer,
-            swing=motion.frequency if driven else math.nan,
-            loss=_loss(motion),
-            wall_s=static.wall_s + motion.wall_s,
+            swing=motion.frequency if design.rotation else math.nan,
+            loss=float(motion.dissipated[-1]) / largest if largest > 0.0 else 0.0,
+            wall_s=wall_s + motion.wall_s,
         )
 
-    def outcome(self, variant: Variant, design: Design, full: Answer) -> Outcome:
-        """Return how far a scene is from the full one; a scene without an answer keeps its reason.
-
-        Args:
-            variant: the scene. design: whose it is. full: answer of the full scene.
-        """
-        scene = variant.of(design)
-        try:
-            answer = self.answer(scene, full)
-            size = size_of(scene, self.settings)
-        except BadInput as error:
-            return Outcome(variant=variant, status="refused", reason=str(error))
-        except Unanswered as error:
-            return Outcome(variant=variant, status="not_converged", reason=str(error))
+    def outcome(self, variant: Variant, full: Answer) -> Outcome:
+        """Return how far a scene is from the full one's answer; one without keeps its reason."""
+        scene = variant.of(self.design)
+        found, status, reason = tried(lambda: (self.answer(scene, full), size_of(scene, self.settings)))
+        if found is None:
+            return Outcome(variant=variant, status=status, reason=reason)
+        answer, size = found
         torque = float(np.abs(full.torque).max())
         change = float(np.abs(answer.torque - full.torque).max())
+        changes = (
+            strayed(answer.path, full.path, _rest(self.design, full)),
+            change / torque if torque > 0.0 else math.nan,
+            answer.swing / full.swing - 1.0,
+            answer.mode / full.mode - 1.0,
+            answer.loss - full.loss,
+        )
         return Outcome(
             variant=variant,
-            status="not_converged" if answer.stopped else "converged",
+            status="not_converged" if answer.stopped else status,
             reason=answer.note,
-            changes={
-                "trajectory": strayed(answer.path, full.path, _rest(design, full)),
-                "torque": change / torque if torque > 0.0 else math.nan,
-                "swing_frequency": answer.swing / full.swing - 1.0,
-                "first_mode": answer.mode / full.mode - 1.0,
-                "loss": answer.loss - full.loss,
-            },
+            changes=dict(zip(CHANGES, changes, strict=True)),
             size=size,
             wall_s=answer.wall_s,
         )
 
 
-Reached = TypeVar("Reached", Response, Spectrum, Motion)
-
-
-def reached(answer: Reached) -> Reached:
-    """Return the answer; Unanswered unless it is complete."""
-    if not answer.converged:
-        raise Unanswered(answer.message)
-    return answer
-
-
-def _rest(design: Design, full: Answer) -> dict[str, Array]:
-    """Return the centres before weight and drives act [m]; of a pivot before it turns, which hardly sags."""
+def _rest(design: Design, full: Answer) -> Array:
+    """Return the centres (B, 2) before weight and drives act [m]; of a pivot before it turns, which hardly
+    sags."""
     if isinstance(design, Problem):
-        return {name: path[0] for name, path in full.path.items()}
-    return {body.name: np.array(body.centre) for body in design.bodies}
+        return full.path[:, 0]
+    return np.array([body.centre for body in design.bodies]).reshape(-1, 2)
 
 
-def strayed(path: Mapping[str, Array], full: Mapping[str, Array], rest: Mapping[str, Array]) -> float:
-    """Return the largest distance of centres (S, 2) from those of the full scene, over the largest travel of
-    these from `rest` [1]; NaN where none moves."""
-
-    def farthest(paths: Mapping[str, Array], others: Mapping[str, Array]) -> float:
-        gaps = (float(np.linalg.norm(paths[name] - others[name], axis=1).max()) for name in full)
-        return max(gaps, default=0.0)
-
-    travel = farthest(full, rest)
-    return farthest(path, full) / travel if travel > 0.0 else math.nan
-
-
-def _loss(motion: Motion) -> float:
-    largest = float((motion.kinetic_energy + motion.strain_energy).max())
-    return float(motion.dissipated[-1]) / largest if largest > 0.0 else 0.0
+def strayed(path: Array, full: Array, rest: Array) -> float:
+    """Return the largest distance of centres (B, S, 2) from those of the full scene, over the largest travel
+    of these from `rest` (B, 2) [1]; NaN where none moves."""
+    gap, travel = (
+        float(np.linalg.norm(apart, axis=2).max(initial=0.0)) for apart in (path - full, full - rest[:, None])
+    )
+    return gap / travel if travel > 0.0 else math.nan

@@ -1,31 +1,30 @@
 """Fig 6 of the paper: the motion of the body's centre after the release from 90 degrees, and its errors."""
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.answers.motion import Motion
-from studies.answers.reference import Swing, SwingReference, sampled
+from studies.answers.reference import SolvedMotion, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
-from studies.paper.formulations import FE, LOCKING_FREE, MEANING, PAPER, REFINED, SETTINGS
+from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, MEANING, PAPER, REFINED, SETTINGS, SIX
 from studies.record.marks import Doubt
 from studies.record.panels import TIME, Axis, Curves, Panel, sheet
-from studies.record.style import CHECK, LOOKS
+from studies.record.style import GREEN, Look
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.
-SPLINES = (PAPER, LOCKING_FREE, "n = 6")
-REFINED_SPLINE = "n = 10"
+SPLINES, REFINED_SPLINE = (PAPER, LOCKING_FREE, SIX), "n = 10"
 
 #: "Slightly different" is read as a tenth of what the centre travels.
 SLIGHT = 0.1
 
 #: Every so many of the common instants is stored: some sixty a swing.
-STORED = 2
+STORED = slice(None, None, 2)
 
 QUANTITIES = (
     ("rotation_rad", "rotation [deg]", 180.0 / np.pi),
@@ -34,7 +33,8 @@ QUANTITIES = (
 )
 
 #: Lines of the figure: motions have too many points for markers.
-LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)} | {REFINED_SPLINE: CHECK}
+LINES = {name: replace(LOOKS[name], marker="") for name in (REFINED, FE, *SPLINES)}
+LINES[REFINED_SPLINE] = Look(label="spline n = 10", colour=GREEN, line=":")
 
 
 def _compared() -> Answer:
@@ -46,19 +46,11 @@ def _compared() -> Answer:
     limit = formulations.refined_swing()
     motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
     traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
-    largest = {
-        "rotation_rad": float(limit.uncertainty.max()),
-        "com_x_m": float(limit.centre_uncertainty[:, 0].max()),
-        "com_y_m": float(limit.centre_uncertainty[:, 1].max()),
-        "frequency": limit.frequency_uncertainty,
-    }
     return {
-        "motions": pd.concat(
-            _trace(name, swing, limit.swing) for name, swing in {REFINED: limit.swing, **traces}.items()
-        ),
-        "summary": [_summary(name, motion, limit) for name, motion in motions.items()],
-        "findings": [row for name in SPLINES for row in _findings(name, motions[name], motions[FE])],
-        "reference": [{"quantity": name, "uncertainty": value} for name, value in largest.items()],
+        "motions": pd.concat(_trace(name, each, limit) for name, each in {REFINED: limit, **traces}.items()),
+        "summary": [_summary(name, motions[name], trace, limit) for name, trace in traces.items()],
+        "findings": [row for name in SPLINES for row in _findings(name, motions, traces)],
+        "reference": [{"quantity": name, "uncertainty": each} for name, each in limit.uncertainty.items()],
     }
 
 
@@ -74,20 +66,11 @@ def _figure(tables: Tables) -> Figure:
     level = tables["reference"].set_index("quantity")["uncertainty"]
     rows = []
     for column, label, factor in QUANTITIES[:2]:
-        unit = label[label.index("[") :]
-        far = Axis(f"difference_{column}", f"difference {unit}", factor=factor, log=True)
-        rows.append(
-            [
-                _values(motions, Axis(column, label, factor=factor)),
-                _largest(motions, far, Doubt(factor * level[column])),
-            ]
-        )
-    rows.append(
-        [
-            _values(motions, Axis("strain_J", "strain energy [J]")),
-            _largest(motions, Axis("change", "change of energy [1]", log=True)),
-        ]
-    )
+        far = Axis(f"difference_{column}", f"difference {label[label.index('[') :]}", factor=factor, log=True)
+        so_far = _largest(motions, far, Doubt(factor * level[column]))
+        rows.append([_values(motions, Axis(column, label, factor=factor)), so_far])
+    change = _largest(motions, Axis("change", "change of energy [1]", log=True))
+    rows.append([_values(motions, Axis("strain_J", "strain energy [J]")), change])
     titles = ("After the release from 90°", "Largest difference to refined elements so far")
     return sheet(8.8, 6.2, rows, columns=titles, legend=3)
 
@@ -110,41 +93,36 @@ def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
 def _motion(name: str) -> Motion:
     """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
     settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
-    return (
-        formulations.resolved(settings)
-        if isinstance(settings, SplineSettings)
-        else formulations.released(settings)
-    )
+    if isinstance(settings, SplineSettings):
+        return formulations.resolved(settings)
+    return formulations.released(settings)
 
 
-def _trace(name: str, swing: Swing, limit: Swing) -> pd.DataFrame:
-    kept = slice(None, None, STORED)
-    return pd.DataFrame(
-        {
-            "formulation": name,
-            "time_s": swing.time[kept],
-            "rotation_rad": swing.rotation[kept],
-            "com_x_m": swing.centre[kept, 0],
-            "com_y_m": swing.centre[kept, 1],
-            "kinetic_J": swing.kinetic_energy[kept],
-            "strain_J": swing.strain_energy[kept],
-            "difference_rotation_rad": (swing.rotation - limit.rotation)[kept],
-            "difference_com_x_m": (swing.centre - limit.centre)[kept, 0],
-            "difference_com_y_m": (swing.centre - limit.centre)[kept, 1],
-        }
-    )
+def _trace(name: str, swing: SolvedMotion, limit: SolvedMotion) -> pd.DataFrame:
+    columns = {
+        "formulation": name,
+        "time_s": swing.time,
+        "rotation_rad": swing.rotation,
+        "com_x_m": swing.centre[:, 0],
+        "com_y_m": swing.centre[:, 1],
+        "kinetic_J": swing.kinetic_energy,
+        "strain_J": swing.strain_energy,
+        "difference_rotation_rad": swing.rotation - limit.rotation,
+        "difference_com_x_m": (swing.centre - limit.centre)[:, 0],
+        "difference_com_y_m": (swing.centre - limit.centre)[:, 1],
+    }
+    return pd.DataFrame(columns)[STORED]
 
 
-def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]:
-    swing = sampled(motion, formulations.INSTANTS)
+def _summary(name: str, motion: Motion, trace: SolvedMotion, limit: SwingReference) -> Row:
     return {
         "formulation": name,
         "meaning": MEANING.get(name, "material measure, mixed stretch: refined, a check of the reference"),
         "status": motion.status,
         "frequency_Hz": motion.frequency,
         "frequency_shift": motion.frequency / limit.frequency - 1.0,
-        "error_rotation_rad": float(np.abs(swing.rotation - limit.swing.rotation).max()),
-        "error_centre_m": float(np.linalg.norm(swing.centre - limit.swing.centre, axis=1).max()),
+        "error_rotation_rad": float(np.abs(trace.rotation - limit.rotation).max()),
+        "error_centre_m": float(np.linalg.norm(trace.centre - limit.centre, axis=1).max()),
         "energy_error": motion.energy_error,
         "constraint_residual_m": float(motion.constraint_residual.max()),
         "integrator": motion.settings["integrator"],
@@ -152,12 +130,12 @@ def _summary(name: str, motion: Motion, limit: SwingReference) -> dict[str, Any]
     }
 
 
-def _findings(name: str, motion: Motion, elements: Motion) -> list[Row]:
+def _findings(name: str, motions: Mapping[str, Motion], traces: Mapping[str, SolvedMotion]) -> list[Row]:
     """Return the claims of Fig 6 held against a spline, compared with 20 elements as there."""
-    twenty = sampled(elements, formulations.INSTANTS).centre
-    distance = np.linalg.norm(sampled(motion, formulations.INSTANTS).centre - twenty, axis=1).max()
+    motion, twenty = motions[name], traces[FE].centre
+    distance = np.linalg.norm(traces[name].centre - twenty, axis=1).max()
     distance /= np.linalg.norm(np.ptp(twenty, axis=0))  # the diagonal of the rectangle that the path fills
-    shift = motion.frequency / elements.frequency - 1.0
+    shift = motion.frequency / motions[FE].frequency - 1.0
     return [
         finding(
             claim="Fig 6: the two time histories are slightly different "

@@ -80,16 +80,15 @@ FRAME = "studio.state.track_ms !== undefined"
 
 def _snapshots(browser: Any) -> Iterator[dict[str, Any]]:
     """Yield three snapshots: held, swinging after the release, caught again."""
-    browser.wait(f"studio.drawn.seq >= {HELD}", 60.0)
-    yield _taken(browser, "held")
-    browser.wait(f"studio.drawn.seq >= {RELEASED}", 60.0)
-    browser.key("r")
-    browser.wait(f"{FRAME} && studio.state.mode === 'released' && studio.state.pose[2] < {SWUNG}", 60.0)
-    yield _taken(browser, "released")
-    browser.wait(f"studio.drawn.seq >= {CAUGHT}", 60.0)
-    browser.key("r")
-    browser.wait(f"{FRAME} && studio.state.mode === 'held'", 60.0)
-    yield _taken(browser, "caught")
+    swung = f"{FRAME} && studio.state.mode === 'released' && studio.state.pose[2] < {SWUNG}"
+    caught = f"{FRAME} && studio.state.mode === 'held'"
+    shots = {"held": (HELD, ""), "released": (RELEASED, swung), "caught": (CAUGHT, caught)}
+    for label, (frame, state) in shots.items():
+        browser.wait(f"studio.drawn.seq >= {frame}", 60.0)
+        if state:
+            browser.key("r")
+            browser.wait(state, 60.0)
+        yield _taken(browser, label)
 
 
 def _taken(browser: Any, label: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The formulations that the paper's figures compare, their paths and swings, and other readings."""
+"""The formulations that figures compare, each named once, their paths and swings, and other readings."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -8,66 +8,75 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
-from studies.answers.reference import (
-    MESHES,
-    RECORDS,
-    Reference,
-    SwingReference,
-    errors,
-    largest_errors,
-    reference,
-    sampled,
-    swing_reference,
-)
-from studies.answers.response import Response
+from studies.answers.reference import MESHES, RECORDS, Reference, SwingReference, errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.effects import Effects
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part, Study
 from studies.kinds import Array
+from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, SKY, Look
 
-PAPER = "n = 4, as the paper"
-REFINED = "FE refined"
-FE = "FE, 20 elements"
-LOCKING_FREE = "n = 4, locking-free"
+PAPER, LOCKING_FREE, SIX = "n = 4, as the paper", "n = 4, locking-free", "n = 6"
+REFINED, FE = "FE refined", "FE, 20 elements"
+PRINTED = "n = 4, printed forces"
 
-#: Spline formulations and the paper's finite elements; what each one is stands in `MEANING`.
-SETTINGS: dict[str, Settings] = {
-    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
-    "n = 4, printed forces": SplineSettings(control_points=4, measure="printed", stretch="consistent"),
-    "n = 4, 3 Gauss points": SplineSettings(
-        control_points=4, measure="spatial", stretch="consistent", gauss_points=3
+_AS_PAPER = SplineSettings(control_points=4, measure="spatial", stretch="consistent")
+#: Settings of each formulation, none of the limit of refinement; how it is drawn; and what it is.
+NAMED: dict[str, tuple[Settings | None, Look, str]] = {
+    REFINED: (
+        None,
+        Look(label="FE, refined", colour=BLACK),
+        f"the same elements in the limit of refinement, from {', '.join(map(str, MESHES))} a strip",
     ),
-    LOCKING_FREE: SplineSettings(control_points=4, axial_modes=2),
-    "n = 6": SplineSettings(control_points=6),
-    FE: FeSettings(elements=20),
+    FE: (
+        FeSettings(elements=20),
+        Look(label="FE, 20 elements", colour=GREY, line="--", marker="s"),
+        "corotational Euler-Bernoulli elements, 20 a strip, as the paper",
+    ),
+    PAPER: (
+        _AS_PAPER,
+        Look(label="spline n = 4, as the paper", colour=RED, marker="o"),
+        "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
+    ),
+    PRINTED: (
+        replace(_AS_PAPER, measure="printed"),
+        Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
+        "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
+    ),
+    "n = 4, 3 Gauss points": (
+        replace(_AS_PAPER, gauss_points=3),
+        Look(label="spline n = 4, 3 Gauss points", colour=ORANGE, line="-.", marker="^"),
+        "Eqs 10 and 13 with three Gauss points, too few to see the locking",
+    ),
+    LOCKING_FREE: (
+        SplineSettings(control_points=4, axial_modes=2),
+        Look(label="spline n = 4, locking-free", colour=SKY, marker="D"),
+        "material measure, mixed stretch with two axial-force modes a strip",
+    ),
+    SIX: (
+        SplineSettings(control_points=6),
+        Look(label="spline n = 6", colour=BLUE, marker="x"),
+        "material measure, mixed stretch with four axial-force modes a strip",
+    ),
 }
-
-#: What each formulation is, for tables and reports.
-MEANING: dict[str, str] = {
-    PAPER: "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
-    "n = 4, printed forces": "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
-    "n = 4, 3 Gauss points": "Eqs 10 and 13 with three Gauss points, too few to see the locking",
-    LOCKING_FREE: "material measure, mixed stretch with two axial-force modes a strip",
-    "n = 6": "material measure, mixed stretch with four axial-force modes a strip",
-    FE: "corotational Euler-Bernoulli elements, 20 a strip, as the paper",
-    REFINED: f"the same elements in the limit of refinement, from {', '.join(map(str, MESHES))} a strip",
-}
+SETTINGS = {name: settings for name, (settings, _, _) in NAMED.items() if settings is not None}
+LOOKS = {name: look for name, (_, look, _) in NAMED.items()}
+MEANING = {name: meaning for name, (_, _, meaning) in NAMED.items()}
 
 
 @cache
-def answer(name: str) -> Response:
+def path_of(name: str) -> Any:
     """Return the static path of a formulation, computed once however many figures ask."""
-    return answer_static(named_case(), SETTINGS[name])
+    return refined() if name == REFINED else answer_static(named_case(), SETTINGS[name])
 
 
 @cache
 def refined() -> Reference:
     """Return the limit of refinement of the case's static path."""
-    return reference(named_case())
+    return reference.reference(named_case())
 
 
 #: Duration of the motion [s], and the instants at which swings are compared [s].
@@ -95,15 +104,7 @@ def resolved(settings: SplineSettings) -> Motion:
 @cache
 def refined_swing() -> SwingReference:
     """Return the swing in the limit of refinement of the finite elements."""
-    return swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
-
-
-def rotation_error(motion: Motion, against: Array) -> float:
-    """Return the largest difference of the rotation to `against` at `INSTANTS` [rad]; NaN if it stopped
-    early."""
-    if not motion.converged:
-        return float("nan")
-    return float(np.abs(sampled(motion, INSTANTS).rotation - against).max())
+    return reference.swing_reference(named_case(), duration=DURATION, instants=INSTANTS)
 
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.
@@ -117,15 +118,13 @@ AS_READ = "midway between the upper clamps"
 
 def _integrated(points: int) -> Answer:
     """Return the errors of the paper's formulation with so many Gauss points."""
-    settings = SplineSettings(control_points=4, measure="spatial", stretch="consistent", gauss_points=points)
-    path = answer_static(named_case(), settings)
-    largest = largest_errors(path, refined())
+    path = answer_static(named_case(), replace(_AS_PAPER, gauss_points=points))
+    error = errors(path, refined())
     row = {
         "gauss_points": points,
         "status": path.status,
-        "error_torque": largest["torque"],
-        "error_stiffness": largest["stiffness"],
-        "error_stiffness_end": float(errors(path, refined())["stiffness"][-1]),
+        **{f"error_{name}": float(np.abs(error[name]).max()) for name in ("torque", "stiffness")},
+        "error_stiffness_end": float(error["stiffness"][-1]),
     }
     return {"quadrature": row}
 
@@ -137,21 +136,15 @@ def _readings() -> Iterator[tuple[str, Problem]]:
     rise = (1.0 - case.crossing_ratio) * case.length * sin(case.inclination)
     for name, offset in (("at the crossing", -rise), ("as far above the upper clamps", rise)):
         yield f"centre of mass {name}", replace(case, centre_offset=(0.0, offset))
-    yield (
-        "gravity, the ground below",
-        replace(case, effects=case.effects.renamed([*case.effects.names, "gravity"])),
-    )
+    yield "gravity, the ground below", replace(case, effects=case.effects.plus("gravity"))
     frequency = swing_frequency(INSTANTS, _swing(case)).value
     lost = 2.0 * DAMPING * 2.0 * pi * frequency * case.body_moment_of_inertia
-    damped = Effects(
-        names=(*case.effects.names, "body_damping"),
-        tables={"body_damping": {"translation": 0.0, "rotation": lost}},
-    )
+    damped = case.effects.plus(body_damping={"translation": 0.0, "rotation": lost})
     yield f"damping, {DAMPING:.0%} of critical in the swing", replace(case, effects=damped)
 
 
 def _swing(problem: Problem) -> Array:
-    motion: Motion = answer_release(
+    motion = answer_release(
         problem, SplineSettings(control_points=POINTS), duration=DURATION, records=len(INSTANTS) - 1,
         integrator="energy", step=DURATION / (10 * (len(INSTANTS) - 1)),
     )  # fmt: skip
@@ -176,7 +169,9 @@ def _read() -> Answer:
     return {"readings": rows}
 
 
-READINGS = Study(parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)))
+READINGS = Study(
+    parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
+)
 """What the paper leaves open: how it integrates, where the centre of mass lies, gravity and damping.
 
 Coarser and finer quadratures of four control points as the paper has them, and what each open assumption

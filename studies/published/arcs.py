@@ -6,9 +6,9 @@ body along the force, as far as the displacement grows.
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,14 +28,15 @@ from studies.kinds import Array
 from studies.published.case import Frame
 
 LIMIT, BIFURCATION = "limit point", "bifurcation"
+#: How a path ended.
+REACHED, STOPPED = "converged", "not_converged"
 #: Increments of elements over those of a frame where a column bends. Splines take the steps that curves need.
 FINER = 20
 #: Part of the displacement at a limit load by which a body is led on, and how often at most.
 PART, STEPS = 0.1, 60
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Critical:
+class _Critical(NamedTuple):
     """A critical point: "limit point" or "bifurcation", its load and the place (3,) of the reported body."""
 
     kind: str
@@ -53,7 +54,8 @@ class Arc:
         energy: (S,) stored, in its unit.
         inertia: (S,) number of negative eigenvalues of the tangent.
         critical: the critical points in order.
-        message: what the model says of the path; warning: and of its own resolution; empty: nothing.
+        status: "converged", or how it ended early; message: what the model says of the path; resolution: and
+            of its own resolution; empty: nothing.
     """
 
     load: Array
@@ -61,9 +63,9 @@ class Arc:
     energy: Array
     inertia: NDArray[np.int64]
     critical: tuple[_Critical, ...]
-    reached: bool
+    status: str
     message: str
-    warning: str = ""
+    resolution: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
 
     def critical_load(self, kind: str, place: int = 0) -> float:
@@ -101,9 +103,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
     asked = put(frame.design, settings)
     how: dict[str, Any] = {"increments": frame.design.increments, "control": "arc-length", "branch": branch}
     with asked.refusals():
-        path = asked.model.statics.solve_mechanism(
-            asked.modelled.pinned(*frame.pins), raise_on_failure=False, **how
-        )
+        path = asked.model.solve_mechanism(asked.modelled.pinned(*frame.pins), raise_on_failure=False, **how)
     if (path.inertia < 0).any():
         raise BadInput(
             f"spline: measure: got {settings.measure}, expected one with a potential: stability has no other"
@@ -115,12 +115,12 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
         energy=path.bending_energy + path.axial_energy,
         inertia=path.inertia,
         critical=tuple(
-            _Critical(kind=point.kind, load=frame.load * point.load_factor, place=point.z[at])
+            _Critical(point.kind, frame.load * point.load_factor, point.z[at])
             for point in path.critical_points
         ),
-        reached=path.status.value == "converged",
+        status=path.status.value,
         message=path.message,
-        warning=path.resolution,
+        resolution=path.resolution,
         counters=path.counters,
     )
 
@@ -187,21 +187,17 @@ def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
     at, rest = structure.body_slice(model.body_index(frame.body)), np.array([*frame.rest, 0.0])
     parameter = [state.parameter for state in path.states]
     place = rest + np.array([state.y[at] for state in path.states])
-    critical = tuple(
-        _Critical(
-            kind=point.kind,
-            load=frame.load * point.load_factor,
-            place=np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T]),
-        )
-        for point in path.critical
-    )
+    critical = []
+    for point in path.critical:
+        where = np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T])
+        critical.append(_Critical(point.kind, frame.load * point.load_factor, where))
     arc = Arc(
         load=frame.load * np.array(parameter),
         place=place,
         energy=_stored(structure, path),
         inertia=np.array([state.inertia for state in path.states]),
-        critical=critical,
-        reached=not path.message,
+        critical=tuple(critical),
+        status=STOPPED if path.message else REACHED,
         message=path.message or _told(critical),
     )
     snaps = path.message and critical and critical[-1].kind == LIMIT
@@ -219,7 +215,7 @@ def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice)
     place = np.array([*frame.rest, 0.0]) + np.array([state.y[at] for state in on.states])
     pulled, moved = CubicHermiteSpline(p, load, slope), CubicHermiteSpline(p, place, rates)
     turns = pulled.derivative().roots(extrapolate=False)
-    limits = (_Critical(kind=LIMIT, load=float(pulled(turn)), place=moved(turn)) for turn in turns)
+    limits = (_Critical(LIMIT, float(pulled(turn)), moved(turn)) for turn in turns)
     critical, reached = (*arc.critical[:-1], *limits), bool(load[-1] >= frame.load)
     unstable = [state.inertia for state in on.states] + (slope < 0.0)
     return Arc(
@@ -228,7 +224,7 @@ def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice)
         energy=np.append(arc.energy, _stored(structure, on)),
         inertia=np.append(arc.inertia, unstable),
         critical=critical,
-        reached=reached,
+        status=REACHED if reached else STOPPED,
         message=_told(critical) if reached else f"{frame.body} is led no further than load {load[-1]:.6g}",
     )
 
@@ -238,6 +234,6 @@ def _stored(structure: Structure, path: Path) -> Array:
     return np.array([sum(structure.evaluate(state.y).strain) for state in path.states])
 
 
-def _told(critical: tuple[_Critical, ...]) -> str:
+def _told(critical: Iterable[_Critical]) -> str:
     """Return the critical points in words."""
     return "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical)

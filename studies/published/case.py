@@ -150,9 +150,7 @@ class Frame:
         force = effects.tables["applied_force"]
         x, y = force["force"]
         leant = {**force, "force": (x + SIDE * y, y - SIDE * x)}
-        return replace(
-            self.design, effects=replace(effects, tables={**effects.tables, "applied_force": leant})
-        )
+        return replace(self.design, effects=effects.plus(applied_force=leant))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,13 +180,10 @@ class _Published:
         assert isinstance(self.design, Mechanism)
         effects = self.design.effects
         tables = {
-            effect: {
-                name: _product(given, load) if name in LOADS else given for name, given in parameters.items()
-            }
+            effect: {n: _product(given, load) if n in LOADS else given for n, given in parameters.items()}
             for effect, parameters in effects.tables.items()
         }
-        more = () if answer == BEAM else tuple(answer.split(", "))
-        acting = replace(effects, names=(*effects.names, *more), tables=tables)
+        acting = replace(effects, tables=tables).plus(*(() if answer == BEAM else answer.split(", ")))
         return Frame(design=replace(self.design, effects=acting), load=load, body=self.body, pins=self.pins)
 
 

@@ -15,19 +15,19 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from fe_reference import plate_factors
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.problem import Problem
-from studies.engine import Answer, Claim, Part, Study
+from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.engine import Answer, Claim, Part, Row, Study
 from studies.errors import BadInput
 from studies.published import case
-from studies.published.arcs import LIMIT, Arc, arc_of
-from studies.published.case import Value, published
+from studies.published.arcs import LIMIT, REACHED, Arc, arc_of
+from studies.published.case import Value, printed, published
 
 #: Fine enough that what is left is the model's, not its discretisation's.
 SETTINGS: dict[str, Settings] = {
@@ -47,21 +47,16 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     Raises:
         BadInput: what the model refuses to be asked.
     """
-    problem = published(name)
-    if isinstance(problem.design, Problem):
-        found = _of_pivot(problem.design, SETTINGS[model], value)
+    design = published(name).design
+    if isinstance(design, Problem):  # the shift of the crossing point over the length at a rotation
+        response = answer_static(replace(design, rotation=math.radians(value.at)), SETTINGS[model])
+        found = float(np.hypot(*response.centre_shift[-1]) / design.length)
     elif value.quantity in AXES:
         found = _moved(name, model, answer, value.load)[AXES[value.quantity]]
     else:
         arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
     return found / value.scale
-
-
-def _of_pivot(pivot: Problem, settings: Settings, value: Value) -> float:
-    """Return the shift of the crossing point over the length at a rotation."""
-    response = answer_static(replace(pivot, rotation=math.radians(value.at)), settings)
-    return float(np.hypot(*response.centre_shift[-1]) / pivot.length)
 
 
 @cache
@@ -85,7 +80,7 @@ def _load_at_rotation(arc: Arc, value: Value) -> float:
     Load and turn are both smooth over the way of the body; one over the other is steep where a column closes.
     """
     turned = np.abs(arc.place[:, 2])
-    if not arc.reached or turned[-1] < math.radians(value.at):
+    if arc.status != REACHED or turned[-1] < math.radians(value.at):
         return math.nan
     bent = turned > TURNED
     way = np.cumsum(np.linalg.norm(np.diff(arc.place[bent], axis=0, prepend=arc.place[bent][:1]), axis=1))
@@ -137,19 +132,16 @@ def _asked() -> Iterator[tuple[str, str, str]]:
 
 def _compared(name: str, model: str, answer: str) -> Answer:
     """Return a row a value: as it is in print, as it was found, and whether it is met."""
-    problem = published(name)
-    asked = (value for value in problem.values if model in value.models)
-    return {"values": [_row(name, model, answer, value) for value in asked]}
+    values = published(name).values
+    return {"values": [_row(name, model, answer, value) for value in values if model in value.models]}
 
 
-def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
-    problem = published(name)
+def _row(name: str, model: str, answer: str, value: Value) -> Row:
+    problem, limit = published(name), value.limits[answer]
     try:
         found, message = ours(name, model, answer, value), ""
     except BadInput as refusal:
         found, message = np.nan, str(refusal)
-    limit = value.limits[answer]
-    error = (found - value.published) / (abs(value.published) or 1.0)
     return {
         "problem": problem.title,
         "case": name,
@@ -157,7 +149,7 @@ def _row(name: str, model: str, answer: str, value: Value) -> dict[str, Any]:
         "answer": answer,
         **{column: getattr(value, column) for column in OF_VALUES},
         "found": found,
-        "error": error,
+        "error": (found - value.published) / (abs(value.published) or 1.0),
         "limit": limit,
         "within": "yes" if value.met(found, limit) else "no",
         "message": message,
@@ -179,3 +171,59 @@ STUDY = Study(
         ),
     ),
 )
+
+
+#: b/L, Poisson ratio, f_b, f_s: an independent Ritz solution.
+RITZ = printed("plate")
+AGREES, LACKING = 2e-4, 0.01
+
+
+def _known(width: float, nu: float, constant: float, linear: float) -> Answer:
+    """Return both factors of a strip beside those of the Ritz solution."""
+    found = plate_factors(width, nu)
+    difference = max(abs(found.constant - constant), abs(found.linear - linear))
+    row = {"width_ratio": width, "poisson_ratio": nu}
+    row |= {"factor_constant": found.constant, "factor_linear": found.linear}
+    return {"ritz": row | {"ritz_constant": constant, "ritz_linear": linear, "difference": difference}}
+
+
+def _paper() -> Answer:
+    """Return the rows of the paper's strip: width over length, and what a beam lacks by kind of moment."""
+    given = named_case()
+    width = given.area / math.sqrt(12.0 * given.second_moment_of_area / given.area) / given.length
+    found = plate_factors(width, given.poisson_ratio)
+    shape = {"width_ratio": width, "poisson_ratio": given.poisson_ratio}
+    kinds = {"constant": found.constant, "linear": found.linear}
+    return {"paper": [{"kind": kind, **shape, "excess": factor - 1.0} for kind, factor in kinds.items()]}
+
+
+PLATE = Study(
+    cases=(TABLE_1, "published/tables/plate"),
+    parts=(
+        Part(at=lambda: RITZ, ask=_known),
+        Part(ask=_paper),
+    ),
+    claims=(
+        Claim(
+            claim="Finite elements of the plate agree with an independent Ritz solution to 2e-4",
+            formulation="b/L = {width_ratio:g}, nu = {poisson_ratio:g}",
+            quantity="the larger difference of both factors",
+            rows=lambda tables: tables["ritz"],
+            value="difference",
+            most=AGREES,
+        ),
+        Claim(
+            claim="The paper's strip is a beam within 1 %",
+            formulation="{kind} moment",
+            quantity="the stiffness that a beam lacks",
+            rows=lambda tables: tables["paper"],
+            value="excess",
+            most=LACKING,
+        ),
+    ),
+)
+"""What a beam's clamps leave out: the stiffness of a strip as a plate, beside an independent solution.
+
+Ends that are built in over their whole width hold the section flat; away from them it curls. The stiffness of
+a strip lies between those of the two, EI and EI / (1 - nu^2).
+"""

@@ -63,20 +63,6 @@ class Look:
         return words | ({"markerfacecolor": "none"} if self.hollow else {})
 
 
-#: One look for each formulation, wherever it is drawn.
-LOOKS: dict[str, Look] = {
-    "FE refined": Look(label="FE, refined", colour=BLACK),
-    "FE, 20 elements": Look(label="FE, 20 elements", colour=GREY, line="--", marker="s"),
-    "n = 4, as the paper": Look(label="spline n = 4, as the paper", colour=RED, marker="o"),
-    "n = 4, printed forces": Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
-    "n = 4, 3 Gauss points": Look(label="spline n = 4, 3 Gauss points", colour=ORANGE, line="-.", marker="^"),
-    "n = 4, locking-free": Look(label="spline n = 4, locking-free", colour=SKY, marker="D"),
-    "n = 6": Look(label="spline n = 6", colour=BLUE, marker="x"),
-}
-
-#: A refined spline beside them, to hold the reference to.
-CHECK = Look(label="spline n = 10", colour=GREEN, line=":")
-
 #: The two finite elements.
 ELEMENTS: dict[str, Look] = {
     "corotational": Look(label="corotational Euler-Bernoulli", colour=BLACK, marker="s"),

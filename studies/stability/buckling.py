@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.engine import Answer, Part, Tables
+from studies.engine import Answer, Part, Row, Tables
 from studies.kinds import Array
-from studies.published.arcs import BIFURCATION, Arc, arc_of
-from studies.published.case import Frame, published
+from studies.published.arcs import BIFURCATION, arc_of
+from studies.published.case import published
 from studies.record.digits import Digits
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
@@ -33,48 +33,34 @@ PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 
 
-def _frame(part: str) -> Frame:
-    """Return the frame of a part of the figure."""
-    if part == questions.COLUMN:
-        return bent_column(max(PUBLISHED))
-    return published({questions.TOGGLE: "williams_toggle", questions.LEE: "lees_frame"}[part]).frame()
-
-
 def _curve(part: str, model: str) -> Answer:
-    """Return a curve and its critical points, a row a state."""
-    frame = _frame(part)
-    arc = arc_of(frame, ARCS[model], follow_branch=part == questions.COLUMN)
-    critical = [
-        {"part": part, "model": model, "kind": each.kind, **_at(part, frame, each.load, each.place)}
-        for each in arc.critical
-    ]
-    return {"curves": _states(part, model, frame, arc), "critical": critical}
+    """Return a curve, a row a state, and its critical points; a column's corner where it leaves the straight
+    branch is a state as well."""
+    names = {questions.TOGGLE: "williams_toggle", questions.LEE: "lees_frame"}
+    column = part == questions.COLUMN
+    frame = bent_column(max(PUBLISHED)) if column else published(names[part]).frame()
+    arc = arc_of(frame, ARCS[model], follow_branch=column)
 
+    def at(load: float, place: Array, **which: Any) -> Row:
+        """Return load and deflection over Euler's and the length, or in the frame's units, down."""
+        deflection = abs(float(place[1])) if column else frame.rest[1] - float(place[1])
+        scaled = load / EULER if column else load
+        return {"part": part, "model": model, **which, "load": scaled, "deflection": deflection}
 
-def _states(part: str, model: str, frame: Frame, arc: Arc) -> list[dict[str, Any]]:
-    """Return the states of a path, and where it leaves a column's straight branch: its corner."""
-    name = {"part": part, "model": model}
+    states = enumerate(zip(map(float, arc.load), arc.place, arc.inertia, strict=True))
     rows = [
-        {**name, "state": float(state), **_at(part, frame, float(arc.load[state]), place),
-         "unstable_directions": int(arc.inertia[state])}
-        for state, place in enumerate(arc.place)
-    ]  # fmt: skip
-    for point in arc.critical:
-        if part == questions.COLUMN and point.kind == BIFURCATION:
+        at(load, place, state=float(state)) | {"unstable_directions": int(inertia)}
+        for state, (load, place, inertia) in states
+    ]
+    for point in arc.critical if column else ():
+        if point.kind == BIFURCATION:
             last = int(np.argmax(np.abs(arc.place[:, 2]) > STRAIGHT)) - 0.5
-            corner = _at(part, frame, point.load, point.place)
-            rows.append({**name, "state": last, **corner, "unstable_directions": 0})
-    return rows
+            rows.append(at(point.load, point.place, state=last) | {"unstable_directions": 0})
+    critical = [at(point.load, point.place, kind=point.kind) for point in arc.critical]
+    return {"curves": rows, "critical": critical}
 
 
-def _at(part: str, frame: Frame, load: float, place: Array) -> dict[str, float]:
-    """Return load and deflection as drawn: over Euler's and the length, or in the frame's units, down."""
-    if part == questions.COLUMN:
-        return {"load": load / EULER, "deflection": abs(float(place[1]))}
-    return {"load": load, "deflection": frame.rest[1] - float(place[1])}
-
-
-def _elastica() -> list[dict[str, Any]]:
+def _elastica() -> list[Row]:
     """Return the closed form and the published loads at the deflection of their angles."""
     angles = np.linspace(0.0, math.radians(max(PUBLISHED)), 177)
     rows = []
@@ -99,7 +85,7 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
         "energy_J": float(arc.energy[-1]),
         "unstable_directions": int(arc.inertia[-1]),
         "first_bifurcation_mm": min((1e3 * point.load for point in arc.critical), default=math.nan),
-        "says": arc.message or arc.warning,
+        "says": arc.message or arc.resolution,
     }
     return {"branches": found}
 

@@ -1,11 +1,13 @@
-"""Sudden events: a drive reversed, a body let go and caught a thousand times, targets that jump."""
+"""Sudden events, and a long run: drives reversed, bodies caught, targets that jump, a million steps."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from spline_model.dynamics import Trajectory, solve_motion
 from spline_model.effects import DrivenRotation
@@ -13,18 +15,9 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Part
+from studies.engine import Answer, Part, Row
 from studies.stability.family import CHECK, TOLERANCE, path_distance
-from studies.stability.verdict import (
-    COLUMNS,
-    DEFAULT,
-    LOCKING_FREE,
-    Found,
-    Task,
-    as_mechanism,
-    outcome_of,
-    study,
-)
+from studies.stability.verdict import COLUMNS, DEFAULT, LOCKING_FREE, Found, as_mechanism, judged, study
 
 #: Reversals, and releases with as many catches: of the default, and of the locking-free spline.
 EVENTS = {DEFAULT: 1000, LOCKING_FREE: 100}
@@ -33,49 +26,44 @@ STEP, STEPS_BETWEEN = 5e-5, 20
 REVERSAL, RELEASE = math.radians(5.0), math.radians(60.0)
 #: Largest error of the books of energy, and of a driven rotation, that is right [1, rad].
 BOOKS = 1e-8
-
-#: Jumps of a target that is followed statically in one increment each [deg], and how often.
-JUMPS = (60.0, -60.0, 90.0, 120.0, 180.0)
-ROUNDS = 20
-#: Newton iterations a jump may take: more is no bounded work.
-MOST_ITERATIONS = 200
 #: Energies below this are those of a motion at rest [J].
 QUIET = 1e-6
 #: A jump within a motion lasts this long [s].
 INSTANT = 1e-9
 
+#: Jumps of a target that is followed statically in one increment each [deg] and [mm], and how often.
+JUMPS, SHIFTS, ROUNDS = (60.0, -60.0, 90.0, 120.0, 180.0), ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)), 20
+#: Newton iterations a jump may take: more is no bounded work.
+MOST_ITERATIONS = 200
 
-def _tasks() -> list[Task]:
-    """Return case, model, what is asked, and the tolerance."""
-    return [*_motions(), *_jumps()]
 
-
-def _motions() -> list[Task]:
-    found: list[Task] = []
+def _tasks() -> Iterator[tuple[str, str, partial[Found], float]]:
+    """Yield case, model, what is asked, and the tolerance."""
     for model, count in EVENTS.items():
-        found.append(("drive reversed again and again", model, partial(_reversals, model, count), BOOKS))
-        found.append(("let go and caught again and again", model, partial(_catches, model, count), BOOKS))
-        found.append(("target jumps by 60° in a motion", model, partial(_jump_in_motion, model), BOOKS))
-    return found
-
-
-def _jumps() -> list[Task]:
-    found: list[Task] = []
+        yield "drive reversed again and again", model, partial(_reversals, model, count), BOOKS
+        yield "let go and caught again and again", model, partial(_catches, model, count), BOOKS
+        yield "target jumps by 60° in a motion", model, partial(_jump_in_motion, model), BOOKS
     for model, settings in COLUMNS.items():
-        for degrees in JUMPS:
-            name = f"target jumps from rest to {degrees:g}°"
-            found.append((name, model, partial(_jump, settings, degrees), TOLERANCE))
-        name = f"target jumps between 60° and -60°, {ROUNDS} times"
-        found.append((name, model, partial(_jumping, settings), TOLERANCE))
-        for millimetres in ((0.0, 20.0), (20.0, 0.0), (-20.0, 0.0)):
-            name = "target jumps by {:g}, {:g} mm".format(*millimetres)
-            found.append((name, model, partial(_displaced, settings, millimetres), TOLERANCE))
-    return found
+        jumps = {f"from rest to {degrees:g}°": partial(_jump, settings, degrees) for degrees in JUMPS}
+        jumps[f"between 60° and -60°, {ROUNDS} times"] = partial(_jumping, settings)
+        jumps |= {"by {:g}, {:g} mm".format(*way): partial(_displaced, settings, way) for way in SHIFTS}
+        yield from ((f"target jumps {how}", model, jump, TOLERANCE) for how, jump in jumps.items())
 
 
-def _mechanism_of(model: str) -> Any:
+@cache
+def _table_1(model: str) -> Any:
     """Return Table 1 in motion in a column of splines."""
     return put(named_case(), COLUMNS[model], moving=True).modelled
+
+
+def _moved(model: str, **how: Any) -> Trajectory:
+    """Return a motion of it."""
+    return solve_motion(_table_1(model), check=False, **how)
+
+
+def _said(run: Trajectory, error: float, **more: Any) -> Found:
+    """Return an error with how the motion ended; its own check of its steps is not asked."""
+    return Found(error=error, reached=not run.message, reason=run.message, counters=run.counters, **more)
 
 
 def _reversals(model: str, count: int) -> Found:
@@ -83,59 +71,43 @@ def _reversals(model: str, count: int) -> Found:
     between = (STEPS_BETWEEN + 0.37) * STEP
     times = [i * between for i in range(count + 1)]
     factors = [float(i % 2) for i in range(count + 1)]
-    corners = tuple(zip(times, factors, strict=True))
-    drive = DrivenRotation(body="body", angle=REVERSAL, history=corners)
-    run = solve_motion(
-        _mechanism_of(model), drive=drive, duration=count * between, step=STEP, records=200, check=False
-    )
+    drive = DrivenRotation(body="body", angle=REVERSAL, history=tuple(zip(times, factors, strict=True)))
+    run = _moved(model, drive=drive, duration=count * between, step=STEP, records=200)
     place = np.interp(run.time, times, factors) * REVERSAL
-    return _booked(run, extra=float(np.abs(run.rotation - place).max()))
+    return _said(run, max(_books(run), float(np.abs(run.rotation - place).max())))
 
 
 def _catches(model: str, count: int) -> Found:
     """Let the body go and catch it again, `count` times each: books of energy, none of which comes back."""
-    mechanism = _mechanism_of(model)
     held = DrivenRotation(body="body", angle=0.0)
-    span = STEPS_BETWEEN * STEP
-    run = solve_motion(mechanism, start=RELEASE, duration=span, step=STEP, records=1, check=False)
+    how: dict[str, Any] = {"duration": STEPS_BETWEEN * STEP, "step": STEP, "records": 1}
+    run = _moved(model, start=RELEASE, **how)
     energy = run.kinetic_energy[0] + run.strain_energy[0]
     worst = 0.0
     for number in range(2 * count - 1):
-        drive = None if number % 2 else held
-        run = solve_motion(mechanism, drive=drive, duration=span, step=STEP, records=1, after=run)
+        run = _moved(model, drive=None if number % 2 else held, after=run, **how)
         books = run.kinetic_energy + run.strain_energy - run.work + run.dissipated
         worst = max(worst, float(np.abs(books / energy - 1.0).max()))
         if run.message:
             break
-    return Found(
-        error=worst,
-        reached=not run.message,
-        reason=run.message,
-        fault="a catch gave energy back" if (np.diff(run.dissipated) < -BOOKS * energy).any() else "",
-        counters={"newton_iterations": run.counters["newton_iterations"]},
-    )
+    back = (np.diff(run.dissipated) < -BOOKS * energy).any()
+    return _said(run, worst, fault="a catch gave energy back" if back else "")
 
 
 def _jump_in_motion(model: str) -> Found:
     """Let a drive's target jump by 60 degrees within a nanosecond of a motion: followed, or refused."""
     history = ((1e-3, 0.0), (1e-3 + INSTANT, 1.0))
     drive = DrivenRotation(body="body", angle=math.radians(60.0), history=history)
-    run = solve_motion(_mechanism_of(model), drive=drive, duration=2e-3, step=STEP, check=False)
-    return _booked(run, extra=0.0)
+    run = _moved(model, drive=drive, duration=2e-3, step=STEP)
+    return _said(run, _books(run))
 
 
-def _booked(run: Trajectory, *, extra: float) -> Found:
-    """Return the error of the books of energy over the largest of its parts, or `extra` if that is larger."""
+def _books(run: Trajectory) -> float:
+    """Return the error of the books of energy over the largest of its parts [1]."""
     stored = run.kinetic_energy + run.strain_energy
     books = stored - run.work + run.dissipated
-    parts = (stored, run.work, run.dissipated)
-    scale = max(QUIET, *(float(np.abs(part).max()) for part in parts))
-    return Found(
-        error=max(float(np.abs(books - books[0]).max()) / scale, extra),
-        reached=not run.message,
-        reason=run.message,
-        counters=run.counters,
-    )
+    scale = max(QUIET, *(float(np.abs(part).max()) for part in (stored, run.work, run.dissipated)))
+    return float(np.abs(books - books[0]).max()) / scale
 
 
 def _jump(settings: Settings, degrees: float) -> Found:
@@ -156,26 +128,15 @@ def _jumping(settings: Settings) -> Found:
     path = put(design, settings).static_path(rotation=targets, raise_on_failure=False)
     expected = once.torque[-1] * np.sign(path.rotation[1:])
     error = float(np.abs(path.torque[1:] / expected - 1.0).max()) if len(path.torque) > 1 else math.inf
-    return _bounded(
-        Found(
-            error=error,
-            reached=path.status.value == "converged",
-            reason=path.message,
-            counters=path.counters,
-        ),
-        ROUNDS,
-    )
+    reached = path.status.value == "converged"
+    return _bounded(Found(error=error, reached=reached, reason=path.message, counters=path.counters), ROUNDS)
 
 
 def _displaced(settings: Settings, millimetres: tuple[float, float]) -> Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
     given = as_mechanism(named_case(), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
-    effects = replace(
-        given.effects,
-        names=(*given.effects.names, "driven_displacement"),
-        tables={**given.effects.tables, "driven_displacement": target},
-    )
+    effects = given.effects.plus(driven_displacement=target)
     design = replace(given, rotation=None, increments=1, effects=effects)
     reference = answer_static(replace(design, increments=40), CHECK)
     answer = answer_static(design, settings)
@@ -193,4 +154,73 @@ def _bounded(answer: Found, jumps: int) -> Found:
     return answer
 
 
-STUDY = study(Part(at=_tasks, ask=outcome_of))
+EVENTS_STUDY = study(
+    Part(
+        at=_tasks,
+        ask=lambda case, model, attempt, tolerance: {
+            "outcomes": {"case": case, "model": model, **judged(attempt, tolerance, model)}
+        },
+    ),
+)
+"""Sudden events: a drive reversed, a body let go and caught a thousand times, targets that jump."""
+
+LONG_STEP, START_DEG = 5e-5, 30.0
+#: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
+#: tenth of it of the others.
+PIECE = 10_000
+PIECES = {DEFAULT: 100, LOCKING_FREE: 10}
+#: Largest change of energy that is right [1], and factor by which the constraint residual of the last tenth
+#: may exceed that of the first.
+DRIFT, GROWTH = 1e-6, 3.0
+
+
+def _long_run(model: str, count: int) -> Answer:
+    """Return the drift of a column over so many pieces, and its outcome."""
+    drift = list(_pieces(model, count))
+    return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift}
+
+
+def _pieces(model: str, count: int, steps: int = PIECE) -> Iterator[Row]:
+    """Yield the row of drift after each piece of so many steps, until one stops early."""
+    begin: dict[str, Any] = {"start": math.radians(START_DEG)}
+    first, change = 0.0, 0.0
+    for number in range(1, count + 1):
+        piece = _moved(model, duration=steps * LONG_STEP, step=LONG_STEP, records=100, **begin)
+        energy = piece.kinetic_energy + piece.strain_energy
+        first = first or float(energy[0])
+        change = max(change, float(np.abs(energy / first - 1.0).max()))
+        yield {
+            "model": model,
+            "steps": number * steps,
+            "energy_change": change,
+            "constraint_residual_m": float(piece.constraint_residual.max()),
+            "amplitude_rad": float(np.abs(piece.rotation).max()),
+            "newton_iterations": piece.counters["newton_iterations"],
+            "message": piece.message,
+        }
+        if piece.message:
+            return
+        begin = {"after": piece}
+
+
+def _judgement(model: str, drift: pd.DataFrame) -> Row:
+    """Return a column's outcome: energy within the tolerance, a constraint residual that does not grow."""
+    tenth, residual = max(1, len(drift) // 10), drift["constraint_residual_m"].to_numpy()
+    growth = float(residual[-tenth:].max() / residual[:tenth].max())
+    message = str(drift["message"].iloc[-1])
+    found = Found(
+        error=float(drift["energy_change"].max()),
+        reached=not message,
+        reason=message,
+        fault=f"the constraint residual grows {growth:.2g} times" if growth > GROWTH else "",
+        counters={"newton_iterations": int(drift["newton_iterations"].sum())},
+        measured={"growth": growth},
+    )
+    name = f"{int(drift['steps'].max())} steps"
+    return {"case": name, "model": model, **judged(lambda: found, DRIFT, model)}
+
+
+LONG_RUN = study(
+    Part(at=PIECES.items, ask=_long_run),
+)
+"""A million steps of free swing without damping: energy and constraints."""

@@ -3,34 +3,26 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import chain, pairwise, product
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.metrics import observed_order
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.metrics import differences, observed_order
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Part, Row
-from studies.kinds import Array
 from studies.record.digits import Digits
-from studies.stability.family import Question, Try, Way, answers_of, of_path
-from studies.stability.verdict import (
-    COLUMNS,
-    DEFAULT,
-    FE,
-    LOCKING_FREE,
-    PAPER,
-    PATHS,
-    SIX,
-    VARIED,
-    as_mechanism,
-    study,
-)
+from studies.stability import verdict
+from studies.stability.family import CHECK, REFINED, Question, Try, Way, answers_of, of_path
+from studies.stability.verdict import COLUMNS, DEFAULT, FE, LOCKING_FREE, PAPER, PATHS, SIX, VARIED, study
 
 #: Rotations [deg] and numbers of increments; a reference so far needs more points than at a quarter turn.
 ROTATIONS, INCREMENTS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260), (1, 2, 5, 20, 200)
@@ -51,6 +43,7 @@ ROTATION = study(
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
 SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
+_inextensible: Any = partial(replace, stretch="inextensible")
 #: Slenderness that stands for inextensible strips, and factor between neighbours that may lose no digits.
 INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 
@@ -58,8 +51,7 @@ INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 def _slender_cases() -> Iterator[Question]:
     """Yield every slenderness at every rotation, and strips that cannot stretch."""
     rigid = {name: _inextensible(PATHS[name]) for name in (DEFAULT, LOCKING_FREE, SIX)}
-    refined, check = (SplineSettings(control_points=n, stretch="inextensible") for n in (14, 11))
-    finer: tuple[Way, Way] = (refined, {}), (check, {})
+    finer: tuple[Way, Way] = (_inextensible(REFINED), {}), (_inextensible(CHECK), {})
     for degrees in SLENDER_ROTATIONS:
         for slenderness in SLENDER:
             design = replace(_slender(slenderness), rotation=math.radians(degrees))
@@ -75,37 +67,28 @@ def _slender(slenderness: float) -> Problem:
     return replace(given, **of_moments(area, given.second_moment_of_area))
 
 
-def _inextensible(settings: Settings) -> Settings:
-    assert isinstance(settings, SplineSettings)
-    return replace(settings, stretch="inextensible")
-
-
-def _limit() -> pd.DataFrame:
-    """Return, slenderness by slenderness, how six control points come to the inextensible strip.
+def _limit() -> Iterator[Row]:
+    """Yield, slenderness by slenderness, how six control points come to the inextensible strip.
 
     With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
     `lost_digits` is what the torques of neighbouring designs differ by beyond that law.
     """
-    six, rows = PATHS[SIX], []
-    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(six))
+    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(PATHS[SIX]))
 
-    def gap(one: Array, other: Array) -> float:
-        return float(np.abs(one - other).max() / np.abs(other).max())
+    def gap(one: Response, other: Response) -> float:
+        return float(differences(one, other, ("torque",))["torque"] or 0.0)
 
     for slenderness in SLENDER:
-        here, beside = (answer_static(_slender(slenderness * f), six) for f in (1.0, NEIGHBOUR))
-        error = gap(here.torque, rigid.torque)
-        rows.append(
-            {
-                "slenderness": slenderness,
-                "error": error,
-                "constant": error * slenderness**2,
-                "iterations": here.counters["newton_iterations"],
-                "iterations_inextensible": rigid.counters["newton_iterations"],
-                "lost_digits": abs(gap(here.torque, beside.torque) - error * (1.0 - NEIGHBOUR**-2)),
-            }
-        )
-    return pd.DataFrame(rows)
+        here, beside = (answer_static(_slender(slenderness * f), PATHS[SIX]) for f in (1.0, NEIGHBOUR))
+        error = gap(here, rigid)
+        yield {
+            "slenderness": slenderness,
+            "error": error,
+            "constant": error * slenderness**2,
+            "iterations": here.counters["newton_iterations"],
+            "iterations_inextensible": rigid.counters["newton_iterations"],
+            "lost_digits": abs(gap(here, beside) - error * (1.0 - NEIGHBOUR**-2)),
+        }
 
 
 SLENDERNESS = study(
@@ -132,7 +115,7 @@ def _grid() -> Iterator[Question]:
 def _others() -> Iterator[Question]:
     """Yield parallel strips, unequal strips in length, stiffness and angle, strips curved at rest."""
     given = named_case()
-    cross = as_mechanism(given, OTHER_ROTATION)
+    cross = verdict.as_mechanism(given, OTHER_ROTATION)
     first, second = cross.strips
     length = given.length
     (x, y), (end_x, end_y) = second.start, second.end
@@ -142,9 +125,10 @@ def _others() -> Iterator[Question]:
         "parallel strips, a tenth of a length apart": (first, _beside(first, length / 10.0)),
         "second strip 0.7 as long": (first, replace(second, start=shorter)),
         "strips at 45 and 59 degrees": (first, replace(second, start=(0.6 * second.start[0], 0.0))),
-        "second strip 10 times as stiff": (first, _thicker(second, 10.0)),
-        "second strip 100 times as stiff": (first, _thicker(second, 100.0)),
     }
+    for factor in (10.0, 100.0):  # by its depth
+        moments = of_moments(second.area * factor ** (1.0 / 3.0), second.second_moment_of_area * factor)
+        pairs[f"second strip {factor:g} times as stiff"] = (first, replace(second, **moments))
     for one, other in ((0.05, 0.05), (0.05, -0.05), (-0.05, 0.05), (0.15, 0.15), (0.15, -0.15)):
         curved = (replace(first, rise=one * length), replace(second, rise=other * length))
         pairs[f"curved at rest, sagitta {one:+g} and {other:+g} L"] = curved
@@ -156,12 +140,6 @@ def _beside(strip: Strip, by: float) -> Strip:
     """Return the second strip parallel to a first one."""
     (x, y), (end_x, end_y) = strip.start, strip.end
     return replace(strip, name=STRIPS[1], start=(x + by, y), end=(end_x + by, end_y))
-
-
-def _thicker(strip: Strip, factor: float) -> Strip:
-    """Return the strip with its depth grown so that it bends `factor` times as hard."""
-    thicker = of_moments(strip.area * factor ** (1.0 / 3.0), strip.second_moment_of_area * factor)
-    return replace(strip, **thicker)
 
 
 GEOMETRY = study(
@@ -177,11 +155,10 @@ POINTS, PAPER_POINTS = "Gauss points,\nmixed stretch", "Gauss points,\nconsisten
 def _discretised() -> Iterator[Question]:
     """Yield one path, asked with every count of axial modes, with and without slide stiffness, and of Gauss
     points; elements confirm the reference."""
-    tries = []
+    tries: list[Try] = []
 
     def add(panel: str, model: str, other: int, settings: SplineSettings) -> None:
-        place = {"panel": panel, "x": settings.points, "y": other}
-        tries.append(Try(place=place, model=model, settings=settings))
+        tries.append(({"panel": panel, "x": settings.points, "y": other}, model, settings, {}))
 
     for n in COUNTS:
         plain = SplineSettings(control_points=n)
@@ -194,7 +171,7 @@ def _discretised() -> Iterator[Question]:
             add(POINTS, VARIED, points, few)
             add(PAPER_POINTS, PAPER, points, replace(few, stretch="consistent", measure="spatial"))
     design = replace(named_case(), rotation=math.radians(45.0))
-    yield Question(place={"case": TABLE_1}, design=design, tries=tuple(tries))
+    yield Question(place={"case": TABLE_1}, design=design, tries=tries)
 
 
 AXIAL_MODES = study(
@@ -219,13 +196,13 @@ def _swinging(place: Row, step: float, **more: float) -> list[Try]:
     """Return the swings of all columns in steps of so long [s]."""
     implicit = {FE: {"integrator": "generalised-alpha"}}
     how = {name: {"step": step, **implicit.get(name, {}), **more} for name in SWINGING}
-    return [Try(place=place, model=name, settings=COLUMNS[name], how=own) for name, own in how.items()]
+    return [(place, name, COLUMNS[name], own) for name, own in how.items()]
 
 
 def _steps() -> Iterator[Question]:
     """Yield a swing from each start, asked in all steps: at least so many of them, and at most."""
     for degrees in STARTS:
-        tries = []
+        tries: list[Try] = []
         for step in STEPS:
             place = {"case": f"from {degrees} deg, {step:g} s", "x": step, "y": degrees}
             duration = min(max(round(SWING / step), FEWEST), MOST) * step
@@ -234,7 +211,7 @@ def _steps() -> Iterator[Question]:
             place={"case": f"from {degrees} deg"},
             design=named_case(),
             motion={"start": math.radians(degrees), "duration": SWING},
-            tries=tuple(tries),
+            tries=tries,
             refined=(FINE, {"step": FINE_STEP}),
             check=(FINE, {"step": COARSER_STEP}),
             arbiter=(INDEPENDENT, {}),
@@ -248,11 +225,10 @@ LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
 
 def _orders() -> pd.DataFrame:
     """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
-    motions = [
+    *answers, limit = (
         answer_release(named_case(), COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
         for step in (*ORDER_STEPS, LIMIT_STEP)
-    ]
-    *answers, limit = motions
+    )
     errors = [float(np.abs(answer.rotation - limit.rotation).max()) for answer in answers]
     orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
     resolved = ["no" if answer.resolution else "yes" for answer in answers]
@@ -270,24 +246,20 @@ FACTORS, STIFFER = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6), (1e2, 1e4)
 START_DEG = 30.0
 #: Steps in a period of the first mode at rest: of the columns, of the reference and of its coarser twin.
 STEPS_A_PERIOD, REFINED_STEPS, COARSER_STEPS = 200, 1600, 800
-KINDS = ("mass and inertia", "mass alone", "inertia alone")
+_MASS, _INERTIA = "body_mass", "body_moment_of_inertia"
+KINDS = {"mass and inertia": (_MASS, _INERTIA), "mass alone": (_MASS,), "inertia alone": (_INERTIA,)}
 
 
 def _designs() -> Iterator[tuple[str, str, float, Design]]:
     """Yield all designs with a ratio at its end: name, kind (a line of the map), factor (its place there)."""
     given = named_case()
-    mass, inertia = given.body_mass, given.body_moment_of_inertia
-    for kind, factor in product(KINDS, FACTORS):
-        design = replace(
-            given,
-            body_mass=mass if kind == KINDS[2] else factor * mass,
-            body_moment_of_inertia=inertia if kind == KINDS[1] else factor * inertia,
-        )
-        yield f"body: {kind} x {factor:g}", kind, factor, design
+    for (kind, names), factor in product(KINDS.items(), FACTORS):
+        changed: Any = {name: factor * getattr(given, name) for name in names}
+        yield f"body: {kind} x {factor:g}", kind, factor, replace(given, **changed)
     yield "strips 100 times as dense", "strips", 100.0, replace(given, density=100.0 * given.density)
     without = [name for name in given.effects.names if name != "strip_inertia"]
     yield "massless strips", "strips", 0.0, replace(given, effects=given.effects.renamed(without))
-    cross = as_mechanism(given, START_DEG)
+    cross = verdict.as_mechanism(given, START_DEG)
     for factor in STIFFER:  # of another material
         second = replace(cross.strips[1], youngs_modulus=factor * given.youngs_modulus)
         stiffer = replace(cross, strips=(cross.strips[0], second))
@@ -304,7 +276,7 @@ def _ratios() -> Iterator[Question]:
             place={"case": case, "period_s": period},
             design=design,
             motion={"start": math.radians(START_DEG), "duration": period},
-            tries=tuple(_swinging(place, period / STEPS_A_PERIOD)),
+            tries=_swinging(place, period / STEPS_A_PERIOD),
             refined=(FINE, fine),
             check=(FINE, {"step": period / COARSER_STEPS}),
             arbiter=(INDEPENDENT, {"integrator": "generalised-alpha", **fine}),

@@ -5,16 +5,17 @@ half of the tolerance and finite elements, which share nothing with it, agree wi
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release, answer_static
+from studies.answers.metrics import differences
 from studies.answers.motion import Motion
+from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
@@ -42,14 +43,8 @@ REFINED, CHECK = SplineSettings(control_points=14), SplineSettings(control_point
 ARBITER = FeSettings(elements=80)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Try:
-    """One answer that is asked for: its place in the tables, the column it counts for, and how it is made."""
-
-    place: Row
-    model: str
-    settings: Settings
-    how: How = field(default_factory=dict)
+#: One answer that is asked for: its place in the tables, the column it counts for, and how it is made.
+Try = tuple[Row, str, Settings, How]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +59,7 @@ class Question:
 
     place: Row
     design: Design
-    tries: tuple[Try, ...]
+    tries: Sequence[Try]
     motion: How | None = None
     refined: Way = (REFINED, {})
     check: Way = (CHECK, {})
@@ -83,7 +78,7 @@ class Question:
             return Found.of(answer, path_distance(answer, reference))
         if not len(answer.time):  # statics does not reach the start
             return Found.of(answer, 0.0)
-        gain = _energy_gain(answer)
+        gain = float((answer.balance / answer.balance[0] - 1.0).max())
         much = gain > (MOST_GAIN_OF_OTHERS if how.get("integrator") else MOST_GAIN)
         fault = f"the energy grows by {gain:.2g} of itself" if much else ""
         return Found.of(answer, _swing_distance(answer, reference), fault=fault, energy_gain=gain)
@@ -101,7 +96,7 @@ def of_path(
     settings of columns of its own, and settings of its reference and of the check of it."""
     place = {"case": name, "x": x, "y": y}
     settings = PATHS | dict(own or {})
-    tries = tuple(Try(place=place, model=model, settings=each) for model, each in settings.items())
+    tries: list[Try] = [(place, model, each, {}) for model, each in settings.items()]
     return Question(place=place, design=design, tries=tries, refined=finer[0], check=finer[1])
 
 
@@ -109,9 +104,9 @@ def answers_of(question: Question) -> Answer:
     """Return how all who are asked end, a row each, and the row of the reference."""
     reference = question.answer(*question.refined)
     rows: list[Row] = []
-    for each in question.tries:
-        attempt = partial(question.found, each.settings, each.how, reference)
-        rows.append({**each.place, "model": each.model, **judged(attempt, TOLERANCE, each.model)})
+    for place, model, settings, how in question.tries:
+        attempt = partial(question.found, settings, how, reference)
+        rows.append({**place, "model": model, **judged(attempt, TOLERANCE, model)})
     confirmed = (row["error"] for row in rows if (row["model"], row["outcome"]) == (FE, RIGHT))
     gap = min(confirmed, default=math.inf)
     if not gap <= TOLERANCE:
@@ -125,33 +120,15 @@ def answers_of(question: Question) -> Answer:
 def path_distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
-    Each over its largest value on the reference's path; infinite where the path is not of finite numbers. A
-    path that stopped may end between two of the reference's states.
+    Each over its largest value on the reference's path; infinite where the path is not of finite numbers.
     """
-    near = np.abs(path.load_factor[:, None] - reference.load_factor).min(axis=1) < 1e-9
-    same = np.abs(path.load_factor[near][:, None] - reference.load_factor).argmin(axis=1)
-    if not (np.isfinite(path.torque).all() and np.isfinite(path.centre).all()):
-        return math.inf
-    torque = np.abs(path.torque[near] - reference.torque[same]).max()
-    place = np.linalg.norm(path.centre[near] - reference.centre[same], axis=1).max()
-    travel = np.linalg.norm(reference.centre - reference.centre[0], axis=1).max()
-    return float(max(torque / np.abs(reference.torque).max(), place / travel if travel > 0.0 else place))
+    apart = [each for each in differences(path, reference, ("path", "torque")).values() if each is not None]
+    return max(apart, default=0.0) if np.isfinite(apart).all() else math.inf
 
 
 def _swing_distance(motion: Motion, reference: Motion) -> float:
-    """Return the largest difference of rotation at the motion's records, as far as the reference goes [1].
-
-    Over the rotation at the start. Infinite for a motion without a record or with one that is no number.
-    """
+    """Return the largest difference of rotation at the motion's records, as far as the reference goes, over
+    the rotation at the start [1]; infinite for a motion with one that is no number."""
     if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
         return math.inf
-    known = motion.time <= reference.time[-1] * (1.0 + 1e-9)
-    expected = CubicSpline(reference.time, reference.rotation)(motion.time[known])
-    return float(np.abs(motion.rotation[known] - expected).max() / abs(reference.rotation[0]))
-
-
-def _energy_gain(motion: Motion) -> float:
-    """Return the largest gain of the balance of energies over the stored one at the start [1]."""
-    stored = motion.kinetic_energy + motion.strain_energy
-    balance = stored + motion.gravity_energy - motion.work + motion.dissipated
-    return float((balance / balance[0] - 1.0).max())
+    return rotation_error(motion, reference, motion.time) / abs(float(reference.rotation[0]))

@@ -11,9 +11,10 @@ import numpy as np
 from studies.answers.adapters import answer_release
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import flexural_scale
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
-from studies.engine import Answer, Claim, Part, Tables
+from studies.engine import Answer, Claim, Part, Row, Tables
 from studies.errors import BadInput
 from studies.stability.verdict import DEFAULT, VARIED, Found, judged, study
 
@@ -29,8 +30,6 @@ REFINED, REFINED_INCREMENTS, FINEST = 12, 24, 17
 SAMPLE, ELEMENTS = 100, 80
 #: Steps of a motion.
 STEPS = 6
-STATIC, MOTION = "path", "motion"
-MODELS = (VARIED, DEFAULT)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,9 +55,9 @@ class _Example:
     step: float | None
 
     @property
-    def kind(self) -> str:
-        """Whether a path or a motion is asked for."""
-        return STATIC if self.step is None else MOTION
+    def finer(self) -> int:
+        """Increments of a leg of what the path is held against."""
+        return max(REFINED_INCREMENTS, self.increments)
 
     def problem(self) -> Problem:
         """Return the design; CaseError for a value outside its range."""
@@ -86,17 +85,14 @@ def _examples() -> list[tuple[int, _Example]]:
 
 def _outcomes(number: int, example: _Example) -> Answer:
     """Return how one example ends with its own control points, and with the default settings."""
-    place = {
-        "case": f"example {number:03d}",
-        "kind": example.kind,
-        "x": math.degrees(max(example.targets, key=abs)),
-        "y": example.slenderness,
-    }
-    models = (SplineSettings(control_points=example.control_points), SplineSettings())
+    kind = "path" if example.step is None else "motion"
+    place: Row = {"case": f"example {number:03d}", "kind": kind}
+    place |= {"x": math.degrees(max(example.targets, key=abs)), "y": example.slenderness}
+    models = {VARIED: SplineSettings(control_points=example.control_points), DEFAULT: SplineSettings()}
     rows = [
-        {**place, "model": model, "panel": f"{model}: {example.kind}"}
+        {**place, "model": model, "panel": f"{model}: {kind}"}
         | judged(partial(_asked, example, settings), TOLERANCE)
-        for model, settings in zip(MODELS, models, strict=True)
+        for model, settings in models.items()
     ]
     return {"outcomes": rows}
 
@@ -131,16 +127,15 @@ def _asked(example: _Example, settings: SplineSettings) -> Found:
 
 def _path(example: _Example, settings: SplineSettings) -> Found:
     """Compare the torque at the ends of the legs with a refined path; the books of energy as well."""
-    unit = _unit(example)
     path = _legs(example, settings, example.increments)
-    books = np.abs(path.bending_energy + path.axial_energy - path.work).max()
-    stored = np.abs(path.bending_energy + path.axial_energy).max()
     if not np.isfinite(path.torque).all():
         return Found(error=math.inf, fault="the torque is not a finite number")
     points = settings.control_points
     refined = replace(settings, control_points=FINEST if points is None else max(REFINED, points + 3))
-    error, both = _apart(path, _legs(example, refined, _finer(example)), example)
-    closed = books <= max(0.5 * stored, UNLOADED * unit) or example.increments < 5
+    error, both = _apart(path, _legs(example, refined, example.finer), example)
+    stored = path.bending_energy + path.axial_energy
+    least = max(0.5 * np.abs(stored).max(), UNLOADED * flexural_scale(example.problem()))
+    closed = np.abs(stored - path.work).max() <= least or example.increments < 5
     return Found.of(path, error if both else 0.0, fault="" if closed else "work and energy differ")
 
 
@@ -149,23 +144,12 @@ def _legs(example: _Example, settings: Settings, increments: int) -> Any:
     return asked.static_path(rotation=list(example.targets), increments=increments, raise_on_failure=False)
 
 
-def _unit(example: _Example) -> float:
-    """Return EI/L [N m]."""
-    problem = example.problem()
-    return problem.youngs_modulus * problem.second_moment_of_area / problem.length
-
-
-def _finer(example: _Example) -> int:
-    """Return the increments of a leg of what an example is held against."""
-    return max(REFINED_INCREMENTS, example.increments)
-
-
 def _apart(path: Any, reference: Any, example: _Example) -> tuple[float, int]:
     """Return the largest difference of torque at the ends of legs that both reach, over the reference's
     largest [1], and how many these are; NaN for none."""
     ends, known = (_ends(each.rotation, example) for each in (path, reference))
     both = min(len(ends), len(known))
-    scale = max(float(np.abs(reference.torque).max()), UNLOADED * _unit(example))
+    scale = max(float(np.abs(reference.torque).max()), UNLOADED * flexural_scale(example.problem()))
     apart = np.abs(path.torque[ends[:both]] - reference.torque[known[:both]]).max(initial=0.0)
     return float(apart / scale) if both else math.nan, both
 
@@ -186,13 +170,13 @@ def _sample() -> Iterator[tuple[int, _Example]]:
 def _independent(number: int, example: _Example, count: int = ELEMENTS) -> Answer:
     """Return how far the default's path is from that of so many elements a strip."""
     path = _legs(example, SplineSettings(), example.increments)
-    elements = _legs(example, FeSettings(elements=count), _finer(example))
+    elements = _legs(example, FeSettings(elements=count), example.finer)
     error, both = _apart(path, elements, example)
     row = {"case": f"example {number:03d}", "legs": len(example.targets), "legs_compared": both}
     return {"elements": row | {"error": error, "reason": path.message or elements.message}}
 
 
-def _compared(tables: Tables) -> list[dict[str, Any]]:
+def _compared(tables: Tables) -> list[Row]:
     """Return how many paths elements were asked for, how many can be compared, and the largest difference."""
     errors = tables["elements"]["error"]
     return [{"asked": len(errors), "compared": int(errors.notna().sum()), "error": errors.max()}]
@@ -212,16 +196,14 @@ def _ends(rotation: Any, example: _Example) -> list[int]:
 
 def _motion(example: _Example, settings: SplineSettings) -> Found:
     """Let the pivot go: whatever the step, the books of energy close and the clamps hold."""
-    problem = example.problem()
+    problem, unit = example.problem(), flexural_scale(example.problem())
     inertia = problem.body_moment_of_inertia + problem.body_mass * problem.length**2
-    rigidity = problem.youngs_modulus * problem.second_moment_of_area
-    period = 2.0 * math.pi * math.sqrt(inertia * problem.length / (2.0 * rigidity))
-    step = period * float(example.step or 0.0)
+    step = 2.0 * math.pi * math.sqrt(inertia / (2.0 * unit)) * float(example.step or 0.0)
     motion = answer_release(problem, settings, duration=STEPS * step, step=step)
     if not len(motion.time):
         return Found.of(motion, 0.0)
     stored = motion.kinetic_energy + motion.strain_energy
-    scale = max(float(stored[0]), UNLOADED * rigidity / problem.length)
+    scale = max(float(stored[0]), UNLOADED * unit)
     gain, lost = float((stored - stored[0]).max()) / scale, float(np.abs(stored - stored[0]).max()) / scale
     gap = float(motion.constraint_residual.max()) / problem.length
     finite = all(np.isfinite(place).all() for place in motion.bodies.values())

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 
 import numpy as np
 from scipy.special import ellipe, ellipk
@@ -27,8 +28,6 @@ SHALLOW, DEPTHS = 1e-3, (2e-3, 5e-3, 1e-2, 2e-2)
 INDEPENDENT = FeSettings(elements=40)
 #: Tilt of the body over its depth, in lengths of a strip, from which elements find the branch [rad].
 TILT = 2.0
-
-
 #: Euler load of a cantilever [EI/L^2].
 EULER = math.pi**2 / 4.0
 
@@ -51,31 +50,23 @@ def tip(angles: Array) -> Array:
     return np.stack((2.0 * ellipe(modulus**2) / first - 1.0, 2.0 * modulus / first), axis=-1)
 
 
-def _extensible_euler(slenderness: float) -> float:
-    """Return the critical load [EI/L^2] of a column that is shortened first: (1 - P / EA) P is Euler's.
-
-    slenderness: L sqrt(EA / EI) [1].
-    """
-    return slenderness**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / slenderness**2))
-
-
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class _BucklingCase:
     """A question about a path with one number as its answer.
 
     Attributes:
-        frame: as loaded. follow_branch: whether the path is to leave the primary branch.
-        quantity: what is asked, with its unit. value: of a path; nan where the path does not have it.
+        frame: as loaded. quantity: what is asked, with its unit. value: of a path; nan where it has none.
         exact: in closed form, or nan. published: as printed, or nan.
+        follow_branch: whether the path is to leave the primary branch.
     """
 
     name: str
     frame: Frame
     quantity: str
     value: Callable[[Arc], float]
-    follow_branch: bool = False
     exact: float = math.nan
     published: float = math.nan
+    follow_branch: bool = False
 
     def arc(self, settings: Settings) -> Arc:
         """Return the path that is asked about."""
@@ -83,56 +74,33 @@ class _BucklingCase:
 
 
 def _cases() -> Iterator[_BucklingCase]:
-    """Yield all questions."""
-    yield _BucklingCase(
-        name="column: critical load",
-        frame=published("column").frame(BEYOND),
-        quantity="bifurcation [EI/L^2]",
-        value=lambda arc: arc.critical_load(BIFURCATION),
-        exact=_extensible_euler(SLENDERNESS),
-    )
+    """Yield all questions: of columns and frames, then of the pivot."""
+    # turn of the other branch: of a column by the elastica, of the pivot beyond the buckling of its strips
+    first, turn = partial(Arc.critical_load, kind=BIFURCATION), attrgetter("turned")
+    # of a column that is shortened first: (1 - P / EA) P is Euler's
+    euler = SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2))
+    column, shallow = published("column"), published("williams_shallow_toggle")
+    yield _BucklingCase("column: critical load", column.frame(BEYOND), "bifurcation [EI/L^2]", first, euler)
     for degrees in PUBLISHED:
         name, angle = f"column: elastica at {degrees} deg", float(degrees)
-        yield _turned(name, bent_column(degrees), "tip angle [deg]", exact=angle, published=angle)
+        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", turn, angle, angle, True)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
+            limit = partial(Arc.critical_load, kind=LIMIT, place=place)
+            which, unit = ("upper", "lower")[place], f"limit load [{value.unit}]"
             yield _BucklingCase(
-                name=f"{part}: {('upper', 'lower')[place]} limit load",
-                frame=published(name).frame(),
-                quantity=f"limit load [{value.unit}]",
-                value=partial(Arc.critical_load, kind=LIMIT, place=place),
-                published=value.published,
+                f"{part}: {which} limit load", published(name).frame(), unit, limit, published=value.published
             )
-    yield _BucklingCase(
-        name="toggle of rise 0.32 in: limit points",
-        frame=published("williams_shallow_toggle").frame(),
-        quantity="limit points [1]",
-        value=lambda arc: float(len(arc.critical)),
-        published=published("williams_shallow_toggle").values[0].published,
-    )
-    yield _BucklingCase(
-        name=f"pivot pushed down {1e3 * SHALLOW:g} mm: stable",
-        frame=pushed_pivot(SHALLOW),
-        quantity="unstable directions [1]",
-        value=lambda arc: float(arc.inertia[-1]),
-    )
-    yield _BucklingCase(
-        name="pivot pushed down: where its strips buckle",
-        frame=pushed_pivot(DEPTHS[0]),
-        quantity="bifurcation [m]",
-        value=lambda arc: arc.critical_load(BIFURCATION),
-    )
+    name, known = "toggle of rise 0.32 in: limit points", shallow.values[0].published
+    points, count = "limit points [1]", lambda arc: float(len(arc.critical))
+    yield _BucklingCase(name, shallow.frame(), points, count, published=known)
+    name, directions = f"pivot pushed down {1e3 * SHALLOW:g} mm: stable", "unstable directions [1]"
+    yield _BucklingCase(name, pushed_pivot(SHALLOW), directions, lambda arc: float(arc.inertia[-1]))
+    name = "pivot pushed down: where its strips buckle"
+    yield _BucklingCase(name, pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
     for depth in DEPTHS:
         name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
-        yield _turned(name, pushed_pivot(depth), "turn of the body [deg]")
-
-
-def _turned(name: str, frame: Frame, quantity: str, **known: float) -> _BucklingCase:
-    """Return the question how far the other branch turns: of a column by the elastica, of the pivot beyond
-    the buckling of its strips."""
-    return _BucklingCase(
-        name=name, frame=frame, quantity=quantity, value=lambda arc: arc.turned, follow_branch=True, **known
-    )
+        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", turn, follow_branch=True)
 
 
 def bent_column(degrees: float) -> Frame:
@@ -156,18 +124,26 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 
     It is settled by elements, or by the value in print where they do not reach it.
     """
-    refined = case.value(case.arc(REFINED))
+    refined, check, independent = (case.value(case.arc(each)) for each in (REFINED, CHECK, INDEPENDENT))
     reference = refined if math.isnan(case.exact) else case.exact
-    spread = max(_difference(case.value(case.arc(CHECK)), refined), _difference(refined, reference))
-    independent = case.value(case.arc(INDEPENDENT))
+    spread = max(_difference(check, refined), _difference(refined, reference))
     gap = _difference(case.published if math.isnan(independent) else independent, reference)
     settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
     place = {"case": case.name, "quantity": case.quantity}
     known = {"reference": reference, "published": case.published}
-    rows = []
-    for model, settings in ARCS.items():
-        asked = {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
-        rows.append(asked | judged(partial(_attempt, case, settings, reference), TOLERANCE, model))
+
+    def attempt(settings: Settings) -> Found:
+        arc = case.arc(settings)
+        value = case.value(arc)
+        found = Found.of(arc, _difference(value, reference), found=value)
+        # a path that says where it stopped does not claim what lies beyond
+        return replace(found, states_limit=not found.reached)
+
+    rows = [
+        {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
+        | judged(partial(attempt, settings), TOLERANCE, model)
+        for model, settings in ARCS.items()
+    ]
     reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
 
@@ -175,22 +151,6 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 def _difference(found: float, reference: float) -> float:
     """Return the difference over the reference, or as it is where that is zero [1]; nan if there is none."""
     return abs(found - reference) / (abs(reference) or 1.0)
-
-
-def _attempt(case: _BucklingCase, settings: Settings, reference: float) -> Found:
-    """Answer a case, and compare the number that was found."""
-    arc = case.arc(settings)
-    value = case.value(arc)
-    return Found(
-        error=_difference(value, reference),
-        reached=arc.reached,
-        reason=arc.message,
-        # a path that says where it stopped does not claim what lies beyond
-        states_limit=not arc.reached,
-        warning=arc.warning,
-        counters=arc.counters,
-        measured={"found": value},
-    )
 
 
 #: All questions and what comes of each.

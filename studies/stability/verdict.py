@@ -7,35 +7,35 @@ from typing import Any, Self
 
 import pandas as pd
 
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import Settings, SplineSettings
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.engine import Answer, Part, Row, Study
+from studies.engine import Part, Row, Study
 from studies.errors import BadInput
+from studies.paper import formulations as named
+from studies.paper.formulations import LOOKS, SETTINGS
 from studies.record.digits import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
 VARIED = "spline, settings varied"
-SIX = "spline n = 6"
-PAPER = "spline n = 4, as the paper"
-PRINTED = "spline n = 4, printed forces"
-LOCKING_FREE = "spline n = 4, locking-free"
-FE = "FE, 20 elements"
+LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
+    LOOKS[name].label for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE, named.SIX)
+)
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
 COLUMNS: dict[str, Settings] = {
     DEFAULT: SplineSettings(),
-    LOCKING_FREE: SplineSettings(control_points=4),
-    PAPER: SplineSettings(control_points=4, measure="spatial", stretch="consistent"),
-    PRINTED: SplineSettings(control_points=4, measure="printed", stretch="consistent"),
-    FE: FeSettings(),
+    **{
+        LOOKS[each].label: SETTINGS[each]
+        for each in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE)
+    },
 }
 
 #: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
 #: Motions and arcs of frames take six by default.
-PATHS: dict[str, Settings] = {**COLUMNS, SIX: SplineSettings(control_points=6)}
+PATHS: dict[str, Settings] = {**COLUMNS, SIX: SETTINGS[named.SIX]}
 
 #: Those of paths in arc length: finer splines, as the default reaches its end there.
 EIGHT, TWELVE = "spline n = 8", "spline n = 12"
@@ -98,10 +98,8 @@ class Found:
 def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> Row:
     """Return how `attempt` of a column ends, right within `tolerance` [1], as columns of a table.
 
-    Columns: outcome, one of `OUTCOMES`; error [1]; reason in words; iterations and halvings; stopped, whether
-    it did not reach its end, and warned, whether its own check finds it unresolved, be that counted for this
-    `model` or not: with both, every model can be judged with its own warnings and without; and what was
-    measured beside.
+    Stopped and warned, the latter whether it counts for this `model` or not, are there so that every model
+    can be judged with its own warnings and without.
 
     An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
     refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
@@ -109,11 +107,10 @@ def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> R
     outcome = ""
     try:
         found = attempt()
-    except BadInput as refusal:
-        outcome, found = BAD_INPUT, Found(error=math.nan, reason=" ".join(str(refusal).split()))
     except Exception as fault:  # whatever escapes a model is an outcome to be counted, not the study's end
-        reason = " ".join(f"{type(fault).__name__}: {fault}".split())
-        outcome, found = WRONG, Found(error=math.nan, reason=reason)
+        outcome = BAD_INPUT if isinstance(fault, BadInput) else WRONG
+        kind = "" if outcome == BAD_INPUT else f"{type(fault).__name__}: "
+        found = Found(error=math.nan, reason=" ".join(f"{kind}{fault}".split()))
     warning = "" if model in UNCHECKED else found.warning
     work = found.counters
     return {
@@ -145,9 +142,6 @@ DIGITS: dict[str, Digits | None] = {
     **dict.fromkeys(("outcomes.error", "outcomes.found", "stopped", "warned"), _RIGHT),
 }
 
-#: A case of one model: name, model, what is asked, and the largest error that is right [1].
-Task = tuple[str, str, Callable[[], Found], float]
-
 
 def study(*parts: Part, **declared: Any) -> Study:
     """Return the study of a family whose parts give the table `outcomes`; `counts` follows from it.
@@ -159,22 +153,14 @@ def study(*parts: Part, **declared: Any) -> Study:
     return Study(parts=parts, made=counts, digits=digits, **declared)
 
 
-def outcome_of(case: str, model: str, attempt: Callable[[], Found], tolerance: float) -> Answer:
-    """Return how one task ends."""
-    return {"outcomes": {"case": case, "model": model, **judged(attempt, tolerance, model)}}
-
-
 def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
     """Return a row a model of `outcomes`: cases tried, one column an outcome, largest right error."""
-    rows = []
-    for model in ORDER:
-        mine = outcomes[outcomes["model"] == model]
-        if mine.empty:
-            continue
-        found = {outcome: int((mine["outcome"] == outcome).sum()) for outcome in OUTCOMES}
-        largest = mine.loc[mine["outcome"] == "right", "error"].max()
-        rows.append({"model": model, "tried": len(mine), **found, "largest_right_error": largest})
-    return pd.DataFrame(rows)
+    ended = pd.crosstab(outcomes["model"], outcomes["outcome"])
+    models = [model for model in ORDER if model in ended.index]
+    found = ended.reindex(index=models, columns=list(OUTCOMES), fill_value=0).rename_axis(columns=None)
+    found.insert(0, "tried", found.sum(axis=1))
+    right = outcomes[outcomes["outcome"] == RIGHT]
+    return found.assign(largest_right_error=right.groupby("model")["error"].max()).reset_index()
 
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:

@@ -166,7 +166,7 @@ def _paths(
             threads=1,
             **settings.keywords(),
         )
-    except model_of(settings).errors.InvalidParameter:
+    except model_of(settings).InvalidParameter:
         return np.zeros(len(given["rotation"]), dtype=bool), {}
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
     stress = batch.strain * given["youngs_modulus"][:, None]

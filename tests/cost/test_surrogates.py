@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
 from studies.cost import one_coordinate
 from studies.cost.constraint_model import constraint_model
-from studies.cost.model import SolvedMotion, SolvedPath, geometry_of
-from studies.cost.own import spline
+from studies.cost.model import geometry_of, spline
 from studies.cost.pseudo_rigid import (
     four_bar,
     linear_pivot,

@@ -8,8 +8,9 @@ import pytest
 
 from studies.cases.problem import FOLDER
 from studies.cost import advice, settings
-from studies.cost.model import Failed, Model
+from studies.cost.model import Model
 from studies.cost.tried import cheapest, kept
+from studies.errors import Unanswered
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -86,7 +87,7 @@ def test_dynamic_advice_as_a_table(command, monkeypatch):
 
     class Failing(Model):
         def swing(self, *_, **__):
-            raise Failed("it blew up")
+            raise Unanswered("it blew up")
 
     def small(frequency):
         own = [each for each in genuine(frequency) if each.settings.get("integrator") == "energy"]

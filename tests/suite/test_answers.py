@@ -20,7 +20,7 @@ from studies.answers.metrics import (
 )
 from studies.answers.models import put
 from studies.answers.motion import Motion
-from studies.answers.reference import SWING_MESHES, limit_of_swings
+from studies.answers.reference import SWING_MESHES, SolvedMotion, limit_of_swings, rotation_error
 from studies.answers.response import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
@@ -147,13 +147,35 @@ def test_limit_of_swings_removes_the_error_of_the_mesh():
         rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
         bodies = {"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)}
         levels.append(
-            dataclasses.replace(swing, settings={"elements": elements}, bodies=bodies, effects=(), **arrays)
+            dataclasses.replace(
+                swing, settings=swing.settings | {"elements": elements}, bodies=bodies, effects=(), **arrays
+            )
         )
     limit = limit_of_swings(levels, instants[::4])
-    assert limit.swing.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
-    assert limit.uncertainty.max() < 1e-10
+    assert limit.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
+    assert limit.uncertainty["rotation_rad"] < 1e-10
     assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-6)
     assert levels[0].energy_error == 0.0
+
+
+def test_motions_are_compared_as_far_as_both_go():
+    """A coarse motion that outlasts what it is held against is asked at its own records, up to its end."""
+    fine, coarse = (
+        SolvedMotion(time=time, rotation=np.cos(3.0 * time))
+        for time in (np.linspace(0.0, 1.0, 101), np.array([0.0, 0.5, 1.5, 3.0]))
+    )
+    assert rotation_error(coarse, fine, coarse.time) == pytest.approx(0.0, abs=1e-7)
+    assert rotation_error(coarse, fine, fine.time) > 0.1
+
+
+@pytest.mark.parametrize("settings", [SplineSettings(control_points=4), FeSettings(elements=4)], ids=str)
+def test_solve_time_is_a_part_of_the_wall_time(settings):
+    """The increments or steps alone take some time, and less than the whole answer."""
+    problem = dataclasses.replace(TABLE_1, rotation=0.2, increments=3)
+    path = answer_static(problem, settings, repeat=2)
+    assert 0.0 < path.solve_s < path.wall_s
+    motion = answer_release(problem, settings, duration=1e-3)
+    assert motion.solve_s > 0.0
 
 
 def test_a_motion_by_impulses_is_a_neutral_answer():

@@ -11,8 +11,8 @@ import pytest
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.metrics import passages, swing_frequency
+from studies.answers.motion import signal_modes
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.answers.signal_modes import signal_modes
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
 from tests import gates

@@ -23,7 +23,7 @@ from studies.answers.validity import (
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
-from studies.published.plate import RITZ
+from studies.published.problems import RITZ
 from tests import gates
 from tests.agreement.test_section_laws import ASHWELL
 
