@@ -34,8 +34,6 @@ SLIDE_SHARE = 0.5
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""
-ROUND_OFF = 64.0
-"""Units in the last place that a sum of terms that cancel is uncertain by."""
 MASSLESS = 1e-13
 """Directions with less than this of the largest modal mass follow the others statically."""
 
@@ -259,20 +257,10 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     rigid = len(propped(system.scene).effects) - len(system.scene.effects)
     values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     shapes = free @ vectors
-    values = np.where(np.abs(values) > _round_off(stiffness, shapes), values, 0.0)
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)
     share = np.divide(slid, np.abs(strain), out=np.zeros_like(slid), where=values != 0.0)
     return values, by @ shapes, share
-
-
-def _round_off(stiffness: Array, shapes: Array) -> Array:
-    """What squared frequencies of shapes of unit modal mass are uncertain by: terms that cancel in them.
-
-    A rigid motion is all cancellation: what is left of it is no frequency, and neither sign is a verdict.
-    """
-    terms = np.einsum("im,ij,jm->m", np.abs(shapes), np.abs(stiffness), np.abs(shapes))
-    return np.asarray(ROUND_OFF * np.finfo(float).eps * terms)
 
 
 def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
