@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.tables import DIRECTION, SIGN
 
 Array = NDArray[np.float64]
 
@@ -24,11 +25,9 @@ the points of a Bezier strip of more than twenty are known no better. Another br
 def refuse(system: System, z: Array) -> str:
     """Why a converged state is no strip: the reason, or an empty string if it is one."""
     clamps = system.tables.clamps
-    for c in range(clamps.end.size):
-        end, inner = clamps.end[c], clamps.inner[c]
-        chord = clamps.sign[c] * (z[inner : inner + 2] - z[end : end + 2])
-        body = clamps.body[c]
-        angle = clamps.direction[c] + (z[body + 2] if body >= 0 else 0.0)
+    for c, ((end, inner, body, _), numbers) in enumerate(zip(clamps.place, clamps.numbers, strict=True)):
+        chord = numbers[SIGN] * (z[inner : inner + 2] - z[end : end + 2])
+        angle = numbers[DIRECTION] + (z[body + 2] if body >= 0 else 0.0)
         if not chord[0] * np.cos(angle) + chord[1] * np.sin(angle) > 0:
             return f"the end tangent at clamp {c + 1} points backwards"
     x, y, _, _ = system.points.derivatives(z)

@@ -12,8 +12,8 @@ from spline_model.compile import System, compile_scene
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, NEGATIVE, Arrays
-from spline_model.reduced.equilibrium import EVALUATIONS, HALVED, ITERATIONS, bear, lead
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, Arrays
+from spline_model.reduced.equilibrium import HALVED, ITERATIONS, bear, lead
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.path import SMALLEST_STEP
 from spline_model.reduced.states import unknowns_of
@@ -35,8 +35,8 @@ class HeldState:
     solved: whether the wanted pose was reached; if not, the state is the one before and
     ``reached`` the fraction of the way that was solved. pose (3,): x, y [m], theta [rad];
     force (3,): what holds the body, forces [N] and moment about its centre [N m]; tangent
-    (3, 3): its derivative in the pose; bending_energy, axial_energy [J]; unstable: negative
-    pivots of the strips at the held pose; iterations, evaluations, halved: work of this call.
+    (3, 3): its derivative in the pose; bending_energy, axial_energy [J]; iterations of Newton's
+    method in this call.
     """
 
     solved: bool
@@ -46,10 +46,7 @@ class HeldState:
     tangent: Array
     bending_energy: float
     axial_energy: float
-    unstable: int
     iterations: int
-    evaluations: int
-    halved: int
 
 
 class HeldPivot:
@@ -153,10 +150,7 @@ class HeldPivot:
             tangent=(stiffness + np.triu(stiffness, 1).T) * np.outer(units, units) * model.energy,
             bending_energy=float(space.out[BENDING]) * model.energy,
             axial_energy=float(space.out[AXIAL]) * model.energy,
-            unstable=int(space.out[NEGATIVE]),
             iterations=int(counters[ITERATIONS]),
-            evaluations=int(counters[EVALUATIONS]),
-            halved=int(counters[HALVED]),
         )
 
     @property

@@ -26,36 +26,6 @@ class Pivot(Mechanism):
     """A cross-axis pivot: a mechanism of two strips and one body, and what follows from its design."""
 
     @property
-    def flexural_rigidity(self) -> float:
-        """EI of a strip [N m^2]."""
-        return self.design.strips[0].flexural_rigidity
-
-    @property
-    def axial_rigidity(self) -> float:
-        """EA of a strip [N]."""
-        return self.design.strips[0].axial_rigidity
-
-    @property
-    def linear_density(self) -> float:
-        """Mass of a strip per length [kg/m]."""
-        return self.design.strips[0].linear_density
-
-    @property
-    def strip_mass(self) -> float:
-        """Mass of a strip [kg]."""
-        return self.linear_density * self.design.strips[0].length
-
-    @property
-    def body_mass(self) -> float:
-        """Mass of the body [kg]."""
-        return self.design.bodies[0].mass
-
-    @property
-    def body_moment_of_inertia(self) -> float:
-        """Moment of inertia of the body about its centre [kg m^2]."""
-        return self.design.bodies[0].moment_of_inertia
-
-    @property
     def centre(self) -> NDArray[np.float64]:
         """Centre of the body at rest (2,) [m]."""
         return np.asarray(self.design.bodies[0].centre)

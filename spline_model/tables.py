@@ -69,41 +69,6 @@ class ClampTable(NamedTuple):
             numbers=np.array(numbers, dtype=float).reshape(-1, 4),
         )
 
-    @property
-    def end(self) -> Indices:
-        """Place of the end's control point (C,)."""
-        return self.place[:, END]
-
-    @property
-    def inner(self) -> Indices:
-        """Place of its neighbour (C,)."""
-        return self.place[:, INNER]
-
-    @property
-    def body(self) -> Indices:
-        """Place of the body, or -1 (C,)."""
-        return self.place[:, BODY]
-
-    @property
-    def row(self) -> Indices:
-        """Place of the first multiplier (C,)."""
-        return self.place[:, ROW]
-
-    @property
-    def sign(self) -> Array:
-        """+1 at the start of a strip, -1 at its end (C,)."""
-        return self.numbers[:, SIGN]
-
-    @property
-    def point(self) -> Array:
-        """Clamped point from the body's centre (C, 2) [m]."""
-        return self.numbers[:, ACROSS:DIRECTION]
-
-    @property
-    def direction(self) -> Array:
-        """Angle of m at rest (C,) [rad]."""
-        return self.numbers[:, DIRECTION]
-
 
 class DriveTable(NamedTuple):
     """One row a driven coordinate, D in all.

@@ -13,7 +13,7 @@ from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
 from spline_model.quadrature import PointTable
-from spline_model.tables import ClampTable, DriveTable, LoadTable
+from spline_model.tables import BODY, ClampTable, DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -96,7 +96,7 @@ class Problem(NamedTuple):
             groups=np.array((start, size), dtype=np.int64).T.copy(),
             rows=rows,
             first=np.array([0, *ends], dtype=np.int64),
-            grounded=int((tables.clamps.body < 0).any()),
+            grounded=int((tables.clamps.place[:, BODY] < 0).any()),
             sweeps=sweeps or 1,
             tolerance=float(tolerance),
         )

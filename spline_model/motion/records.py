@@ -65,7 +65,7 @@ class Whole:
         """Largest constraint residual [m] and its rate [m/s] at each record, (R, 2)."""
         z, v = self.both
         largest = np.zeros((len(z), 2))
-        for c in range(len(self.motion.system.tables.clamps.end)):
+        for c in range(len(self.motion.system.tables.clamps.place)):
             for k, gap in enumerate(_clamp_gaps(self.motion, c, z, v)):
                 largest[:, k] = np.maximum(largest[:, k], np.abs(gap).max(axis=0))
         return largest
@@ -99,13 +99,13 @@ def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
 def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array]:
     """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m], and their rates."""
     clamps = motion.system.tables.clamps
-    end, inner, sign, body = clamps.end[c], clamps.inner[c], clamps.sign[c], clamps.body[c]
+    (end, inner, body, _), (sign, bx, by, direction) = clamps.place[c], clamps.numbers[c]
     pose, rate = (q[:, body : body + 3].T if body >= 0 else np.zeros((3, len(q))) for q in (z, v))
     (p, d), (u, w) = (
         (q[:, end : end + 2].T, sign * (q[:, inner : inner + 2] - q[:, end : end + 2]).T) for q in (z, v)
     )
-    (bx, by), direction = clamps.point[c], clamps.direction[c] + pose[2]
-    cos, sin, m = np.cos(pose[2]), np.sin(pose[2]), np.array((np.cos(direction), np.sin(direction)))
+    along = direction + pose[2]
+    cos, sin, m = np.cos(pose[2]), np.sin(pose[2]), np.array((np.cos(along), np.sin(along)))
     arm = np.array((cos * bx - sin * by, sin * bx + cos * by))
     rest = motion.system.rest
     reach = np.hypot(*(rest[inner : inner + 2] - rest[end : end + 2])) / np.hypot(*d)

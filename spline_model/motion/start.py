@@ -17,7 +17,7 @@ from spline_model.effects.boundary import factor_at
 from spline_model.errors import InvalidParameter
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
-from spline_model.tables import DriveTable, LoadTable
+from spline_model.tables import ROW, DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -129,7 +129,8 @@ class Motion:
         gradient, hessian = np.empty(size), np.empty((size, size))
         points, clamps = self.system.tables.points, self.system.tables.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
-        rows = np.concatenate((clamps.row, clamps.row + 1, clamps.row + 2, drives.row[held])).astype(int)
+        clamped = clamps.place[:, ROW, None] + np.arange(3)
+        rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0
         jacobian = -hessian[rows][:, :count]
         rate = np.zeros(len(rows))
