@@ -68,7 +68,7 @@ CONTROL_POINTS = Argument(
     int,
 )
 SEGMENTS = Argument(
-    "--segments M", "Bezier curves that a strip is cut into, with those control points each (spline)", int
+    "--segments M", "curves that a strip is cut into, with those control points each (spline; default 1)", int
 )
 MEASURE = Argument(
     "--measure",

@@ -71,7 +71,8 @@ def chosen(values: Mapping[str, float]) -> tuple[int, str]:
     pivot = build(values, loaded=not heavy)
     path = solve_statics(pivot, rotation=REACH, increments=INCREMENTS, raise_on_failure=False)
     if path.status is not Status.CONVERGED or path.segments != 1:
-        return FIRST, f"not estimated: {path.message}"
+        why = path.message or "its strips want segments, which a body in the hand does not take"
+        return FIRST, f"not estimated: {why}"
     return path.control_points, path.resolution or "estimated without the load" * heavy
 
 

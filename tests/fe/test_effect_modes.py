@@ -3,10 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from scipy.optimize import brentq
 
-from fe_reference import DEFAULT_EFFECTS, InvalidParameter, natural_frequencies
+from fe_reference import DEFAULT_EFFECTS, natural_frequencies
 from tests.fe.cases import MOMENT, TABLE_1, pivot
 from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
 from tests.gates import hold
@@ -73,5 +72,4 @@ def test_body_on_massless_strips() -> None:
         return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
 
     hold("fe_massless_strips", error)
-    with pytest.raises(InvalidParameter, match="count: got 4, expected at most 3 modes"):
-        natural_frequencies(pivot(effects=MASSLESS), count=4)
+    assert len(natural_frequencies(pivot(effects=MASSLESS), count=4).frequency) == 3

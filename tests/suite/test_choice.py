@@ -204,7 +204,8 @@ def no_more_than_eight(monkeypatch):
     """The search ends at eight control points, and asks for more than they can."""
     import spline_model.accuracy as chosen
 
-    monkeypatch.setitem(chosen.MOST, "bezier", 8)
+    monkeypatch.setattr(chosen, "MOST", 8)
+    monkeypatch.setattr(chosen, "MOST_SEGMENTS", 1)
     monkeypatch.setattr(chosen, "DEFAULT", 1e-7)
 
 
