@@ -81,7 +81,7 @@ class Search(Generic[Found]):
 
     accuracy: float
     grid: Discretisation
-    most_segments: int = field(default_factory=lambda: MOST_SEGMENTS)
+    most_segments: int
     error: float = math.inf
     found: Found | None = None
     ended: bool = False
@@ -167,14 +167,15 @@ def search(
     grid: Discretisation,
     accuracy: float,
     attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
-    **limits: int,
+    most_segments: int | None = None,
 ) -> Search[Found]:
     """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy``.
 
     attempt: solves with two discretisations and returns the estimated error of the first, and its
-    answer, or None where they do not have one; limits: ``most_segments`` of ``Search``.
+    answer, or None where they do not have one; most_segments: into how many a strip may be cut.
     """
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, **limits)
+    most = MOST_SEGMENTS if most_segments is None else most_segments
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most)
     while not outcome.ended:
         tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))
