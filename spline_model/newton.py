@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.followed import Followed, getrf, getrs
+from spline_model.continuation.followed import Followed, solved
 
 Array = NDArray[np.float64]
 Change = Callable[[Array, float], tuple[Array, float]]
@@ -117,10 +117,7 @@ def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: 
         matrix[:size, :size] = work.hessian * (unit[:, None] * unit / energy)
         right[:size] = -work.gradient * unit / energy
         work.counters.factorisations += 1
-        factors, pivots, failed = getrf(matrix)
-        if failed:
-            raise np.linalg.LinAlgError("the bordered tangent is singular")
-        found = getrs(factors, pivots, right)[0].ravel()
+        found = solved(matrix, right)
         return unit * found[:size], float(found[size])
 
     return solve(work, z, load_factor, change)

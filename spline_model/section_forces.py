@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from spline_model.basis import SlideModes
 from spline_model.bordered import evaluate
@@ -161,6 +160,8 @@ def _stretch(system: System, axial_force: Array, stretch: Array) -> None:
 
 def _by_moments(arc: Array, along: Sections, stretch: Array, direction: Array) -> tuple[Array, Array]:
     """Shear force and reactions by the balance of moments."""
+    from scipy.interpolate import CubicSpline
+
     moments = zip(arc, np.moveaxis(along.bending_moment, 1, 0), strict=True)
     slope = np.stack([CubicSpline(s, moment, axis=1)(s, 1) for s, moment in moments], axis=1)
     shear = -slope / stretch

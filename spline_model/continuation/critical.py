@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
@@ -212,6 +211,8 @@ class ReducedTangent:
         constraints.
         """
         hessian = work.hessian * (work.unit[:, None] * work.unit / work.energy)
+        from scipy.linalg import null_space  # as in ``point``, where there is something critical alone
+
         count = work.count
         rows, between = hessian[count:, :count], hessian[count:, count:]
         soft = np.diag(between) != 0.0
@@ -230,5 +231,7 @@ class ReducedTangent:
 
     def eigenpair(self, number: int) -> tuple[float, Array]:
         """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
+        from scipy.linalg import eigh
+
         values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])

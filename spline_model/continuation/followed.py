@@ -8,7 +8,6 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
 from spline_model import checks
 from spline_model.bordered import evaluate
@@ -19,7 +18,13 @@ from spline_model.solution import Later
 
 Array = NDArray[np.float64]
 
-getrf, getrs = get_lapack_funcs(("getrf", "getrs"))  # without the checks and warnings of lu_factor
+
+def solved(matrix: Array, right_side: Array) -> Array:
+    """Solve a system; LinAlgError, in words of a path, if it is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right_side))
+    except np.linalg.LinAlgError:
+        raise np.linalg.LinAlgError("the tangent is singular") from None
 
 
 @dataclass(kw_only=True)
@@ -222,10 +227,7 @@ class Followed:
         matrix = self.hessian * (unit[:, None] * unit / energy)
         if not np.isfinite(matrix).all():
             raise np.linalg.LinAlgError("the tangent is not finite")
-        factors, pivots, failed = getrf(matrix)
-        if failed:
-            raise np.linalg.LinAlgError("the tangent is singular")
-        return np.asarray(own * getrs(factors, pivots, right_side * own / energy)[0])
+        return own * solved(matrix, right_side * own / energy)
 
     def push(self, z: Array, load_factor: float) -> Array:
         """Minus the derivative of the gradient in the load factor at z, shape (N,).

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
@@ -16,7 +15,6 @@ from spline_model.newton import Newton
 
 Array = NDArray[np.float64]
 
-sytrf, sytrs = get_lapack_funcs(("sytrf", "sytrs"))
 
 BLOCK = 64
 """Columns that LAPACK's symmetric factorisation takes at once."""
@@ -118,6 +116,9 @@ def directed(work: Followed, point: Point, direction: Array, along: float) -> Po
 
 def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
     """Solve hessian x = right (N, K), and count the negative eigenvalues of the reduced tangent."""
+    from scipy.linalg import get_lapack_funcs  # whose import takes longer than a path without critical points
+
+    sytrf, sytrs = get_lapack_funcs(("sytrf", "sytrs"))
     unit, energy, not_free = work.unit[:, None], work.energy, len(right) - work.count
     work.counters.factorisations += 1
     matrix = work.hessian * (unit * unit.T / energy)

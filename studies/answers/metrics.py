@@ -3,10 +3,9 @@
 import math
 from collections.abc import Callable, Iterable, Sequence
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from studies.answers.response import Response
 from studies.kinds import Array
@@ -25,6 +24,16 @@ AS_FAR = 2e-2
 ROUNDS, SETTLED = 30, 1e-9
 #: Largest amplitude that is none [rad or m]: motions are solved to 1e-11.
 STILL = 1e-10
+
+
+def cubic(places: Array, values: Array) -> Any:
+    """Return the cubic spline through values (S, ...) at places (S,).
+
+    Its import is here, for that takes longer than a path to solve.
+    """
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(places, values)
 
 
 def trajectory_error(centre: Array, reference: Array) -> Array:
@@ -147,8 +156,8 @@ def quasi_static_frequency(
     turn = np.abs(rotation)
     amplitude = turn[-1]
     angle = amplitude * np.sin(phi)
-    energy = CubicSpline(turn, strain_energy)
-    rate = CubicSpline(turn, centre)(angle, 1)
+    energy = cubic(turn, strain_energy)
+    rate = cubic(turn, centre)(angle, 1)
     inertia = moment_of_inertia + mass * np.sum(rate**2, axis=1)
     left = 2.0 * (strain_energy[-1] - energy(angle))
     quarter = 0.25 * np.pi * float(weights @ (np.sqrt(inertia / left) * amplitude * np.cos(phi)))

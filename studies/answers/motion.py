@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import optimize
 
 from studies.answers import metrics
 from studies.answers.metrics import Frequency, swing_frequency
@@ -68,6 +67,8 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
 
     def apart(shifts: Array) -> Array:
         return _fit(at, value, lines + scale * shifts)[1]
+
+    from scipy import optimize
 
     solve: Any = optimize.least_squares  # its stub is a module's
     fitted = solve(apart, np.zeros(len(lines)), bounds=(-0.5, 0.5), x_scale=0.1)

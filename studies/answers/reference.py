@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.metrics import extrapolate, relative_error, swing_frequency, trajectory_error
+from studies.answers.metrics import cubic, extrapolate, relative_error, swing_frequency, trajectory_error
 from studies.answers.motion import Motion
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings
@@ -184,7 +183,7 @@ def sampled(motion: Any, instants: Array) -> SolvedMotion:
     """
     known = {name: array for name in SWUNG if (array := getattr(motion, name)) is not None}
     at = np.minimum(instants, motion.time[-1])
-    found: dict[str, Any] = {name: CubicSpline(motion.time, array)(at) for name, array in known.items()}
+    found: dict[str, Any] = {name: cubic(motion.time, array)(at) for name, array in known.items()}
     return SolvedMotion(time=instants, **found)
 
 
@@ -194,7 +193,7 @@ def rotation_error(motion: Any, against: Any, instants: Array) -> float:
     last = min(motion.time[-1], against.time[-1])
     both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
     one, other = (
-        CubicSpline(each.time, each.rotation)(both) if len(each.time) > 1 else each.rotation[0]
+        cubic(each.time, each.rotation)(both) if len(each.time) > 1 else each.rotation[0]
         for each in (motion, against)
     )
     return float(np.abs(one - other).max())

@@ -5,7 +5,6 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from studies.answers.models import put
 from studies.answers.response import Response
@@ -125,6 +124,8 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
 
 def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
     """Return where between two states the share is 1, and keep what is known there; None where paths stop."""
+
+    from scipy.optimize import brentq
 
     def beyond(at: float) -> float:
         if at not in known:
