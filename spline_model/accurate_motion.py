@@ -25,11 +25,12 @@ from spline_model.discretisation import swinging_slide_stiffness
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
-from spline_model.modes import linear_modes, static_state
+from spline_model.modes import linear_modes
 from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import set_in_motion
 from spline_model.solution import MotionEstimate, Status
+from spline_model.statics import static_state
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from spline_model.accuracy import Search, relative, wanted
+from spline_model.accuracy import Search, wanted
 from spline_model.batch_paths import Batch, Many
-from spline_model.confirmed import finer
+from spline_model.confirmed import finer, relative
 from spline_model.discretisation import Described, Discretisation, require_uncut
 from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH

@@ -13,8 +13,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.design import Design, StripDesign
 from spline_model.errors import Unsettled
-from spline_model.solution import CriticalPoint, Status, named
+from spline_model.solution import CriticalPoint, Status, largest, named
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -36,6 +37,14 @@ TURN = 1e-2
 """Rotation up to which critical points are held against it, not against their own [rad]."""
 LEAST = 1e-6
 """Smallest relative difference that is printed."""
+NOTHING = 1e-9
+"""Displacement in lengths, turn [rad], torque in stiffness times 1 rad, and force in moment over length,
+below which there is none but round-off."""
+NO_STIFFNESS = 1e-3
+"""Part of its largest entry on a path below which one on the diagonal of a body's stiffness is held against
+that part: it may pass through zero."""
+SAME_END = 1e-3
+"""Difference of load factors, and of rotations [rad], at which paths stop that stop at the same thing."""
 
 
 class Trials:
@@ -195,3 +204,71 @@ def _agreeing(one: StaticSolution, other: StaticSolution) -> int:
         if scale > ROUND_OFF:
             wrong = np.maximum(wrong, np.abs(mine - right).max(axis=1, initial=0.0) / scale)
     return max(1, int(np.argmax(np.append(wrong > RESOLVED, True))))
+
+
+def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> dict[str, float]:
+    """Errors of an answer against a better one by the names of ``ErrorEstimate``, each over the largest
+    magnitude on its path but the stiffness of the body; nan of what there is none of.
+
+    Places over the largest displacement, turns over the largest turn, section forces over the largest force
+    and the largest moment. What is none but round-off is held against its unit: strip length, rad, EI/L.
+    Paths by arc length have no states in common but their ends, which are compared then.
+    """
+    length = max(strip.length for strip in design.strips)
+    moment = max(strip.flexural_rigidity / strip.length for strip in design.strips)
+    stress = max(strip.flexural_rigidity / strip.length / _modulus(strip) for strip in design.strips)
+    rows = slice(None) if in_step(answer, better) else slice(-1, None)
+
+    def error(of: Callable[[StaticSolution], Array], unit: float) -> float:
+        mine, right = of(answer)[rows], of(better)[rows]
+        return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
+
+    forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
+    return {
+        "trajectory": largest((error(moved, length), error(turned, 1.0))),
+        "torque": error(lambda path: path.torque, moment),
+        "stiffness": error(lambda path: path.stiffness, moment),
+        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows]),
+        "energy": error(lambda path: path.energies.sum(axis=1), moment),
+        "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
+        "stress": error(lambda path: _stress(design, path), stress),
+    }
+
+
+def _by_state(stiffness: Array, better: Array) -> float:
+    """Largest error of entries of a body's stiffness (S, 3, 3) over the root of the product of their diagonal
+    entries in that state: they fall by powers of ten along a path. nan where there is none."""
+    size = np.abs(np.diagonal(better, axis1=1, axis2=2))
+    size = np.sqrt(np.fmax(size, NO_STIFFNESS * np.fmax.reduce(size, axis=0)))
+    shares = np.abs(stiffness - better) / (size[:, :, None] * size[:, None, :])
+    return float(np.fmax.reduce(shares, axis=None))
+
+
+def in_step(one: StaticSolution, other: StaticSolution) -> bool:
+    """Whether two paths have the states of the same load factors and rotations, about so where they end."""
+    mine, others = parameters(one), parameters(other)
+    if mine.shape != others.shape:
+        return False
+    apart = np.abs(mine - others)
+    return bool(apart[:, :-1].max(initial=0.0) <= SAME_STATE and apart[:, -1].max() <= SAME_END)
+
+
+def relative(apart: Array, right: Array, unit: Array) -> Array:
+    """Largest of D differences (D, ...) over the largest that is right, or over their units (D,); nan of
+    nothing."""
+    if right.size == 0:
+        return np.full(len(right), np.nan)
+    off, scale = (np.fmax.reduce(np.abs(each).reshape(len(each), -1), axis=1) for each in (apart, right))
+    return np.asarray(off / np.where(scale > NOTHING * unit, scale, unit))
+
+
+def _modulus(strip: StripDesign) -> float:
+    """Section modulus of the rectangle that A and I imply [m^3]."""
+    return math.sqrt(strip.area * strip.second_moment_of_area / 3.0)
+
+
+def _stress(design: Design, path: StaticSolution) -> Array:
+    """Largest stress of each strip, |N|/A + |M|/W (S, G) [Pa]."""
+    area = np.array([[strip.area] for strip in design.strips])
+    modulus = np.array([[_modulus(strip)] for strip in design.strips])
+    return np.asarray((np.abs(path.axial_force) / area + np.abs(path.bending_moment) / modulus).max(axis=2))

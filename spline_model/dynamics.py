@@ -25,7 +25,6 @@ from spline_model.errors import (
     require_positive,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.modes import settle
 from spline_model.motion import energy_consistent, leapfrog, quasi_static
 from spline_model.motion.moves import Moves, Steps, carry
 from spline_model.motion.records import Trajectory
@@ -33,6 +32,7 @@ from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
 from spline_model.solution import Later, Status
+from spline_model.statics import settle
 
 __all__ = ["INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
 

@@ -14,18 +14,16 @@ from scipy.linalg import eigh, null_space
 from spline_model.accuracy import search, wanted
 from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
-from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.effects.base import Constraint, Load
+from spline_model.effects import DrivenRotation
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.path import follow
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
-from spline_model.rigid import Unheld, propped, require_unborne
+from spline_model.rigid import Unheld, propped
 from spline_model.sections import STATIONS, by_piece
-from spline_model.solution import FrequencyEstimate, Later
-from spline_model.statics import solve_mechanism
+from spline_model.solution import FrequencyEstimate
+from spline_model.statics import static_state
 
 Array = NDArray[np.float64]
 
@@ -184,54 +182,6 @@ def _modes(
         segments=mechanism.design.discretisation.segments,
         control_points=mechanism.design.discretisation.points,
     )
-
-
-def static_state(
-    mechanism: Mechanism,
-    rotation: float | None = None,
-    increments: int = 20,
-    body: str | None = None,
-    *,
-    starts: bool = False,
-) -> Array:
-    """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
-
-    The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
-    pre-strain act in full; the multipliers of displacements that let go are left out. starts: as in
-    ``solve_mechanism``.
-    """
-    mechanism = mechanism.propped(rotation, body)
-    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
-    driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
-    layout = driven.layout
-    constraints = enumerate(driven.of(Constraint))
-    kept = [
-        i
-        for i, each in constraints
-        if not (getattr(each, "prop", False) or (isinstance(each, DrivenDisplacement) and each.lets_go))
-    ]
-    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
-
-
-def settle(
-    mechanism: Mechanism,
-    rotation: float | None,
-    increments: int = 20,
-    body: str | None = None,
-    *,
-    starts: bool = False,
-) -> Later:
-    """The unknowns of the path to that state, with all multipliers."""
-    loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
-    if rotation is not None or loaded:
-        return solve_mechanism(
-            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
-        ).unknowns
-    system = compile_scene(propped(mechanism.scene))
-    path = follow(system, [])
-    if not starts:
-        require_unborne(system, path.reactions)
-    return path.unknowns
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:

@@ -49,7 +49,8 @@ def propped(scene: Scene) -> Scene:
 def require_unborne(system: System, reactions: Array) -> None:
     """Refuse states whose props bear something: reactions (S, D) of the drives [N, N m]."""
     scene, drives = system.scene, system.drives
-    props = {scene.layout.multipliers[i][0] for i, e in enumerate(scene.of(Constraint)) if _is_prop(e)}
+    held = zip(scene.of(Constraint), scene.layout.multipliers, strict=True)
+    props = {row for each, (row, _) in held if getattr(each, "prop", False)}
     largest = float(np.abs(system.loads.value).max(initial=0.0))
     for d, row in enumerate(drives.row.tolist()):
         most = float(np.abs(reactions[:, d]).max(initial=0.0))
@@ -61,10 +62,6 @@ def require_unborne(system: System, reactions: Array) -> None:
             load, way = f"{most:.4g} {UNITS[axis]}", WAYS[axis]
             expected = f"none, or a clamp, a pin or a drive: nothing holds body {name} {way}"
             raise Unheld(f"load on body {name} {way}", load, expected)
-
-
-def _is_prop(effect: Constraint) -> bool:
-    return bool(getattr(effect, "prop", False))
 
 
 def _loose(scene: Scene) -> list[list[Body]]:

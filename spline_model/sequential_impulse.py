@@ -35,12 +35,13 @@ from spline_model.errors import InvalidParameter, require_choice, require_count,
 from spline_model.impulses.arrays import Problem, Space
 from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.modes import linear_modes, static_state
+from spline_model.modes import linear_modes
 from spline_model.motion.arrays import zeros
 from spline_model.motion.moves import Steps, carry
 from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, set_in_motion
 from spline_model.newton import Laps
+from spline_model.statics import static_state
 
 __all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
 

@@ -14,6 +14,8 @@ from spline_model.accuracy import answered
 from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
 from spline_model.continuation.arc_length import follow_arc
+from spline_model.effects import DrivenDisplacement
+from spline_model.effects.base import Constraint, Load
 from spline_model.errors import (
     InvalidParameter,
     finite_numbers,
@@ -27,9 +29,9 @@ from spline_model.newton import Laps
 from spline_model.path import Progress, follow
 from spline_model.pivot import Pivot
 from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
-from spline_model.rigid import require_unborne
+from spline_model.rigid import propped, require_unborne
 from spline_model.scene import Scene
-from spline_model.solution import Path
+from spline_model.solution import Later, Path
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -190,3 +192,51 @@ def _rotations(rotation: float | Sequence[float], increments: int) -> Array:
     if 0.0 < largest < LEAST_ROTATION or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
         raise InvalidParameter("rotation", rotation, f"0, or legs of {LEAST_ROTATION:g} [rad] or more")
     return np.array([b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]])
+
+
+def static_state(
+    mechanism: Mechanism,
+    rotation: float | None = None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
+) -> Array:
+    """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
+
+    The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
+    pre-strain act in full; the multipliers of displacements that let go are left out. starts: as in
+    ``solve_mechanism``.
+    """
+    mechanism = mechanism.propped(rotation, body)
+    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
+    driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
+    layout = driven.layout
+    constraints = enumerate(driven.of(Constraint))
+    kept = [
+        i
+        for i, each in constraints
+        if not (getattr(each, "prop", False) or (isinstance(each, DrivenDisplacement) and each.lets_go))
+    ]
+    return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
+
+
+def settle(
+    mechanism: Mechanism,
+    rotation: float | None,
+    increments: int = 20,
+    body: str | None = None,
+    *,
+    starts: bool = False,
+) -> Later:
+    """The unknowns of the path to that state, with all multipliers."""
+    loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
+    if rotation is not None or loaded:
+        return solve_mechanism(
+            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
+        ).unknowns
+    system = compile_scene(propped(mechanism.scene))
+    path = follow(system, [])
+    if not starts:
+        require_unborne(system, path.reactions)
+    return path.unknowns

@@ -113,12 +113,9 @@ def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
     if bracket.before.slope * bracket.after.slope > 0.0:
         kind = BIFURCATION
     else:
-        kind = TURN if _drive_moves(work.system) else LIMIT
+        drives = (each for each in work.system.scene.of(Constraint) if isinstance(each, DrivenRotation))
+        kind = TURN if any(drive.angle != 0.0 for drive in drives) else LIMIT
     return _crossing(work, kind, point, modes[t], bracket.after.inertia)
-
-
-def _drive_moves(system: System) -> bool:
-    return any(d.angle != 0.0 for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation))
 
 
 def _of_torque(bracket: Bracket) -> Crossing | None:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import effects_of, fields_along, mode_bodies
-from studies.answers.response import Answered, assembled, peak, stress_of
+from studies.answers.quantities import peak, stress_of
+from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.keys import GROUND
 from studies.cases.mechanism import Strip

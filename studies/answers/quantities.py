@@ -5,13 +5,14 @@ entries: a new quantity is one more of them.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from studies.cases.design import Design, flexural_scale
+from studies.cases.section import Sectioned
 from studies.kinds import Array
 
 #: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
@@ -54,6 +55,22 @@ def power_of(largest: float, highest: int = max(PREFIXES), lowest: int = min(PRE
 def fixed(value: float, decimals: int) -> str:
     """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
+
+
+def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
+    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
+    forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
+    pairs = zip(strips, forces, strict=True)
+    return np.stack([strip.youngs_modulus * strip.extreme_fibre_strain(*own) for strip, own in pairs], axis=1)
+
+
+def peak(values: Array) -> Array:
+    """Return the largest value along the last axis, by parabolas through neighbours, evenly spaced (...)."""
+    left, middle, right = values[..., :-2], values[..., 1:-1], values[..., 2:]
+    bend = 2.0 * middle - left - right
+    at_top = (middle >= left) & (middle >= right) & (bend > 0.0)
+    rise = np.where(at_top, (right - left) ** 2 / np.where(at_top, 8.0 * bend, 1.0), 0.0)
+    return np.asarray(np.maximum(values.max(axis=-1), (middle + rise).max(axis=-1, initial=0.0)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,7 @@
 """The neutral answer to a static problem: arrays that do not tell which model they came from."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Self
@@ -9,9 +9,9 @@ from typing import Any, Self
 import numpy as np
 
 from studies.answers.models import Asked
+from studies.answers.quantities import peak, stress_of
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
-from studies.cases.section import Sectioned
 from studies.errors import Unanswered
 from studies.kinds import Array
 
@@ -269,22 +269,6 @@ def shift_error(error: Array, centre: Array, shift: Array) -> Array:
         np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)
     )
     return np.asarray(error * moved / np.where(shifted > 0.0, shifted, np.nan))
-
-
-def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
-    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
-    forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
-    pairs = zip(strips, forces, strict=True)
-    return np.stack([strip.youngs_modulus * strip.extreme_fibre_strain(*own) for strip, own in pairs], axis=1)
-
-
-def peak(values: Array) -> Array:
-    """Return the largest value along the last axis, by parabolas through neighbours, evenly spaced (...)."""
-    left, middle, right = values[..., :-2], values[..., 1:-1], values[..., 2:]
-    bend = 2.0 * middle - left - right
-    at_top = (middle >= left) & (middle >= right) & (bend > 0.0)
-    rise = np.where(at_top, (right - left) ** 2 / np.where(at_top, 8.0 * bend, 1.0), 0.0)
-    return np.asarray(np.maximum(values.max(axis=-1), (middle + rise).max(axis=-1, initial=0.0)))
 
 
 def assembled(names: Iterable[str]) -> tuple[str, ...]:

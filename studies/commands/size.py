@@ -31,7 +31,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from spline_model.accuracy import NOTHING
+from spline_model.confirmed import NOTHING
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import as_toml, document_of

@@ -17,7 +17,7 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import named_case
-from studies.engine import Answer, Claim, Part, Row, Study, Tables, percent
+from studies.engine import Claim, Part, Row, Study, Tables, percent
 from studies.kinds import Progress
 from studies.paper.formulations import FE, LOOKS, SIX, refined
 from studies.record.marks import Doubt
@@ -128,11 +128,6 @@ MESHES = (5, 10, 20, 40, 80, 160, 320)
 ORDER, ALLOWANCE = 2.0, 0.1
 
 
-def _refined(element: str) -> Answer:
-    """Return the errors of every mesh of an element."""
-    return {"meshes": element_sweep(named_case(), MESHES, element)[0]}
-
-
 def _at(tables: Tables, count: int) -> list[Row]:
     """Return error and observed order of each quantity and element on one mesh."""
     rows = tables["meshes"].query("elements == @count").to_dict("records")
@@ -149,7 +144,9 @@ def _at(tables: Tables, count: int) -> list[Row]:
 
 
 ELEMENT_STUDY = Study(
-    parts=(Part(at=lambda: ELEMENTS, ask=_refined),),
+    parts=(
+        Part(at=lambda: ELEMENTS, ask=lambda each: {"meshes": element_sweep(named_case(), MESHES, each)[0]}),
+    ),
     claims=(
         Claim(
             claim="The {of} of the finite elements converges with order 2",

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spline_model.accuracy import DEFAULT, NOTHING, search
-from spline_model.confirmed import Grid
+from spline_model.accuracy import DEFAULT, search
+from spline_model.confirmed import NOTHING, Grid
 from spline_model.discretisation import Discretisation
 from spline_model.sensitivity.solve import sensitivities
 from spline_model.solution import largest

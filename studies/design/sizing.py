@@ -48,11 +48,6 @@ def _baseline(name: str) -> tuple[Problem, Answers]:
     return problem, evaluate.answers(problem)
 
 
-def _of_baseline(name: str) -> Answer:
-    """Return the rows of a design to compare with."""
-    return {"designs": _rows(name, name, *_baseline(name))}
-
-
 def _of_question(name: str) -> Answer:
     """Return the rows of a question: those of its optimum as beams, and the optimum with all effects."""
     question = QUESTIONS[name]
@@ -150,7 +145,7 @@ def _figure(tables: Tables) -> Figure:
 STUDY = Study(
     cases=tuple(BASELINES.values()),
     parts=(
-        Part(at=lambda: BASELINES, ask=_of_baseline),
+        Part(at=lambda: BASELINES, ask=lambda name: {"designs": _rows(name, name, *_baseline(name))}),
         Part(at=lambda: QUESTIONS, ask=_of_question),
     ),
     figures={"sizing": _figure},

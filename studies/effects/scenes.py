@@ -9,9 +9,10 @@ import numpy as np
 
 from spline_model.compile import compile_scene
 from spline_model.mechanism import Mechanism
-from spline_model.modes import linear_modes, static_state
+from spline_model.modes import linear_modes
 from spline_model.motion.leapfrog import highest_frequency, stability_limit
 from spline_model.motion.start import set_in_motion
+from spline_model.statics import static_state
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings, SplineSettings

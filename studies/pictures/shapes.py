@@ -32,7 +32,8 @@ def states_over_rest(
     """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
     _at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
     handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
-    for state, strength in zip(states, _strengths(len(states)), strict=True):
+    strengths = np.linspace(0.45, 1.0, len(states)) if len(states) > 1 else [1.0]  # later ones stand out
+    for state, strength in zip(states, strengths, strict=True):
         how = _line(fields, look) | {"alpha": strength}
         _deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **how)
         handles.append(Line2D([], [], label=_named(fields, state), **how))
@@ -141,11 +142,6 @@ def _clamp(panel: Axes, point: Array, outward: Array, size: float) -> None:
         foot = point + part * across
         hatch = np.array([foot, foot + 0.6 * out + 0.3 * across])
         panel.plot(*(1e3 * hatch.T), color="#444444", linewidth=0.8)
-
-
-def _strengths(count: int) -> list[float]:
-    """Return the opacities of `count` states: later ones stand out."""
-    return np.linspace(0.45, 1.0, count).tolist() if count > 1 else [1.0]
 
 
 def _named(fields: Fields, state: int) -> str:

@@ -91,7 +91,7 @@ def _outcomes(number: int, example: _Example) -> Answer:
     models = {VARIED: SplineSettings(control_points=example.control_points), DEFAULT: SplineSettings()}
     rows = [
         {**place, "model": model, "panel": f"{model}: {kind}"}
-        | judged(partial(_asked, example, settings), TOLERANCE)
+        | judged(partial(_path if example.step is None else _motion, example, settings), TOLERANCE)
         for model, settings in models.items()
     ]
     return {"outcomes": rows}
@@ -118,11 +118,6 @@ def _drawn(generator: np.random.Generator) -> _Example:
         spoilt: dict[str, Any] = {str(generator.choice(names)): float(generator.choice(bad))}
         return replace(example, **spoilt)
     return example
-
-
-def _asked(example: _Example, settings: SplineSettings) -> Found:
-    """Ask the spline for what the example says and compare it with what is known to be right."""
-    return _path(example, settings) if example.step is None else _motion(example, settings)
 
 
 def _path(example: _Example, settings: SplineSettings) -> Found:
