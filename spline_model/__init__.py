@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from spline_model.batch import solve_many as solve_many
     from spline_model.design import BodyDesign as BodyDesign
     from spline_model.design import StripDesign as StripDesign
+    from spline_model.discretisation import swinging_slide_stiffness as swinging_slide_stiffness
     from spline_model.dynamics import solve_motion as solve_motion
     from spline_model.dynamics import solve_release as solve_release
     from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from spline_model.modes import natural_frequencies as natural_frequencies
     from spline_model.pivot import Pivot as Pivot
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
-    from spline_model.pivot import swinging_slide_stiffness as swinging_slide_stiffness
     from spline_model.section_forces import moving_fields as moving_fields
     from spline_model.section_forces import static_fields as static_fields
     from spline_model.sensitivity.solve import sensitivities as sensitivities
@@ -71,7 +71,7 @@ _HOMES = {
     "solve_release": "dynamics",
     "solve_statics": "statics",
     "static_fields": "section_forces",
-    "swinging_slide_stiffness": "pivot",
+    "swinging_slide_stiffness": "discretisation",
 }
 
 

@@ -103,7 +103,11 @@ def confirmed(trials: Trials, grid: Grid) -> StaticSolution:
     Raises Unsettled where there is no equilibrium under weight and pre-strain.
     """
     answer = trials.outcome(grid)
-    if isinstance(answer, StaticSolution) and _is_plain(answer):
+    if (
+        isinstance(answer, StaticSolution)
+        and answer.status is Status.CONVERGED
+        and not answer.critical_points
+    ):
         return answer
     more = finer(*grid)
     better = trials.outcome(more)
@@ -117,10 +121,6 @@ def confirmed(trials: Trials, grid: Grid) -> StaticSolution:
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
     return _cut(answer, better, grid, more)
-
-
-def _is_plain(answer: StaticSolution) -> bool:
-    return answer.status is Status.CONVERGED and not answer.critical_points
 
 
 def _cut(

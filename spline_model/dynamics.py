@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accuracy import FIRST, MOST, MOST_SEGMENTS
+from spline_model.accuracy import FIRST, MOST
 from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
@@ -34,8 +34,6 @@ from spline_model.pivot import Pivot
 from spline_model.solution import Later, Status
 from spline_model.statics import settle
 
-__all__ = ["INTEGRATORS", "STEP", "Trajectory", "checked", "solve_motion", "solve_release"]
-
 Array = NDArray[np.float64]
 
 INTEGRATORS: dict[str, Callable[..., Moves]] = {
@@ -45,8 +43,6 @@ INTEGRATORS: dict[str, Callable[..., Moves]] = {
 """What makes of a start what advances it."""
 MOST_IN_MOTION = 14
 """Control points at which a motion that stops is given up, where their number is left open."""
-SEGMENTS = tuple(2**k for k in range(1, MOST_SEGMENTS.bit_length()))
-"""Into which a strip is cut whose start is not reached with any number of control points."""
 STEP = 5e-5
 """Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
@@ -232,7 +228,7 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[t
     tried = [(grid.segments, grid.points)]
     if grid.control_points is None:
         tried += [(grid.segments, points) for points in (*range(grid.points + MORE, MOST, MORE), MOST)]
-        tried += [(segments, FIRST) for segments in SEGMENTS if segments > grid.segments]
+        tried += [(2**k * grid.segments, FIRST) for k in range(1, 5)]
     for segments, points in tried:
         if reached and segments > grid.segments:
             return

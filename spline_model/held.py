@@ -71,7 +71,6 @@ class HeldPivot:
         grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
         self._grasped = grasped.arrays()
         self.pose = self._y[:3] * self._unit
-        self._free = True  # whether the centre is where no force is needed
         self.reset()
 
     @property
@@ -80,9 +79,7 @@ class HeldPivot:
 
     def reset(self) -> HeldState:
         """Back to rest, unloaded."""
-        state = self.restore(np.concatenate((self._rest[:3] * self._unit, self._rest)))
-        self._free = True
-        return state
+        return self.restore(np.concatenate((self._rest[:3] * self._unit, self._rest)))
 
     @property
     def unknowns(self) -> Array:
@@ -92,7 +89,6 @@ class HeldPivot:
     def restore(self, unknowns: Array) -> HeldState:
         """Back to a state that ``unknowns`` gave."""
         self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
-        self._free = False
         return self._state(1.0, np.zeros(4, dtype=np.int64))
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
@@ -103,18 +99,14 @@ class HeldPivot:
         reached, counters = self._lead(self._grasped, target / self._unit, stable=True)
         if reached == 1.0:
             self.pose[:] = target
-            self._free = False
         return self._state(reached, counters)
 
     def turn(self, rotation: float) -> HeldState:
         """Hold the rotation [rad] only; the body's centre goes where no force is needed."""
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
-        if rotation == self._y[2] and self._free:
-            return self._state(1.0, np.zeros(4, dtype=np.int64))
         reached, counters = self._lead(self._arrays, np.array([rotation]), stable=False)
         self.pose[:] = self._y[:3] * self._unit
-        self._free = self._free or reached == 1.0
         return self._state(reached, counters)
 
     def _lead(self, arrays: Arrays, target: Array, *, stable: bool) -> tuple[float, NDArray[np.int64]]:

@@ -20,11 +20,6 @@ from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import propped
 from spline_model.scene import Body, Effect, Scene, Strip
 
-HERE = (0.0, 0.0)
-"""Displacement of what is held in place [m]."""
-
-__all__ = ["BodyDesign", "Mechanism", "StripDesign", "compliant_mechanism"]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mechanism:
@@ -41,7 +36,9 @@ class Mechanism:
 
     def pinned(self, *bodies: str) -> Self:
         """The same mechanism with these bodies held in place, free to turn: a pin joint to the ground."""
-        held = (DrivenDisplacement(body=self.design.body_named(name), displacement=HERE) for name in bodies)
+        held = (
+            DrivenDisplacement(body=self.design.body_named(name), displacement=(0.0, 0.0)) for name in bodies
+        )
         return replace(self, pins=(*self.pins, *bodies), scene=self.with_effects(*held))
 
     def with_discretisation(self, **changes: Any) -> Self:
@@ -93,9 +90,9 @@ class Mechanism:
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
         return self.with_effects(drive)
 
-    def propped(self, rotation: float | None = None, body: str | None = None) -> Self:
-        """The same with props where rigid motions are free beside a drive to a rotation, if there is one."""
-        drives = [] if rotation is None else [DrivenRotation(body=self.design.body_named(body), angle=0.0)]
+    def propped(self, turned: bool = False, body: str | None = None) -> Self:
+        """The same with props where rigid motions are free beside a drive of a rotation, if it is turned."""
+        drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
         known, made = len(drives), propped(self.with_effects(*drives))
         if len(made.effects) == len(self.scene.effects) + known:
             return self

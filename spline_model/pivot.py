@@ -11,12 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import NOT_GIVEN, BodyDesign, StripDesign
-from spline_model.discretisation import SLIDE_STIFFNESS, Described, swinging_slide_stiffness
+from spline_model.discretisation import Described
 from spline_model.effects.registry import DEFAULT_EFFECTS
 from spline_model.errors import InvalidParameter, require_finite, require_positive
 from spline_model.mechanism import Mechanism, compliant_mechanism
-
-__all__ = ["BODY", "SLIDE_STIFFNESS", "STRIPS", "Pivot", "cross_axis_pivot", "swinging_slide_stiffness"]
 
 BODY = "body"
 STRIPS = ("strip_1", "strip_2")

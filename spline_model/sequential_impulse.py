@@ -43,8 +43,6 @@ from spline_model.motion.start import Motion, set_in_motion
 from spline_model.newton import Laps
 from spline_model.statics import static_state
 
-__all__ = ["ImpulseSolver", "Outcome", "State", "impulse_solver", "solve_impulses", "stability_limit"]
-
 Array = NDArray[np.float64]
 
 STEP = 0.01

@@ -21,7 +21,6 @@ from spline_model.errors import (
     finite_numbers,
     require_choice,
     require_count,
-    require_finite,
     require_kind,
 )
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -74,38 +73,28 @@ def solve_statics(
     ``spline_model.confirmed``). Raises ConvergenceError with the converged part of the path, or with the
     best one where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
-    require_mechanism(pivot)
-    require_count("increments", increments, 1)
-    require_choice("method", method, METHODS)
-    require_choice("order", order, ORDERS)
-    laps, rotations = Laps(), _rotations(rotation, increments)
-
-    def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = pivot.on(*grid)
-        turn = Turn(
-            driven=given.driven,
-            rotations=rotations,
-            increments=increments,
-            laps=laps,
-            progress=told,
-            branch=branch,
-            method=method,
-        )
-        together = order == TOGETHER or not rotations.any() or not has_loads(given.scene)
-        system, path = turn.together() if together else turn.loads_first()
-        return StaticSolution.of(system, path, given.effects, laps, balanced=balanced)
-
-    solution = answered(pivot.design, accuracy, solve, progress, len(rotations), check)
-    return solution.checked(raise_on_failure)
+    return solve_mechanism(
+        pivot,
+        rotation=rotation,
+        increments=increments,
+        order=order,
+        method=method,
+        branch=branch,
+        accuracy=accuracy,
+        check=check,
+        raise_on_failure=raise_on_failure,
+        progress=progress,
+    )
 
 
 def solve_mechanism(
     mechanism: Mechanism,
     *,
     body: str | None = None,
-    rotation: float | None = None,
+    rotation: float | Sequence[float] | None = None,
     increments: int = 20,
     order: str = LOADS_FIRST,
+    method: str = "condensed",
     control: str = "load",
     branch: str = "primary",
     end: float = 1.0,
@@ -117,34 +106,36 @@ def solve_mechanism(
 ) -> StaticSolution:
     """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
-    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. order: where
-    both meet, "loads first" as in ``solve_statics``, which then stay, or "together"; so it is
-    always with control "arc-length" or another ``end``. control, branch and end as in ``solve_loads``;
+    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. rotation,
+    order and method as in ``solve_statics``; with control "arc-length" or another ``end`` loads and the last
+    rotation grow together. control, branch and end as in ``solve_loads``;
     accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end. starts:
     whether a motion starts at the end, until which rigid motions that nothing holds are held, whatever that
     takes; else a load along one raises InvalidParameter.
     """
     require_mechanism(mechanism)
-    if rotation is not None:
-        require_finite("rotation", rotation, "rad")
     require_count("increments", increments, 1)
+    require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
-    laps, first = Laps(), order == LOADS_FIRST and control == "load" and end == 1.0
+    laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
+    rotations = np.zeros(0) if rotation is None else _rotations(rotation, increments)
 
     def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
-        given = mechanism.on(*grid).propped(rotation, body)
-        if first and rotation and has_loads(given.scene):
+        given = mechanism.on(*grid).propped(rotation is not None, body)
+        if turned:
             turn = Turn(
                 driven=partial(given.driven, body=body),
-                rotations=np.linspace(0.0, rotation, increments + 1)[1:],
+                rotations=rotations,
                 increments=increments,
                 laps=laps,
                 progress=told,
                 branch=branch,
+                method=method,
             )
-            system, path = turn.loads_first()
+            together = order == TOGETHER or not rotations.any() or not has_loads(given.scene)
+            system, path = turn.together() if together else turn.loads_first()
         else:
-            scene = given.scene if rotation is None else given.driven(rotation, body)
+            scene = given.driven(float(rotations[-1]), body) if rotations.size else given.scene
             system, path = solve_loads(
                 scene, increments=increments, end=end, control=control, branch=branch, progress=told
             )
@@ -153,7 +144,7 @@ def solve_mechanism(
             require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
-    solution = answered(mechanism.design, accuracy, solve, progress, increments, check)
+    solution = answered(mechanism.design, accuracy, solve, progress, rotations.size or increments, check)
     return solution.checked(raise_on_failure)
 
 
@@ -208,7 +199,7 @@ def static_state(
     pre-strain act in full; the multipliers of displacements that let go are left out. starts: as in
     ``solve_mechanism``.
     """
-    mechanism = mechanism.propped(rotation, body)
+    mechanism = mechanism.propped(rotation is not None, body)
     z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout

@@ -74,9 +74,11 @@ def plate_factors(ratio: complex, poisson_ratio: float) -> Factors:
     """The factors of a plate of width over length ``ratio`` > 0; upper bounds, by some 1e-6."""
     nu, (x, weight, along), (mass, bent, cross, sheared, area) = poisson_ratio, _along(ratio), _across(ratio)
     found: list[Any] = []
-    for middle, moment in ((_even, np.ones_like(x)), (_odd, x - 0.5)):
-        functions = [middle(values[:, 2:]) for values in along]  # the first two do not vanish at the clamp
-        value, slope, curvature = functions
+    inner = [values[:, 2:] for values in along]  # the first two do not vanish at the clamp
+    # functions whose slope vanishes at the middle, the last two as one; those that vanish there themselves
+    even = [np.column_stack((values[:, :-2], values[:, -2] + values[:, -1])) for values in inner]
+    odd = [values[:, :-1] for values in inner]
+    for (value, slope, curvature), moment in ((even, np.ones_like(x)), (odd, x - 0.5)):
         mixed = np.kron(curvature.T @ (weight[:, None] * value), cross)
         stiffness = nu * (mixed + mixed.T)
         stiffness += np.kron(curvature.T @ (weight[:, None] * curvature), mass)
@@ -116,16 +118,6 @@ def _splines(knots: Array, x: Array, span: NDArray[np.int64], order: int) -> Arr
         else:
             values = degree * (over[:-1] * values[:, :-1] - over[1:] * values[:, 1:])
     return values
-
-
-def _even(values: Array) -> Array:
-    """Functions whose slope vanishes at the middle: the last two as one."""
-    return np.column_stack((values[:, :-2], values[:, -2] + values[:, -1]))
-
-
-def _odd(values: Array) -> Array:
-    """Functions that vanish at the middle: without the last one."""
-    return values[:, :-1]
 
 
 def _across(ratio: complex) -> tuple[Array, Array, Array, Array, complex]:

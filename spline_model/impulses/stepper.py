@@ -51,8 +51,8 @@ class Outcome:
     """What steps led to.
 
     state: after the last step that was taken; taken, asked: numbers of steps; kinetic, strain and
-    gravity energy, and what these steps dissipated [J]; constraint_residual [m], velocity_residual
-    [m/s]; residual: the largest that a step left in its equations, or an impulse before the last
+    gravity energy, and what these steps dissipated [J]; constraint_residual [m];
+    residual: the largest that a step left in its equations, or an impulse before the last
     had to close [1];
     counters: steps (halves count), solves, sweeps, halved_steps, limited_steps.
     """
@@ -65,7 +65,6 @@ class Outcome:
     gravity_energy: float
     dissipated: float
     constraint_residual: float
-    velocity_residual: float
     residual: float
     counters: dict[str, int]
 
@@ -169,8 +168,7 @@ class Stepper(Moves):
             strain_energy=float(row[STRAIN]),
             gravity_energy=float(row[WEIGHT] + system.weight @ rest),
             dissipated=float(row[DISSIPATED]),
-            constraint_residual=float(gap[0]),
-            velocity_residual=float(gap[1]),
+            constraint_residual=float(gap),
             residual=float(moving.status[RESIDUAL]),
             counters=self.counted(taken),
         )

@@ -62,12 +62,11 @@ class Whole:
 
     @kept
     def gaps(self) -> Array:
-        """Largest constraint residual [m] and its rate [m/s] at each record, (R, 2)."""
-        z, v = self.both
-        largest = np.zeros((len(z), 2))
+        """Largest constraint residual [m] at each record, (R,)."""
+        z, _ = self.both
+        largest = np.zeros(len(z))
         for c in range(len(self.motion.system.tables.clamps.place)):
-            for k, gap in enumerate(_clamp_gaps(self.motion, c, z, v)):
-                largest[:, k] = np.maximum(largest[:, k], np.abs(gap).max(axis=0))
+            largest = np.maximum(largest, np.abs(_clamp_gaps(self.motion, c, z)).max(axis=0))
         return largest
 
 
@@ -96,23 +95,18 @@ def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
     return rows
 
 
-def _clamp_gaps(motion: Motion, c: int, z: Array, v: Array) -> tuple[Array, Array]:
-    """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m], and their rates."""
+def _clamp_gaps(motion: Motion, c: int, z: Array) -> Array:
+    """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m]."""
     clamps = motion.system.tables.clamps
     (end, inner, body, _), (sign, bx, by, direction) = clamps.place[c], clamps.numbers[c]
-    pose, rate = (q[:, body : body + 3].T if body >= 0 else np.zeros((3, len(q))) for q in (z, v))
-    (p, d), (u, w) = (
-        (q[:, end : end + 2].T, sign * (q[:, inner : inner + 2] - q[:, end : end + 2]).T) for q in (z, v)
-    )
+    pose = z[:, body : body + 3].T if body >= 0 else np.zeros((3, len(z)))
+    p, d = z[:, end : end + 2].T, sign * (z[:, inner : inner + 2] - z[:, end : end + 2]).T
     along = direction + pose[2]
     cos, sin, m = np.cos(pose[2]), np.sin(pose[2]), np.array((np.cos(along), np.sin(along)))
     arm = np.array((cos * bx - sin * by, sin * bx + cos * by))
     rest = motion.system.rest
     reach = np.hypot(*(rest[inner : inner + 2] - rest[end : end + 2])) / np.hypot(*d)
-    turned = rate[2] * np.array((-arm[1], arm[0]))
-    position = (*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0]))
-    velocity = (*(u - rate[:2] - turned), m[0] * w[1] - m[1] * w[0] - rate[2] * (m * d).sum(axis=0))
-    return np.array(position), np.array(velocity)
+    return np.array((*(p - pose[:2] - arm), reach * (m[0] * d[1] - m[1] * d[0])))
 
 
 def energy_gain(rows: Array, unit: float) -> Array:
@@ -189,12 +183,7 @@ class Trajectory(Tabulated):
     @property
     def constraint_residual(self) -> Array:
         """Largest one (T,) [m]."""
-        return self.whole.gaps[:, 0]
-
-    @property
-    def velocity_residual(self) -> Array:
-        """Largest rate of it (T,) [m/s]."""
-        return self.whole.gaps[:, 1]
+        return self.whole.gaps
 
     @cached_property
     def resolution(self) -> str:

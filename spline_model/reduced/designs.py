@@ -161,7 +161,9 @@ def pivots(
     numbers of many by the keywords of ``cross_axis_pivot``; refused under loads, which these do not scale.
     """
     columns = _columns(designs)
-    first = {name: _plain(column[0]) for name, column in columns.items()}
+    first: dict[str, Any] = {
+        name: tuple(c[0].tolist()) if c.ndim > 1 else float(c[0]) for name, c in columns.items()
+    }
     system = compile_scene(cross_axis_pivot(**first, **discretisation).driven(1.0))
     if system.is_preloaded or system.loads.value.any():
         expected = "no loads on pivots by their keywords: a mechanism and its values"
@@ -208,10 +210,6 @@ def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> 
     count = max((len(v) for name, v in values.items() if v.ndim >= pairs[name]), default=1)
     shape = {name: (count, 2) if pairs[name] == 2 else (count,) for name in values}
     return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
-
-
-def _plain(value: Any) -> Any:
-    return tuple(float(part) for part in value) if np.ndim(value) else float(value)
 
 
 def _pivots(columns: Mapping[str, Array]) -> Given:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from spline_model.solution import named
 from studies.answers.metrics import extrapolate
 from studies.answers.models import Asked, put
 from studies.answers.response import Answered, Response, assembled
@@ -202,8 +203,7 @@ def _name(settings: Settings) -> str:
     """Return how fine settings are, in words."""
     if isinstance(settings, FeSettings):
         return f"{settings.elements} elements"
-    cut = f"{settings.segments} segments of " if settings.segments > 1 else ""
-    return f"{cut}{settings.control_points} control points"
+    return named(settings.segments, settings.points)
 
 
 def _remedy(settings: Settings) -> str:

@@ -165,7 +165,12 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
     states = np.asarray(solution.state)[None] if series == "mode" else solution.states
     along = fields_along(settings, analysis)(asked, states)
     arrays = {each.name: np.asarray(getattr(along, each.name), dtype=float) for each in fields(along)}
-    own = {"static": _path, "release": _motion, "modes": _modes}[analysis](solution, arrays, names)
+    own = {
+        "static": _path,
+        "release": lambda motion, *_: {"values": np.asarray(motion.time)},
+        "modes": _modes,
+    }
+    found = own[analysis](solution, arrays, names)
     known = {name: getattr(solution, f"{name}_energy", getattr(solution, name, None)) for name in energies}
     named = effects_of(asked)
     return Fields(
@@ -180,7 +185,7 @@ def own_fields(solution: Any, modelled: Any) -> Fields:
         driven=names.index(body) if body else 0,
         series=series,
         energies={name: np.asarray(array) for name, array in known.items() if array is not None},
-        **arrays | own,
+        **arrays | found,
     )
 
 
@@ -207,10 +212,6 @@ def _path(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, A
     if not np.isnan(result.torque).all():
         found |= {"torque": np.asarray(result.torque), "stiffness": np.asarray(result.stiffness)}
     return found | {"values": np.asarray(result.load_factor)}
-
-
-def _motion(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, Any]:
-    return {"values": np.asarray(result.time)}
 
 
 def _modes(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, Any]:

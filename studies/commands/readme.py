@@ -285,15 +285,10 @@ def _rewritten(path: Path, store: Store) -> str:
     BadInput where the marks are missing, or a study was never run."""
     text = path.read_text(encoding="utf-8")
     for name, made in BLOCKS[path].items():
-        begin, end = _marks(name)
+        begin, end = f"<!-- {name}: written by `python -m studies readme` -->", f"<!-- end of {name} -->"
         head, found_begin, rest = text.partition(begin)
         _, found_end, tail = rest.partition(end)
         if not (found_begin and found_end):
             raise BadInput(f"{path.name}: got no marks, expected {begin} and {end}")
         text = "\n".join([f"{head}{begin}", "", *made(store), "", f"{end}{tail}"])
     return text
-
-
-def _marks(name: str) -> tuple[str, str]:
-    """Return the marks before and after the block of this name."""
-    return f"<!-- {name}: written by `python -m studies readme` -->", f"<!-- end of {name} -->"

@@ -169,16 +169,14 @@ def _points() -> Answer:
         exact = getattr(found[REFERENCE], quantity)[:, start:]
         errors = [np.abs(getattr(found[n], quantity)[:, start:] / exact - 1.0) for n in COUNTS]
         for turn, level in product(TURNS, LEVELS):
-            worst = np.array([_worst(error[:, : round(turn / INCREMENT)]) for error in errors])
+            worst = np.array(
+                [error[:, : round(turn / INCREMENT)].max() for error in errors]
+            )  # nan: not reached
+            worst = np.where(np.isnan(worst), np.inf, worst)
             kept = np.maximum.accumulate(worst[::-1])[::-1] <= level
             least = COUNTS[int(np.argmax(kept))] if kept.any() else np.nan
             rows.append({"quantity": quantity, "rotation_deg": turn, "error": level, "control_points": least})
     return {"points": rows}
-
-
-def _worst(errors: Array) -> float:
-    """Return the largest error; infinite where a path was not reached."""
-    return float(errors.max()) if np.isfinite(errors).all() else np.inf
 
 
 def loaded(ratio: float, inclination: float, direction: str) -> Answer:

@@ -226,10 +226,6 @@ class Picture:
             raise BadInput(f"{path}: got this ending, expected .svg, .png or .pdf")
         write_whole(Path(path), style.printed(self.figure, kind))
 
-    def _repr_svg_(self) -> str:
-        """Return what a notebook shows."""
-        return style.printed(self.figure, "svg").decode()
-
 
 def plot(
     solution: Any, design: Any = None, *, name: str = "", yield_strength: float | None = None

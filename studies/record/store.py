@@ -17,7 +17,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.cases.design import FOLDER, fingerprint, named_design
+from studies.cases.design import fingerprint, named_design
 from studies.cases.document import parsed
 from studies.record.digits import as_csv, read_csv
 from studies.record.files import replace_folder, require_writable_folder, write_whole
@@ -48,11 +48,7 @@ def _fingerprint(name: str) -> str:
     """Return the hash of a design by its name, of the values of another file by its path below studies/."""
     if "/" not in name:
         return fingerprint(named_design(name))
-    return sha256(json.dumps(parsed(_file(name)), sort_keys=True).encode()).hexdigest()
-
-
-def _file(name: str) -> Path:
-    return (ROOT / "studies" if "/" in name else FOLDER) / f"{name}.toml"
+    return sha256(json.dumps(parsed(ROOT / "studies" / f"{name}.toml"), sort_keys=True).encode()).hexdigest()
 
 
 def _surroundings() -> dict[str, Any]:

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from spline_model.dynamics import Trajectory, solve_motion
+from spline_model.dynamics import solve_motion
 from spline_model.effects import DrivenRotation
+from spline_model.motion.records import Trajectory
 from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings
