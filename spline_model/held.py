@@ -71,6 +71,7 @@ class HeldPivot:
         grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
         self._grasped = grasped.arrays()
         self.pose = self._y[:3] * self._unit
+        self._led: Arrays | None = None  # by what it came here
         self.reset()
 
     @property
@@ -88,7 +89,7 @@ class HeldPivot:
 
     def restore(self, unknowns: Array) -> HeldState:
         """Back to a state that ``unknowns`` gave."""
-        self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
+        self.pose[:], self._y[:], self._led = unknowns[:3], unknowns[3:], None
         return self._state(1.0, np.zeros(4, dtype=np.int64))
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
@@ -115,13 +116,13 @@ class HeldPivot:
         counters, rate, start = np.zeros(4, dtype=np.int64), np.empty(len(target)), self._y.copy()
         begin = start[arrays.bodies.held]
         whole, longest = target - begin, np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])
-        done = 0.0
+        done = float(self._led is arrays and not whole.any())
         step = 1.0 / max(1, math.ceil((np.abs(whole) / longest[arrays.bodies.held]).max()))
         while done < 1.0:
             goal = 1.0 if done + step > 1.0 - 1e-9 else done + step
             at = target if goal == 1.0 else begin + goal * whole
             if lead(at, rate, stable, self._y, arrays, TOLERANCE, counters):
-                done, step = goal, 2.0 * step
+                done, step, self._led = goal, 2.0 * step, arrays
                 continue
             counters[HALVED] += 1
             step *= 0.5

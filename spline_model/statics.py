@@ -73,6 +73,7 @@ def solve_statics(
     ``spline_model.confirmed``). Raises ConvergenceError with the converged part of the path, or with the
     best one where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
     """
+    finite_numbers("rotation", rotation, "rad")  # a pivot is always driven
     return solve_mechanism(
         pivot,
         rotation=rotation,
