@@ -134,7 +134,7 @@ class StripDesign:
         """
         n = basis.control_points
         if self.rise == 0.0:
-            return self.at(np.linspace(0.0, 1.0, n))
+            return self.at(np.arange(n) / (n - 1.0))
         start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
         along, half = (end - start) / self.chord, self.opening
         left, reach = np.array([-along[1], along[0]]), self.length / basis.degree

@@ -17,7 +17,7 @@ from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, ROOTS, build, check_names, root_length
 from spline_model.errors import InvalidParameter, require_kind
-from spline_model.rigid import propped
+from spline_model.rigid import loose, propped
 from spline_model.scene import Body, Effect, Scene, Strip
 
 
@@ -92,11 +92,10 @@ class Mechanism:
 
     def propped(self, turned: bool = False, body: str | None = None) -> Self:
         """The same with props where rigid motions are free beside a drive of a rotation, if it is turned."""
-        drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
-        known, made = len(drives), propped(self.with_effects(*drives))
-        if len(made.effects) == len(self.scene.effects) + known:
+        if not loose(self.scene):
             return self
-        props = made.effects[len(self.scene.effects) + known :]
+        drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
+        props = propped(self.with_effects(*drives)).effects[len(self.scene.effects) + len(drives) :]
         return replace(self, scene=self.with_effects(*props))
 
     def with_effects(self, *more: Effect) -> Scene:

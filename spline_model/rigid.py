@@ -35,7 +35,7 @@ class Unheld(InvalidParameter):
 def propped(scene: Scene) -> Scene:
     """The scene with props where rigid motions are free, behind all other constraints."""
     props: list[Constraint] = []
-    for part in _loose(scene):
+    for part in loose(scene):
         rows = [row for drive in scene.of(Constraint) for row in _rows(drive, part)]
         for body in part:
             for axis in range(3):
@@ -64,7 +64,7 @@ def require_unborne(system: System, reactions: Array) -> None:
             raise Unheld(f"load on body {name} {way}", load, expected)
 
 
-def _loose(scene: Scene) -> list[list[Body]]:
+def loose(scene: Scene) -> list[list[Body]]:
     """The bodies that strips connect with each other but not with the ground, part by part."""
     at = {name: name for name in (GROUND, *(body.name for body in scene.bodies))}
 
