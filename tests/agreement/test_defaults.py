@@ -18,8 +18,8 @@ QUICK, FEW, MANY = 6, 24, 200
 
 
 def solved(design, **how):
-    """The answer of the splines, with whatever control points."""
-    asked = put(design, SplineSettings(**{k: v for k, v in how.items() if k == "control_points"}))
+    """The answer of the splines, with whatever control points and segments."""
+    asked = put(design, SplineSettings(**{k: v for k, v in how.items() if k != "accuracy"}))
     accuracy = {"accuracy": how["accuracy"]} if "accuracy" in how else {}
     return Response.of(asked, asked.static_path(raise_on_failure=False, **accuracy))
 
@@ -58,7 +58,12 @@ def judged(seed, right_of=None):
     found = solved(design)
     if not found.converged or found.message or found.resolution:
         return None
-    good = solved(design, control_points=REFINED, accuracy=1.0)
+    refined = {"control_points": REFINED}
+    if (
+        segments := found.solution.segments
+    ) > 1:  # one curve with any number of points may be far from what segments resolve
+        refined = {"control_points": found.solution.control_points, "segments": 2 * segments}
+    good = solved(design, **refined, accuracy=1.0)
     if not good.converged or len(good.load_factor) != len(found.load_factor):
         return None
     mine, right = quantities(found), quantities(good) if right_of is None else right_of(design)
