@@ -77,7 +77,7 @@ def test_no_outcome_of_a_hard_case_is_a_slip_of_the_code():
         outcomes = Store().load_tables(study)["outcomes"]
         assert not outcomes["reason"].astype(str).str.contains(r"^\w*Error: ").any(), study
         wrong = outcomes[(outcomes["model"] == DEFAULT) & (outcomes["outcome"] == "wrong")]
-        assert ("The default is nowhere wrong" in said) and wrong.empty, study
+        assert ("No result with default settings was wrong" in said) and wrong.empty, study
 
 
 def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):
