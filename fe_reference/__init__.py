@@ -26,6 +26,8 @@ from .model import ELEMENTS, FREE, Body, Model, Section, Strip
 from .modes import Modes, natural_frequencies
 from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
+from .solid import SolidStrip
+from .solid_path import SolidPath, solve_solids
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 from .statics import solve_loads, solve_mechanism, solve_statics
 from .trajectory import Trajectory
@@ -45,6 +47,8 @@ __all__ = [
     "Modes",
     "PlateFactors",
     "Section",
+    "SolidPath",
+    "SolidStrip",
     "StaticSolution",
     "Status",
     "Strip",
@@ -59,6 +63,7 @@ __all__ = [
     "solve_mechanism",
     "solve_motion",
     "solve_release",
+    "solve_solids",
     "solve_statics",
     "strip_fields",
 ]
