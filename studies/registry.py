@@ -68,6 +68,7 @@ STUDIES: dict[str, str] = {
     "convergence/frequency": "studies.convergence.frequency",
     "convergence/error_estimate": "studies.convergence.error_estimate",
     "model_form/plate": "studies.published.problems:PLATE",
+    "model_form/solid_pivot": "studies.published.solid_pivot",
     "published/problems": "studies.published.problems",
     "stability/rotation": "studies.stability.families:ROTATION",
     "stability/slenderness": "studies.stability.families:SLENDERNESS",
