@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
-from spline_model.compile import System, compile_scene
+from spline_model.compile import System
 from spline_model.confirmed import Grid
 from spline_model.continuation.arc_length import follow_arc
 from spline_model.effects import DrivenDisplacement
@@ -23,14 +23,14 @@ from spline_model.errors import (
     require_count,
     require_kind,
 )
+from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
-from spline_model.path import Progress, follow
+from spline_model.path import Progress
 from spline_model.pivot import Pivot
-from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
-from spline_model.rigid import propped, require_unborne
+from spline_model.rigid import require_unborne
 from spline_model.scene import Scene
-from spline_model.solution import Later, Path
+from spline_model.solution import Path
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -118,29 +118,29 @@ def solve_mechanism(
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
+    require_choice("control", control, CONTROLS)
     laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
     rotations = np.zeros(0) if rotation is None else _rotations(rotation, increments)
 
     def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
         given = mechanism.on(*grid).propped(rotation is not None, body)
         if turned:
-            turn = Turn(
-                driven=partial(given.driven, body=body),
-                rotations=rotations,
-                increments=increments,
-                laps=laps,
-                progress=told,
-                branch=branch,
-                method=method,
-            )
-            together = order == TOGETHER or not rotations.any() or not has_loads(given.scene)
-            system, path = turn.together() if together else turn.loads_first()
+            legs = turning(partial(given.driven, body=body), rotations, increments, order)
+            system = legs[0].system
+            laps.lap("compile")
+            path = follow_legs(legs, branch, method, told)
         else:
             scene = given.driven(float(rotations[-1]), body) if rotations.size else given.scene
             system, path = solve_loads(
-                scene, increments=increments, end=end, control=control, branch=branch, progress=told
+                scene,
+                increments=increments,
+                end=end,
+                control=control,
+                branch=branch,
+                method=method,
+                progress=told,
             )
-            laps.lap("solve")
+        laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
@@ -156,6 +156,7 @@ def solve_loads(
     end: float = 1.0,
     control: str = "load",
     branch: str = "primary",
+    method: str = "condensed",
     progress: Progress | None = None,
 ) -> tuple[System, Path]:
     """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
@@ -169,11 +170,12 @@ def solve_loads(
     require_choice("control", control, CONTROLS)
     if not math.isfinite(end):
         raise InvalidParameter("end", end, "a finite load factor")
-    system = compile_scene(scene)
+    leg = growing(scene, increments, end)
     if control == "arc-length":
-        return system, follow_arc(system, end, increments=increments, branch=branch, progress=progress)
-    factors = np.linspace(0.0, end, increments + 1)[1:]
-    return system, follow(system, list(factors), progress, branch=branch)
+        steps = len(leg.factors)
+        path = follow_arc(leg.system, end, increments=steps, branch=branch, progress=progress, method=method)
+        return leg.system, path
+    return leg.system, follow_legs([leg], branch, method, progress)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int) -> Array:
@@ -201,7 +203,7 @@ def static_state(
     ``solve_mechanism``.
     """
     mechanism = mechanism.propped(rotation is not None, body)
-    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
+    z = settle(mechanism, rotation, increments, body, starts=starts).states[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
@@ -220,15 +222,15 @@ def settle(
     body: str | None = None,
     *,
     starts: bool = False,
-) -> Later:
-    """The unknowns of the path to that state, with all multipliers."""
-    loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
-    if rotation is not None or loaded:
-        return solve_mechanism(
-            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
-        ).unknowns
-    system = compile_scene(propped(mechanism.scene))
-    path = follow(system, [])
-    if not starts:
-        require_unborne(system, path.reactions)
-    return path.unknowns
+) -> StaticSolution:
+    """The path to that state, with the mechanism's own control points."""
+    grid = mechanism.design.discretisation
+    grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(DrivenDisplacement))
+    return solve_mechanism(
+        mechanism.on(grid.segments, grid.points),
+        rotation=rotation,
+        increments=increments if grown else 1,
+        body=body,
+        starts=starts,
+        check=grown,
+    )
