@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from spline_model.accuracy import answered
 from spline_model.compile import System
 from spline_model.confirmed import Grid
-from spline_model.continuation.arc_length import follow_arc
 from spline_model.effects import DrivenDisplacement
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import (
@@ -26,7 +25,7 @@ from spline_model.errors import (
 from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
-from spline_model.path import Progress
+from spline_model.path import Progress, follow_arc
 from spline_model.pivot import Pivot
 from spline_model.rigid import require_unborne
 from spline_model.scene import Scene
