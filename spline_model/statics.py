@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
@@ -11,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
-from spline_model.compile import System
 from spline_model.confirmed import Grid
 from spline_model.effects import DrivenDisplacement
 from spline_model.effects.base import Constraint, Load
@@ -20,7 +18,7 @@ from spline_model.errors import (
     finite_numbers,
     require_choice,
     require_count,
-    require_kind,
+    require_finite,
 )
 from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -28,8 +26,6 @@ from spline_model.newton import Laps
 from spline_model.path import Progress, follow_arc
 from spline_model.pivot import Pivot
 from spline_model.rigid import require_unborne
-from spline_model.scene import Scene
-from spline_model.solution import Path
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -107,8 +103,9 @@ def solve_mechanism(
     """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. rotation,
-    order and method as in ``solve_statics``; with control "arc-length" or another ``end`` loads and the last
-    rotation grow together. control, branch and end as in ``solve_loads``;
+    order, method and branch as in ``solve_statics``; with control "arc-length" or another ``end``, the last
+    load factor, loads and the last rotation grow together. control: "load" prescribes the load factors;
+    "arc-length" follows the path through its limit points, with ``increments`` for the first step only.
     accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end. starts:
     whether a motion starts at the end, until which rigid motions that nothing holds are held, whatever that
     takes; else a load along one raises InvalidParameter.
@@ -118,6 +115,7 @@ def solve_mechanism(
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
     require_choice("control", control, CONTROLS)
+    require_finite("end", end, "load factor")
     laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
     rotations = np.zeros(0) if rotation is None else _rotations(rotation, increments)
 
@@ -125,20 +123,15 @@ def solve_mechanism(
         given = mechanism.on(*grid).propped(rotation is not None, body)
         if turned:
             legs = turning(partial(given.driven, body=body), rotations, increments, order)
-            system = legs[0].system
-            laps.lap("compile")
-            path = follow_legs(legs, branch, method, told)
         else:
             scene = given.driven(float(rotations[-1]), body) if rotations.size else given.scene
-            system, path = solve_loads(
-                scene,
-                increments=increments,
-                end=end,
-                control=control,
-                branch=branch,
-                method=method,
-                progress=told,
-            )
+            legs = [growing(scene, increments, end)]
+        system = legs[0].system
+        laps.lap("compile")
+        if control == "arc-length":
+            path = follow_arc(system, end, increments=increments, branch=branch, progress=told, method=method)
+        else:
+            path = follow_legs(legs, branch, method, told)
         laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
@@ -146,35 +139,6 @@ def solve_mechanism(
 
     solution = answered(mechanism.design, accuracy, solve, progress, rotations.size or increments, check)
     return solution.checked(raise_on_failure)
-
-
-def solve_loads(
-    scene: Scene,
-    *,
-    increments: int = 20,
-    end: float = 1.0,
-    control: str = "load",
-    branch: str = "primary",
-    method: str = "condensed",
-    progress: Progress | None = None,
-) -> tuple[System, Path]:
-    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
-
-    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
-    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
-    bifurcation.
-    """
-    require_kind("scene", scene, Scene, "a Scene, such as the scene of a mechanism")
-    require_count("increments", increments, 1)
-    require_choice("control", control, CONTROLS)
-    if not math.isfinite(end):
-        raise InvalidParameter("end", end, "a finite load factor")
-    leg = growing(scene, increments, end)
-    if control == "arc-length":
-        steps = len(leg.factors)
-        path = follow_arc(leg.system, end, increments=steps, branch=branch, progress=progress, method=method)
-        return leg.system, path
-    return leg.system, follow_legs([leg], branch, method, progress)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int) -> Array:
