@@ -39,8 +39,7 @@ class Leg(NamedTuple):
 
 def has_loads(scene: Scene) -> bool:
     """Whether loads act that may come on first: beside a driven displacement all grow together."""
-    led = any(isinstance(effect, DrivenDisplacement) for effect in scene.effects)
-    return not led and any(isinstance(effect, Load) for effect in scene.effects)
+    return bool(scene.of(Load)) and not scene.of(DrivenDisplacement)
 
 
 def steady(scene: Scene) -> Scene:
@@ -72,7 +71,7 @@ def turning(driven: Callable[[float], Scene], rotations: Array, increments: int,
         aims = (rotations / largest).tolist()
         return [first, Leg(compile_scene(steady(whole)), aims, steady=first.system.loads)]
     system, factors = compile_scene(whole), rotations / largest
-    if not system.loads.value.any() and np.count_nonzero(system.drives.target) < 2:
+    if not system.loads.value.any() and sum(map(bool, system.drives.target.tolist())) < 2:
         return [Leg(system, factors.tolist())]
     return list(_sides(system, compile_scene(driven(-largest)), factors))
 

@@ -51,6 +51,8 @@ def require_unborne(system: System, reactions: Array) -> None:
     scene, drives = system.scene, system.drives
     held = zip(scene.of(Constraint), scene.layout.multipliers, strict=True)
     props = {row for each, (row, _) in held if getattr(each, "prop", False)}
+    if not props:
+        return
     largest = float(np.abs(system.loads.value).max(initial=0.0))
     for d, row in enumerate(drives.row.tolist()):
         most = float(np.abs(reactions[:, d]).max(initial=0.0))

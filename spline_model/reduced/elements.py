@@ -152,7 +152,7 @@ class Elements(Followed):
         count.residual_evaluations += evaluations + int(answer.counters[CONFIRMED])
         count.tangent_evaluations += evaluations
         count.factorisations += evaluations
-        return answer.rows(slice(done))
+        return answer.rows(slice(0, done))
 
     @property
     def energy(self) -> float:
