@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from spline_model.sequential_impulse import impulse_solver as impulse_solver
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
-    from spline_model.statics import solve_loads as solve_loads
     from spline_model.statics import solve_mechanism as solve_mechanism
     from spline_model.statics import solve_statics as solve_statics
 
@@ -64,7 +63,6 @@ _HOMES = {
     "plate_factors": "effects.plate",
     "sensitivities": "sensitivity.solve",
     "solve_impulses": "sequential_impulse",
-    "solve_loads": "statics",
     "solve_many": "batch",
     "solve_mechanism": "statics",
     "solve_motion": "dynamics",

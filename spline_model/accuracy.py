@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from spline_model.confirmed import (
     MORE,
     Grid,
-    Trials,
+    Outcome,
     confirmed,
     distances,
     ends_alike,
@@ -187,20 +187,28 @@ def answered(
     of more.
     """
     chosen, grid = wanted(accuracy, design), design.discretisation
+    own = grid.segments, grid.points
+    if chosen is None and not check:
+        return solve(own, progress, False)
+
+    @cache
+    def outcome(trial: Grid) -> StaticSolution | Unsettled:
+        try:
+            return solve(trial, progress if chosen is None and trial == own else None, chosen is not None)
+        except Unsettled as error:
+            return error
+
     if chosen is None:
-        own = (grid.segments, grid.points)
-        if not check:
-            return solve(own, progress, False)
-        return confirmed(Trials(lambda trial: solve(trial, progress if trial == own else None, False)), own)
-    least = DOUBTFUL if accuracy is None else None
-    trials = Trials(lambda trial: solve(trial, None, True))
-    solution = _solve_accurately(design, chosen, trials, least)
+        return confirmed(outcome, own)
+    solution = _solve_accurately(design, chosen, outcome, DOUBTFUL if accuracy is None else None)
     if progress is not None:
         progress(increments, increments)
     return solution
 
 
-def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: float | None) -> StaticSolution:
+def _solve_accurately(
+    design: Design, accuracy: float, solved: Outcome, least: float | None
+) -> StaticSolution:
     """The path with as many control points as the accuracy takes.
 
     An accuracy that is not reached is the status
@@ -208,9 +216,9 @@ def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: fl
     tells it else. A path that stops at the same thing with any number is compared up to there and returned
     with its reason. Where no two numbers lead to the same end, it is not resolved.
     """
-    outcome = search(design.discretisation, accuracy, partial(_attempt, design, trials))
+    outcome = search(design.discretisation, accuracy, partial(_attempt, design, solved))
     if outcome.found is None:
-        return confirmed(trials, outcome.trials[-1])
+        return confirmed(solved, outcome.trials[-1])
     answer, errors = outcome.found
     segments, points = outcome.best
     estimate = ErrorEstimate(
@@ -225,10 +233,10 @@ def _solve_accurately(design: Design, accuracy: float, trials: Trials, least: fl
 
 
 def _attempt(
-    design: Design, trials: Trials, fewer: Grid, more: Grid
+    design: Design, solved: Outcome, fewer: Grid, more: Grid
 ) -> tuple[float, tuple[StaticSolution, dict[str, float]]] | None:
     """The largest error of an answer, itself with all errors; None where a finer one does not end alike."""
-    coarse, fine = trials.outcome(fewer), trials.outcome(more)
+    coarse, fine = solved(fewer), solved(more)
     if not ends_alike(coarse, fine):
         return None
     if isinstance(coarse, Unsettled):

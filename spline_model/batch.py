@@ -18,8 +18,8 @@ from spline_model.effects import MixedStretching
 from spline_model.effects.elastic import CLAMPED_WIDTH
 from spline_model.effects.registry import ROOTS
 from spline_model.errors import InvalidParameter, require_choice, require_count
+from spline_model.legs import LOADS_FIRST, ORDERS
 from spline_model.mechanism import Mechanism
-from spline_model.proportional import LOADS_FIRST, ORDERS
 from spline_model.reduced.designs import Given, one_each, pivots, varied
 
 Array = NDArray[np.float64]

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.errors import InvalidParameter
+from spline_model.legs import has_loads, steady
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.proportional import has_loads, steady
 from spline_model.reduced.arrays import Answer, Route
 from spline_model.reduced.designs import Given, designs_of
 from spline_model.reduced.many import Designs, Share, Stations, follow_all

@@ -21,6 +21,8 @@ from spline_model.static_answers import StaticSolution
 Array = NDArray[np.float64]
 Grid = tuple[int, int]
 """Segments of a strip and control points of each."""
+Outcome = Callable[[Grid], StaticSolution | Unsettled]
+"""The answer of a discretisation, or why there is none under weight and pre-strain; each is solved once."""
 
 MORE = 3
 """Control points that a segment gets more for the estimate. With two more the estimated error of
@@ -45,23 +47,6 @@ NO_STIFFNESS = 1e-3
 that part: it may pass through zero."""
 SAME_END = 1e-3
 """Difference of load factors, and of rotations [rad], at which paths stop that stop at the same thing."""
-
-
-class Trials:
-    """Answers by discretisation, each solved once."""
-
-    def __init__(self, solve: Callable[[Grid], StaticSolution]) -> None:
-        self.solve = solve
-        self.known: dict[Grid, StaticSolution | Unsettled] = {}
-
-    def outcome(self, grid: Grid) -> StaticSolution | Unsettled:
-        """The answer, or why there is none under weight and pre-strain."""
-        if grid not in self.known:
-            try:
-                self.known[grid] = self.solve(grid)
-            except Unsettled as error:
-                self.known[grid] = error
-        return self.known[grid]
 
 
 def finer(segments: int, points: int) -> Grid:
@@ -97,12 +82,12 @@ def _at_limit(path: StaticSolution) -> bool:
     return path.status is not Status.CONVERGED and bool(points) and points[-1].inertia > path.inertia[-1]
 
 
-def confirmed(trials: Trials, grid: Grid) -> StaticSolution:
+def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
     """The answer of a discretisation; what is critical on it, or stops it, only as a finer one has it too.
 
     Raises Unsettled where there is no equilibrium under weight and pre-strain.
     """
-    answer = trials.outcome(grid)
+    answer = outcome(grid)
     if (
         isinstance(answer, StaticSolution)
         and answer.status is Status.CONVERGED
@@ -110,7 +95,7 @@ def confirmed(trials: Trials, grid: Grid) -> StaticSolution:
     ):
         return answer
     more = finer(*grid)
-    better = trials.outcome(more)
+    better = outcome(more)
     same = ends_alike(answer, better)
     if isinstance(answer, Unsettled):
         if same:

@@ -234,7 +234,7 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[t
             return
         chosen = mechanism.on(segments, points).in_motion()
         try:
-            held = settle(chosen.at_start(), start, body=body, starts=True)
+            held = settle(chosen.at_start(), start, body=body, starts=True).unknowns
         except ConvergenceError as error:
             failed = failed or error
             continue

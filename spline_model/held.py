@@ -12,18 +12,18 @@ from spline_model.compile import System, compile_scene
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
-from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, Arrays
-from spline_model.reduced.equilibrium import HALVED, ITERATIONS, bear, lead
+from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, Answer, Arrays, Route
+from spline_model.reduced.elements import ALONE
+from spline_model.reduced.equilibrium import ITERATIONS, bear
+from spline_model.reduced.many import follow_all
 from spline_model.reduced.model import Reduced, at_rest, reduced
-from spline_model.reduced.path import SMALLEST_STEP
+from spline_model.reduced.preload import Preload
 from spline_model.reduced.states import unknowns_of
 
 Array = NDArray[np.float64]
 
-MOST_WORK = 300
-"""Newton iterations of one call before it is given up."""
 LONGEST_TURN, LONGEST_SHIFT = 0.5, 0.15
-"""Rotation [rad] and shift [lengths] of the body in one part of the way, which is halved where it fails."""
+"""Rotation [rad] and shift [lengths] of the body in one part of the way."""
 LEAST_HELD_COMPLIANCE = 1e-9
 """Axial compliance in L^2/EI below which a strip cannot follow a pose (beyond a slenderness of 9000)."""
 
@@ -66,12 +66,11 @@ class HeldPivot:
         self.model = model
         self._arrays = model.arrays()
         self._y = at_rest(model)
-        self._rest = self._y.copy()
+        self._rest, self._preload = self._y.copy(), Preload.of(model)
         every = np.arange(3, dtype=np.int64)
         grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
         self._grasped = grasped.arrays()
         self.pose = self._y[:3] * self._unit
-        self._led: Arrays | None = None  # by what it came here
         self.reset()
 
     @property
@@ -89,61 +88,58 @@ class HeldPivot:
 
     def restore(self, unknowns: Array) -> HeldState:
         """Back to a state that ``unknowns`` gave."""
-        self.pose[:], self._y[:], self._led = unknowns[:3], unknowns[3:], None
-        return self._state(1.0, np.zeros(4, dtype=np.int64))
+        self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
+        return self._state(1.0, 0)
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
         """Hold the body's centre at (x, y) [m] and its rotation [rad]."""
         target = np.array([x, y, rotation])
         if not np.isfinite(target).all():
             raise InvalidParameter("pose", [x, y, rotation], "finite numbers [m, m, rad]")
-        reached, counters = self._lead(self._grasped, target / self._unit, stable=True)
+        reached, iterations = self._lead(self._grasped, target / self._unit, stable=True)
         if reached == 1.0:
             self.pose[:] = target
-        return self._state(reached, counters)
+        return self._state(reached, iterations)
 
     def turn(self, rotation: float) -> HeldState:
         """Hold the rotation [rad] only; the body's centre goes where no force is needed."""
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
-        reached, counters = self._lead(self._arrays, np.array([rotation]), stable=False)
+        reached, iterations = self._lead(self._arrays, np.array([rotation]), stable=False)
         self.pose[:] = self._y[:3] * self._unit
-        return self._state(reached, counters)
+        return self._state(reached, iterations)
 
-    def _lead(self, arrays: Arrays, target: Array, *, stable: bool) -> tuple[float, NDArray[np.int64]]:
-        """Lead the held coordinates to ``target`` (D,), in parts; the fraction of the way that was solved, of
-        which nothing is kept but the whole, and the work."""
-        counters, rate, start = np.zeros(4, dtype=np.int64), np.empty(len(target)), self._y.copy()
-        begin = start[arrays.bodies.held]
-        whole, longest = target - begin, np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])
-        done = float(self._led is arrays and not whole.any())
-        step = 1.0 / max(1, math.ceil((np.abs(whole) / longest[arrays.bodies.held]).max()))
-        while done < 1.0:
-            goal = 1.0 if done + step > 1.0 - 1e-9 else done + step
-            at = target if goal == 1.0 else begin + goal * whole
-            if lead(at, rate, stable, self._y, arrays, TOLERANCE, counters):
-                done, step, self._led = goal, 2.0 * step, arrays
-                continue
-            counters[HALVED] += 1
-            step *= 0.5
-            if step < SMALLEST_STEP or counters[ITERATIONS] > MOST_WORK:
-                self._y[:] = start
-                break
-        return done, counters
+    def _lead(self, arrays: Arrays, target: Array, *, stable: bool) -> tuple[float, int]:
+        """Lead the held coordinates to ``target`` (D,) along a path of equilibria; the fraction of the way
+        that was solved, of which nothing is kept but the whole, and Newton's iterations."""
+        held = arrays.bodies.held
+        whole, longest = target - self._y[held], np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])[held]
+        parts = max(1, math.ceil((np.abs(whole) / longest).max()))
+        route = Route(np.arange(parts + 1.0) / parts, self._y[held], whole, 0.0, passes=not stable)
+        answer = Answer.empty(parts + 1, len(self._y), len(held))
+        given = route, False, self._preload, arrays, TOLERANCE, answer
+        done = follow_all(ALONE, self._y, *given)
+        if stable and answer.inertia[:done].any():
+            done = 0
+        if done > parts:
+            self._y[:] = answer.y[-1]
+            self._y[held] = target
+        return max(done - 1, 0) / parts, int(answer.counters[ITERATIONS])
 
-    def _state(self, reached: float, counters: NDArray[np.int64]) -> HeldState:
+    def _state(self, reached: float, iterations: int) -> HeldState:
         model, space = self.model, self._arrays.space
         bear(self._y, self._arrays)
-        stiffness, units = np.triu(space.tangent), 1.0 / self._unit
+        units, tangent = 1.0 / self._unit, space.tangent + space.tangent.T  # of an upper triangle
+        tangent.flat[::4] *= 0.5
         return HeldState(
             solved=reached == 1.0,
             reached=reached,
             pose=self.pose.copy(),
             force=space.vectors[FORCE, :3] * units * model.energy,
-            tangent=(stiffness + np.triu(stiffness, 1).T) * np.outer(units, units) * model.energy,
+            tangent=tangent * (units[:, None] * units * model.energy),
             bending_energy=float(space.out[BENDING]) * model.energy,
             axial_energy=float(space.out[AXIAL]) * model.energy,
-            iterations=int(counters[ITERATIONS]),
+            iterations=iterations,
         )
 
     @property

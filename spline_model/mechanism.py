@@ -17,7 +17,7 @@ from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, ROOTS, build, check_names, root_length
 from spline_model.errors import InvalidParameter, require_kind
-from spline_model.rigid import loose, propped
+from spline_model.rigid import loose, props_of
 from spline_model.scene import Body, Effect, Scene, Strip
 
 
@@ -95,8 +95,7 @@ class Mechanism:
         if not loose(self.scene):
             return self
         drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
-        props = propped(self.with_effects(*drives)).effects[len(self.scene.effects) + len(drives) :]
-        return replace(self, scene=self.with_effects(*props))
+        return replace(self, scene=self.with_effects(*props_of(self.with_effects(*drives))))
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""

@@ -20,7 +20,7 @@ from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.pivot import Pivot
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
 from spline_model.reduced.states import coordinates_by, whole_tangents
-from spline_model.rigid import Unheld, propped
+from spline_model.rigid import Unheld, props_of
 from spline_model.sections import STATIONS, by_piece
 from spline_model.solution import FrequencyEstimate
 from spline_model.statics import static_state
@@ -204,7 +204,7 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
     inertia = by.T @ mass @ by
     free = _without_massless(free, stiffness, inertia)
-    rigid = len(propped(system.scene).effects) - len(system.scene.effects)
+    rigid = len(props_of(system.scene))
     values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)

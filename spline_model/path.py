@@ -1,8 +1,12 @@
-"""An equilibrium path through given load factors."""
+"""An equilibrium path through given load factors, or in its arc length.
+
+It begins at rest, weight and pre-strain grown from nothing, or at a state that is given.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -10,20 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.followed import Point
-from spline_model.continuation.follower import Follower, equilibrium, first_point
-from spline_model.continuation.point import stand
+from spline_model.continuation.followed import Followed, Point
+from spline_model.continuation.follower import LARGEST_STEP, ArcFollower, Follower
+from spline_model.continuation.point import reached, stand
 from spline_model.continuation.watch import BRANCHES, Watch
-from spline_model.errors import InvalidParameter, require_choice
+from spline_model.errors import InvalidParameter, Unsettled, require_choice
+from spline_model.newton import Newton, solve
 from spline_model.reduced.elements import Elements, followed
-from spline_model.reduced.model import Reduced, at_rest
-from spline_model.reduced.states import by_state
-from spline_model.solution import Later, Path, joined
+from spline_model.reduced.model import at_rest
+from spline_model.solution import Later, Path
 
 Array = NDArray[np.float64]
 
 Progress = Callable[[int, int], None]
 """What is called with the increments done and the increments in all."""
+MOST_STEPS = 2000
+"""Steps of an arc length."""
 
 
 def follow(
@@ -56,23 +62,53 @@ def follow(
     return track.path(message)
 
 
+def follow_arc(
+    system: System,
+    end: float = 1.0,
+    *,
+    increments: int = 20,
+    branch: str = "primary",
+    progress: Progress | None = None,
+    method: str = "condensed",
+) -> Path:
+    """The path from rest until its load factor is ``end``.
+
+    The first step changes the load factor by 1 / increments of the way; later ones follow
+    the ease of the path. Every accepted state is in the result. The load factor may go down
+    and up again; ``end`` is where it is first reached. branch and method as in ``follow``.
+    """
+    require_choice("branch", branch, BRANCHES)
+    watch = Watch(followed(system, method), leaves=branch == "follow", by_load=False)
+    point, norms = first_point(watch)
+    way = abs(end - point.load_factor) / increments
+    follower, message = ArcFollower(watch, point, norms, end, way), ""
+    follower.first = follower.step = min(LARGEST_STEP, follower.step)
+    for taken in range(MOST_STEPS):
+        if follower.here.load_factor == end or message:
+            break
+        message = follower.go_on()
+        if progress is not None:
+            progress(taken + 1, MOST_STEPS)
+    else:
+        message = f"load factor {end:g} is not reached in {MOST_STEPS} steps"
+    rows = watch.work.rows(follower.points, follower.done[: len(follower.points)])
+    return _path(watch, rows, message, follower.history)
+
+
 class _Track:
     """The states of a path: on the elements compiled while nothing happens, in steps where something does.
 
-    pieces: rows by state, and their z (S, N); waiting: points that are not rows yet, with ``done`` of
-    each; last: model and y (Y,) of the last state, if compiled; given: unknowns (N,) of the first state,
-    where they were given and are an equilibrium.
+    pieces: rows by state; follower: of steps, None where the last states were compiled; given: unknowns (N,)
+    of the first state, where they were given and are an equilibrium.
     """
 
     def __init__(self, watch: Watch, factors: Array, progress: Progress | None) -> None:
         self.watch, self.work, self.factors, self.progress = watch, watch.work, factors, progress
-        self.pieces: list[tuple[dict[str, Any], Later]] = []
-        self.waiting: list[tuple[Point, float]] = []
+        self.pieces: list[dict[str, Any]] = []
         self.states, self.done = 0, 0.0
         self.follower: Follower | None = None
         self.history: list[tuple[float, ...]] = []
         self.given: Array | None = None
-        self.last: tuple[Reduced, Array] | None = None
 
     def begin(self, start: Array | None) -> None:
         """The first state, and on the elements all those up to where something happens."""
@@ -89,7 +125,7 @@ class _Track:
         if self.states == 0:
             point, norms = first_point(self.watch, start)
             self.follower = Follower(self.watch, point, norms)
-            self._keep([point], [0.0])
+            self._keep(self.work.rows([point], [0.0]), 0.0)
             if isinstance(self.work, Elements):
                 self._run(self.work, self.work.y(point.z))
 
@@ -99,7 +135,9 @@ class _Track:
             self.follower = Follower(self.watch, self._point(self.states - 1), ())
         follower, known, before = self.follower, len(self.follower.points), self.done - self.follower.done[-1]
         message = follower.advance(float(self.factors[self.states]))
-        self._keep(follower.points[known:], [before + done for done in follower.done[known:]])
+        if more := follower.points[known:]:
+            done = [before + each for each in follower.done[known:]]
+            self._keep(self.work.rows(more, done), done[-1])
         if message:
             while self.states > 1 and not self.watch.is_resolved(self._point(self.states - 1)):
                 self.states -= 1
@@ -117,50 +155,31 @@ class _Track:
         count = len(answer.y)
         if count <= known:
             return
-        self._flush()
         answer = answer.rows(slice(known, count))
-        rows = by_state(work.model, factors[known:count], answer._replace(done=answer.done + self.done))
-        self.pieces.append((rows, Later(partial(work.z, answer.y, answer.reaction))))
-        self.done += float(answer.done[-1])
-        self.last = work.model, answer.y[-1]
+        answer = answer._replace(done=answer.done + self.done)
+        self._keep(work.compiled_rows(factors[known:count], answer), float(answer.done[-1]))
         work.counters.increments += count - 1
-        self._count(count - known)
         if self.follower is not None:
             self.history += self.follower.history
             self.follower = None
 
-    def _keep(self, points: Sequence[Point], done: Sequence[float]) -> None:
-        self.waiting += zip(points, done, strict=True)
-        self.last = None
-        self.done = done[-1] if done else self.done
-        self._count(len(points))
-
-    def _count(self, more: int) -> None:
-        """More states, those of the increments told to the progress."""
+    def _keep(self, rows: dict[str, Any], done: float) -> None:
+        """More states, those of the increments told to the progress; done: work up to the last."""
+        self.pieces.append(rows)
+        self.done, before = done, self.states
+        self.states += len(rows["done"])
         if self.progress is not None:
-            for state in range(max(self.states, 1), self.states + more):
+            for state in range(max(before, 1), self.states):
                 self.progress(state, len(self.factors) - 1)
-        self.states += more
-
-    def _flush(self) -> None:
-        if self.waiting:
-            points, done = zip(*self.waiting, strict=True)
-            self.pieces.append((self.work.rows(points, done), Later(np.array([p.z for p in points]).copy)))
-            self.waiting.clear()
-
-    def _z(self) -> Array:
-        """z of all states (S, N)."""
-        self._flush()
-        return joined([z for _, z in self.pieces])
 
     def _rows(self, name: str) -> Array:
-        """What a ``Path`` has by state, of that name."""
-        parts = [rows[name] for rows, _ in self.pieces]
+        """What is known by state, of that name."""
+        parts = [rows[name] for rows in self.pieces]
         return (parts[0] if len(parts) == 1 else np.concatenate(parts))[: self.states]
 
     def _point(self, state: int) -> Point:
         """A state as a point to go on from."""
-        z, factor = self._z()[state], float(self._rows("load_factor")[state])
+        z, factor = self._rows("z")[state], float(self._rows("load_factor")[state])
         try:
             return stand(self.work, z, factor, self.work.evaluate(z, factor))
         except np.linalg.LinAlgError as error:
@@ -168,22 +187,93 @@ class _Track:
 
     def path(self, message: str) -> Path:
         """What was followed, told what it is watched for."""
-        self._flush()
-        names = self.pieces[0][0].keys() - {"unknowns"}
-        rows: dict[str, Any] = {name: self._rows(name) for name in names}
-        pieces = [rows["unknowns"] for rows, _ in self.pieces]
-        rows["unknowns"] = Later(partial(_states, pieces, self.states, self.given), self.last)
-        if self.given is not None:
-            system = self.work.system
-            rows["reactions"][0] = self.given[system.drives.row]
-            rows["poses"][0] = self.given[system.layout.poses]
+        rows = {name: self._rows(name) for name in self.pieces[0]}
         history = [*self.history, *([] if self.follower is None else self.follower.history)]
-        return self.watch.path(rows, message, [norms for norms in history if norms])
+        return _path(self.watch, rows, message, [norms for norms in history if norms], self.given)
 
 
-def _states(pieces: Sequence[Later], count: int, given: Array | None) -> Array:
-    """The unknowns of the first ``count`` states of several pieces, the very first as it was given."""
-    states = joined(pieces)[:count]
+def _path(
+    watch: Watch,
+    rows: dict[str, Any],
+    message: str,
+    history: Sequence[tuple[float, ...]],
+    given: Array | None = None,
+) -> Path:
+    """The result from rows by state, and why it ended early; given: unknowns (N,) of the first state."""
+    work, z = watch.work, rows.pop("z")
+    last = (work.model, work.y(z[-1])) if isinstance(work, Elements) else None
+    rows["unknowns"] = Later(partial(_unknowns, work, z, given), last)
+    if given is not None:
+        rows["reactions"][0] = given[work.system.drives.row]
+        rows["poses"][0] = given[work.system.layout.poses]
+    return watch.path(rows, message, history)
+
+
+def _unknowns(work: Followed, z: Array, given: Array | None) -> Array:
+    """The scene's unknowns (S, N) of all states, the first one as it was given."""
+    states = work.unknowns(z)
     if given is not None:
         states[0] = given
     return states
+
+
+def equilibrium(work: Followed, unknowns: Array) -> Newton:
+    """The equilibrium at load factor 0 that Newton finds from the scene's unknowns, if its checks pass.
+
+    Raises InvalidParameter if they lead to no such state.
+    """
+    newton = solve(work, work.state(unknowns), 0.0)
+    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, 0.0)
+    if reason:
+        raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
+    return newton
+
+
+def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...]]:
+    """The point where a path begins, and the residual norms: rest, or the unknowns that are given.
+
+    Raises InvalidParameter where there is none, or where nothing holds the scene.
+    """
+    work = watch.work
+    newton = _settle(watch) if start is None else equilibrium(work, start)
+    return _held(work, newton), newton.norms
+
+
+def _held(work: Followed, newton: Newton) -> Point:
+    """The point where Newton ended; refused where nothing holds the scene."""
+    point, reason = reached(work, newton)
+    if point is None:
+        raise InvalidParameter("scene", reason, "strips that can move, but not freely")
+    return point
+
+
+def _settle(watch: Watch) -> Newton:
+    """Equilibrium at load factor 0: weight and pre-strain grow from nothing, watched like any path.
+
+    Raises InvalidParameter where they cannot grow to their full size.
+    """
+    work = watch.work
+    z = _grown(watch) if work.system.is_preloaded else work.state(work.system.rest)
+    newton = solve(work, z, 0.0)
+    if newton.reason:
+        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
+    return newton
+
+
+def _grown(watch: Watch) -> Array:
+    """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
+    growing = replace(watch.work, grows=True)
+    own = Watch(growing, leaves=watch.leaves, by_load=True)
+    newton = solve(growing, growing.state(growing.system.rest), 0.0)
+    begin = _held(growing, newton)
+    follower = Follower(own, begin, newton.norms)
+    message = follower.advance(1.0)
+    shared = (
+        replace(each, load_factor=0.0, rotation=0.0 * each.rotation, preload=each.load_factor)
+        for each in own.critical
+    )
+    watch.settled = tuple(shared)
+    if message:
+        raise Unsettled(message, watch.settled)
+    watch.leaves, watch.before = own.leaves, own.remark()
+    return follower.here.z

@@ -32,8 +32,8 @@ class Unheld(InvalidParameter):
     """A rigid motion that nothing holds, and a load along it: there is no equilibrium."""
 
 
-def propped(scene: Scene) -> Scene:
-    """The scene with props where rigid motions are free, behind all other constraints."""
+def props_of(scene: Scene) -> list[Constraint]:
+    """Props where rigid motions are free, to stand behind all other constraints."""
     props: list[Constraint] = []
     for part in loose(scene):
         rows = [row for drive in scene.of(Constraint) for row in _rows(drive, part)]
@@ -43,7 +43,7 @@ def propped(scene: Scene) -> Scene:
                 if _rank([*rows, row]) > _rank(rows):
                     rows.append(row)
                     props.append(_prop(body.name, axis))
-    return scene.with_effects(*props) if props else scene
+    return props
 
 
 def require_unborne(system: System, reactions: Array) -> None:
@@ -51,6 +51,8 @@ def require_unborne(system: System, reactions: Array) -> None:
     scene, drives = system.scene, system.drives
     held = zip(scene.of(Constraint), scene.layout.multipliers, strict=True)
     props = {row for each, (row, _) in held if getattr(each, "prop", False)}
+    if not props:
+        return
     largest = float(np.abs(system.loads.value).max(initial=0.0))
     for d, row in enumerate(drives.row.tolist()):
         most = float(np.abs(reactions[:, d]).max(initial=0.0))

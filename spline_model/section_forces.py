@@ -55,12 +55,12 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     residual. N and M follow from the strains and show the error of too few control points.
     """
     require_mechanism(mechanism)
-    return _static_fields(mechanism, mechanism.scene, states)
+    return _fields(mechanism, mechanism.scene, states, moving=False)
 
 
 def mode_fields(mechanism: Mechanism, states: Array) -> StripFields:
     """Fields of the static states (S, N) that natural modes are about: without what lets go in a motion."""
-    return _static_fields(mechanism, mechanism.released(), states)
+    return _fields(mechanism, mechanism.released(), states, moving=False)
 
 
 def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
@@ -73,14 +73,7 @@ def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
     keep none; of inextensible strips those that the states hold.
     """
     require_mechanism(mechanism)
-    system = compile_scene(mechanism.released())
-    known = _with_axial_forces(system, _known(system, states))
-    return _fields(mechanism, system, known, moving=True)
-
-
-def _static_fields(mechanism: Mechanism, scene: Scene, states: Array) -> StripFields:
-    system = compile_scene(scene)
-    return _fields(mechanism, system, _known(system, states), moving=False)
+    return _fields(mechanism, mechanism.released(), states, moving=True)
 
 
 def _known(system: System, states: Array) -> Array:
@@ -91,8 +84,12 @@ def _known(system: System, states: Array) -> Array:
     return found[:, :size]
 
 
-def _fields(mechanism: Mechanism, system: System, states: Array, *, moving: bool) -> StripFields:
-    scene, layout, along = system.scene, system.layout, sections(system, states, STATIONS)
+def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) -> StripFields:
+    system = compile_scene(scene)
+    states = _known(system, states)
+    if moving:
+        states = _with_axial_forces(system, states)
+    layout, along = system.layout, sections(system, states, STATIONS)
     (rest_shape, rest), arc = _at_rest(scene)
     tangent, bend = (_curve(system, states, order) for order in (1, 2))
     speed, rest_speed = np.linalg.norm(tangent, axis=-1), np.linalg.norm(rest, axis=-1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
@@ -70,9 +70,10 @@ class StaticSolution(Tabulated, Path):
     ) -> Self:
         """The answer of a mechanism with these effects from its path; balanced: see ``Sections``; asked: the
         body that was asked for."""
-        scene, known = system.scene, vars(path)
+        scene, known = system.scene, dict(vars(path))
         if scene.of(DrivenRotation):
-            known = known | {"load_factor": np.abs(path.load_factor)}
+            points = (replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
+            known |= {"load_factor": np.abs(path.load_factor), "critical_points": tuple(points)}
         return cls(
             **known,
             system=system,

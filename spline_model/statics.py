@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
@@ -11,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
-from spline_model.compile import System, compile_scene
 from spline_model.confirmed import Grid
-from spline_model.continuation.arc_length import follow_arc
 from spline_model.effects import DrivenDisplacement
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import (
@@ -21,16 +18,14 @@ from spline_model.errors import (
     finite_numbers,
     require_choice,
     require_count,
-    require_kind,
+    require_finite,
 )
+from spline_model.legs import LOADS_FIRST, ORDERS, follow_legs, growing, turning
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.newton import Laps
-from spline_model.path import Progress, follow
+from spline_model.path import Progress, follow_arc
 from spline_model.pivot import Pivot
-from spline_model.proportional import LOADS_FIRST, ORDERS, TOGETHER, Turn, has_loads
-from spline_model.rigid import propped, require_unborne
-from spline_model.scene import Scene
-from spline_model.solution import Later, Path
+from spline_model.rigid import require_unborne
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
@@ -108,8 +103,9 @@ def solve_mechanism(
     """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
     rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. rotation,
-    order and method as in ``solve_statics``; with control "arc-length" or another ``end`` loads and the last
-    rotation grow together. control, branch and end as in ``solve_loads``;
+    order, method and branch as in ``solve_statics``; with control "arc-length" or another ``end``, the last
+    load factor, loads and the last rotation grow together. control: "load" prescribes the load factors;
+    "arc-length" follows the path through its limit points, with ``increments`` for the first step only.
     accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end. starts:
     whether a motion starts at the end, until which rigid motions that nothing holds are held, whatever that
     takes; else a load along one raises InvalidParameter.
@@ -118,62 +114,31 @@ def solve_mechanism(
     require_count("increments", increments, 1)
     require_choice("method", method, METHODS)
     require_choice("order", order, ORDERS)
+    require_choice("control", control, CONTROLS)
+    require_finite("end", end, "load factor")
     laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
     rotations = np.zeros(0) if rotation is None else _rotations(rotation, increments)
 
     def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
         given = mechanism.on(*grid).propped(rotation is not None, body)
         if turned:
-            turn = Turn(
-                driven=partial(given.driven, body=body),
-                rotations=rotations,
-                increments=increments,
-                laps=laps,
-                progress=told,
-                branch=branch,
-                method=method,
-            )
-            together = order == TOGETHER or not rotations.any() or not has_loads(given.scene)
-            system, path = turn.together() if together else turn.loads_first()
+            legs = turning(partial(given.driven, body=body), rotations, increments, order)
         else:
             scene = given.driven(float(rotations[-1]), body) if rotations.size else given.scene
-            system, path = solve_loads(
-                scene, increments=increments, end=end, control=control, branch=branch, progress=told
-            )
-            laps.lap("solve")
+            legs = [growing(scene, increments, end)]
+        system = legs[0].system
+        laps.lap("compile")
+        if control == "arc-length":
+            path = follow_arc(system, end, increments=increments, branch=branch, progress=told, method=method)
+        else:
+            path = follow_legs(legs, branch, method, told)
+        laps.lap("solve")
         if not starts:
             require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
     solution = answered(mechanism.design, accuracy, solve, progress, rotations.size or increments, check)
     return solution.checked(raise_on_failure)
-
-
-def solve_loads(
-    scene: Scene,
-    *,
-    increments: int = 20,
-    end: float = 1.0,
-    control: str = "load",
-    branch: str = "primary",
-    progress: Progress | None = None,
-) -> tuple[System, Path]:
-    """A scene from rest to the load factor ``end``, all its loads and drives growing in proportion.
-
-    control: "load" prescribes the load factors; "arc-length" follows the path through its limit
-    points, with ``increments`` for the first step only. branch: "primary" or "follow" at a
-    bifurcation.
-    """
-    require_kind("scene", scene, Scene, "a Scene, such as the scene of a mechanism")
-    require_count("increments", increments, 1)
-    require_choice("control", control, CONTROLS)
-    if not math.isfinite(end):
-        raise InvalidParameter("end", end, "a finite load factor")
-    system = compile_scene(scene)
-    if control == "arc-length":
-        return system, follow_arc(system, end, increments=increments, branch=branch, progress=progress)
-    factors = np.linspace(0.0, end, increments + 1)[1:]
-    return system, follow(system, list(factors), progress, branch=branch)
 
 
 def _rotations(rotation: float | Sequence[float], increments: int) -> Array:
@@ -201,7 +166,7 @@ def static_state(
     ``solve_mechanism``.
     """
     mechanism = mechanism.propped(rotation is not None, body)
-    z = settle(mechanism, rotation, increments, body, starts=starts).array[-1]
+    z = settle(mechanism, rotation, increments, body, starts=starts).states[-1]
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
@@ -220,15 +185,15 @@ def settle(
     body: str | None = None,
     *,
     starts: bool = False,
-) -> Later:
-    """The unknowns of the path to that state, with all multipliers."""
-    loaded = any(isinstance(effect, Load | DrivenDisplacement) for effect in mechanism.scene.effects)
-    if rotation is not None or loaded:
-        return solve_mechanism(
-            mechanism, rotation=rotation, increments=increments, body=body, starts=starts
-        ).unknowns
-    system = compile_scene(propped(mechanism.scene))
-    path = follow(system, [])
-    if not starts:
-        require_unborne(system, path.reactions)
-    return path.unknowns
+) -> StaticSolution:
+    """The path to that state, with the mechanism's own control points."""
+    grid = mechanism.design.discretisation
+    grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(DrivenDisplacement))
+    return solve_mechanism(
+        mechanism.on(grid.segments, grid.points),
+        rotation=rotation,
+        increments=increments if grown else 1,
+        body=body,
+        starts=starts,
+        check=grown,
+    )

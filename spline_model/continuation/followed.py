@@ -14,7 +14,6 @@ from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
-from spline_model.solution import Later
 
 Array = NDArray[np.float64]
 
@@ -140,8 +139,8 @@ class Followed:
         return unknowns
 
     def unknowns(self, z: Array) -> Array:
-        """The scene's unknowns at z."""
-        return z
+        """The scene's unknowns at z (N,) or (S, N)."""
+        return z.copy()
 
     def moved(self, z: Array, direction: Array) -> Array:
         """Change (Q,) of the scene's coordinates, dimensionless, with that of the ``count`` coordinates."""
@@ -158,7 +157,7 @@ class Followed:
             "load_factor": factors,
             "poses": states[:, self.system.layout.poses],
             "reactions": states[:, self.system.drives.row],
-            "unknowns": Later(states.copy),
+            "z": states,
             "stiffness": stiffness,
             "energies": energies,
             "done": np.array(done),

@@ -1,30 +1,38 @@
-"""A path in a parameter: predict, correct, check, halve.
+"""A path in its load factor or its arc length: predict, correct, check, halve.
 
-It begins at rest, weight and pre-strain grown from nothing, or at a state that is given. The parameter is the
-load factor, or the arc length (``spline_model.continuation.arc_length``).
+Source of the arc length: Riks, J Appl Mech 39 (1972) 1060, with Newton on planes normal to the tangent.
 """
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.followed import Followed, Point
-from spline_model.continuation.point import reached
+from spline_model.continuation.critical import BIFURCATION
+from spline_model.continuation.followed import Point
+from spline_model.continuation.point import directed, done_by_load_factor, reached
 from spline_model.continuation.watch import Watch
-from spline_model.errors import InvalidParameter, Unsettled
-from spline_model.newton import Newton, solve
+from spline_model.newton import Newton, correct, solve
+from spline_model.solution import CriticalPoint
 
 Array = NDArray[np.float64]
 
 KNOWN_STATES = 3
 """States that the predictor looks back on."""
 SMALLEST_STEP = 2.0**-14
-"""Least fraction of an increment before the path is given up."""
+"""Least fraction of an increment, or of the first step of an arc length, before the path is given up."""
+LARGEST_STEP = 0.25
+"""Longest step of an arc length, in lengths of a strip, rad and load factor together."""
+SHARPEST_TURN = 0.5
+"""Least cosine between the tangents at both ends of a step: sharper, and forward is in doubt."""
+EASY, HARD = 4, 7
+"""Newton iterations up to which the next step of an arc length is longer, and from which it is shorter."""
+BEYOND = 24
+"""Steps in the arc length that look for the limit point beyond a path's last state."""
 
 
 class Follower:
@@ -67,7 +75,7 @@ class Follower:
         far = len(known) > 1 and abs(aim - self.at) > 2 * abs(self.at - known[-2][0])
         return known[-1:] if far else known
 
-    def _try(self, aim: float) -> tuple[Newton, str]:
+    def try_to(self, aim: float) -> tuple[Newton, str]:
         """One step to ``aim``, and why it failed; else the follower stands there, or on another branch."""
         predicted, load_factor = self._predict(aim)
         found = self._correct(predicted, load_factor)
@@ -81,12 +89,15 @@ class Follower:
         point, reason = self._judged(point)
         if reason:
             return found, reason
-        end, done, reason = self.watch.go(self.here, point, self._parameter(point) - self.at)
+        step = self._parameter(point) - self.at
+        end, reason = self.watch.go(self.here, point, step)
         if not reason:
-            if end is not point:
+            if end is point:
+                self.done_here += done_by_load_factor(self.here, point, step)
+            else:  # across a kink, the potential gained
+                self.done_here += end.potential - self.here.potential
                 self.known.clear()
             self.at, self.here = self._parameter(end), end
-            self.done_here += done
             self.known.append((self.at, end))
             self.trail.append(end)
         return found, reason
@@ -100,7 +111,7 @@ class Follower:
         while self.at != target:
             at = self.at
             aim = target if abs(target - at) <= abs(step) * (1 + 1e-9) else at + step
-            _, reason = self._try(aim)
+            _, reason = self.try_to(aim)
             if reason:
                 self.work.counters.halved_increments += 1
                 step /= 2
@@ -121,12 +132,19 @@ class Follower:
         self.trail.clear()
 
     def _stop(self, aim: float, reason: str) -> str:
-        """Keep the last state of a path that stopped, whether or not it was asked for; says why it did."""
+        """Keep the last state of a path that stopped, whether or not it was asked for; says why it did.
+
+        A limit point that lies ahead is kept as a critical point.
+        """
         while self.trail and not self.watch.is_resolved(self.trail[-1]):
             self.trail.pop()
         self.points += self.trail[-1:]
         self.done += [self.done_here] * len(self.trail[-1:])
-        return self.watch.stopped(self.here, aim, reason)
+        limit = _limit_beyond(self.watch, self.here, aim) if self.watch.is_resolved(self.here) else None
+        if limit is not None:
+            self.watch.critical.append(limit)
+            reason = f"it buckles, a {limit.kind}: the stiffness vanishes there ({reason})"
+        return f"stopped between {self.watch.place.between(self.here.load_factor, aim)}: {reason}"
 
 
 def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
@@ -150,63 +168,88 @@ def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float
     return np.asarray(result)
 
 
-def equilibrium(work: Followed, unknowns: Array) -> Newton:
-    """The equilibrium at load factor 0 that Newton finds from the scene's unknowns, if its checks pass.
+class ArcFollower(Follower):
+    """The same in the arc length towards a load factor ``end``, in steps that follow the ease of the path.
 
-    Raises InvalidParameter if they lead to no such state.
+    All its states are asked for. step: the next one; the first one changes the load factor by ``change``.
     """
-    newton = solve(work, work.state(unknowns), 0.0)
-    reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, 0.0)
-    if reason:
-        raise InvalidParameter("start", reason, "a state from which Newton finds an equilibrium")
-    return newton
+
+    def __init__(
+        self, watch: Watch, begin: Point, norms: tuple[float, ...], end: float, change: float
+    ) -> None:
+        onward, self.end = math.copysign(1.0, end - begin.load_factor), end
+        across = onward * begin.rate / watch.work.unit
+        super().__init__(watch, directed(watch.work, begin, across, onward), norms)
+        self.step = self.first = change / abs(self.here.slope)
+
+    def go_on(self) -> str:
+        """One step, in halves where it has to be; returns why it failed, or nothing."""
+        while True:
+            found, reason = self.try_to(self.at + self.step)
+            if not reason:
+                break
+            self.work.counters.halved_increments += 1
+            self.step /= 2
+            if self.step < SMALLEST_STEP * self.first:
+                while len(self.points) > 1 and not self.watch.is_resolved(self.points[-1]):
+                    self.points.pop()
+                return f"stopped at load factor {self.here.load_factor:.6g}: {reason}"
+        self._keep()
+        self.work.counters.increments += 1
+        iterations = len(found.norms) - 1
+        if iterations <= EASY:
+            self.step = min(1.5 * self.step, max(LARGEST_STEP, self.first))
+        elif iterations >= HARD:
+            self.step *= 0.7
+        return ""
+
+    def _parameter(self, point: Point) -> float:
+        """The arc length from the path's begin to a point that follows on here."""
+        moved = ((point.z - self.here.z) / self.work.unit)[: self.work.count]
+        step = np.hypot(np.linalg.norm(moved), point.load_factor - self.here.load_factor)
+        return float(self.at + step)
+
+    def _predict(self, aim: float) -> tuple[Array, float]:
+        """The state where the arc length is ``aim``, or at the end of the path where that is beyond it."""
+        z, here = super()._predict(aim)[0], self.here
+        factors = [(at, np.array(p.load_factor), np.array(p.slope)) for at, p in self._near(aim)]
+        load_factor = float(hermite_extrapolation(factors, aim))
+        if (self.end - here.load_factor) * (self.end - load_factor) <= 0.0:
+            share = (self.end - here.load_factor) / (load_factor - here.load_factor)
+            return here.z + share * (z - here.z), self.end
+        return z, load_factor
+
+    def _correct(self, z: Array, load_factor: float) -> Newton:
+        """The equilibrium on the plane across the path through a predicted state, or at the path's end."""
+        normal, along = self._across()
+        if load_factor == self.end:
+            normal, along = np.zeros_like(z), 1.0
+        return correct(self.work, z, load_factor, normal, along)
+
+    def _judged(self, point: Point) -> tuple[Point, str]:
+        """The point with the arc length as parameter, before the end and no sharp turn away."""
+        normal, along = self._across()
+        point = directed(self.work, point, normal, along)
+        if (self.end - self.here.load_factor) * (self.end - point.load_factor) < 0.0:
+            return point, "the step goes beyond the end"
+        if normal @ (point.rate / self.work.unit) + along * point.slope < SHARPEST_TURN:
+            return point, "the path turns sharply"
+        return point, ""
+
+    def _across(self) -> tuple[Array, float]:
+        """The tangent here, in dimensionless coordinates, and its load-factor part."""
+        normal = self.here.rate / self.work.unit
+        normal[self.work.count :] = 0.0
+        return normal, self.here.slope
 
 
-def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...]]:
-    """The point where a path begins, and the residual norms: rest, or the unknowns that are given.
-
-    Raises InvalidParameter where there is none, or where nothing holds the scene.
-    """
-    work = watch.work
-    newton = _settle(watch) if start is None else equilibrium(work, start)
-    return _held(work, newton), newton.norms
-
-
-def _held(work: Followed, newton: Newton) -> Point:
-    """The point where Newton ended; refused where nothing holds the scene."""
-    point, reason = reached(work, newton)
-    if point is None:
-        raise InvalidParameter("scene", reason, "strips that can move, but not freely")
-    return point
-
-
-def _settle(watch: Watch) -> Newton:
-    """Equilibrium at load factor 0: weight and pre-strain grow from nothing, watched like any path.
-
-    Raises InvalidParameter where they cannot grow to their full size.
-    """
-    work = watch.work
-    z = _grown(watch) if work.system.is_preloaded else work.state(work.system.rest)
-    newton = solve(work, z, 0.0)
-    if newton.reason:
-        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
-    return newton
-
-
-def _grown(watch: Watch) -> Array:
-    """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
-    growing = replace(watch.work, grows=True)
-    own = Watch(growing, leaves=watch.leaves, by_load=True)
-    newton = solve(growing, growing.state(growing.system.rest), 0.0)
-    begin = _held(growing, newton)
-    follower = Follower(own, begin, newton.norms)
-    message = follower.advance(1.0)
-    shared = (
-        replace(each, load_factor=0.0, rotation=0.0 * each.rotation, preload=each.load_factor)
-        for each in own.critical
-    )
-    watch.settled = tuple(shared)
-    if message:
-        raise Unsettled(message, watch.settled)
-    watch.leaves, watch.before = own.leaves, own.remark()
-    return follower.here.z
+def _limit_beyond(watch: Watch, here: Point, aim: float) -> CriticalPoint | None:
+    """The limit point that the path from a state on goes over in its arc length, if it does."""
+    onward, beyond = aim - here.load_factor, Watch(watch.work, leaves=False, by_load=False)
+    follower = ArcFollower(beyond, here, (), math.copysign(math.inf, onward), 2.0 * abs(onward))
+    for _ in range(BEYOND):
+        _, reason = follower.try_to(follower.at + follower.step)
+        if beyond.critical:
+            return next((each for each in beyond.critical if each.kind != BIFURCATION), None)
+        follower.step *= 0.25 if reason else 2.0
+    return None

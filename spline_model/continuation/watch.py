@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,7 +13,7 @@ from spline_model.compile import System
 from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.place import Place
-from spline_model.continuation.point import directed, done_by_load_factor, jumped, reached
+from spline_model.continuation.point import directed, jumped, reached
 from spline_model.newton import correct
 from spline_model.solution import CriticalPoint, Path, Status
 
@@ -28,8 +27,6 @@ UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more 
 LARGEST_CHANGE = 0.02
 """Largest relative change of stiffness with twice the Gauss points of a state that is kept."""
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
-BEYOND = 24
-"""Steps in the arc length that look for the limit point beyond a path's last state."""
 
 
 class Watch:
@@ -58,15 +55,8 @@ class Watch:
         reason = self.work.refuse(z) or left_the_branch(unit, here.z, predicted, z)
         return reason or self.work.unresolved(z, load_factor)
 
-    def go(self, here: Point, point: Point, step: float) -> tuple[Point, float, str]:
-        """Where a step from here to a sound point ends, there or on another branch, and the work done over
-        it, int P_lambda d(lambda) [J], across a kink the potential gained; or why it is no step."""
-        end, reason = self._judged(here, point, step)
-        if reason or end is point:
-            return end, 0.0 if reason else done_by_load_factor(here, point, step), reason
-        return end, end.potential - here.potential, ""
-
-    def _judged(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
+    def go(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
+        """Where a step from here to a sound point ends, there or on another branch, and why it is no step."""
         reason = jumped(here, point, step, self.work.energy)
         if reason:
             return here, reason
@@ -121,49 +111,6 @@ class Watch:
             return False
         change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
         return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
-
-    def stopped(self, here: Point, aim: float, reason: str) -> str:
-        """That a path goes no further than ``here`` on its way to a load factor, and why.
-
-        A limit point in between is kept as a critical point.
-        """
-        limit = self._limit(here, aim) if self.is_resolved(here) else None
-        if limit is not None:
-            self.critical.append(limit)
-            reason = f"it buckles, a {limit.kind}: the stiffness vanishes there ({reason})"
-        return f"stopped between {self.place.between(here.load_factor, aim)}: {reason}"
-
-    def _limit(self, here: Point, aim: float) -> CriticalPoint | None:
-        """The limit point that the path from a stable state on goes over in its arc length, if it does."""
-        work, onward = self.work, math.copysign(1.0, aim - here.load_factor)
-        beyond = Watch(work, leaves=False, by_load=False)
-        point = directed(work, here, onward * here.rate / work.unit, onward)
-        step = 2.0 * abs((aim - here.load_factor) / point.slope)
-        for _ in range(BEYOND):
-            ahead = beyond._ahead(point, step)
-            if ahead is None:
-                step /= 4.0
-            elif beyond.critical:
-                return next((each for each in beyond.critical if each.kind != BIFURCATION), None)
-            else:
-                point, step = ahead, 2.0 * step
-        return None
-
-    def _ahead(self, point: Point, step: float) -> Point | None:
-        """The next point of a path in its arc length; None if none is found."""
-        work, normal = self.work, point.rate / self.work.unit
-        normal[work.count :] = 0.0
-        predicted, factor = point.z + step * point.rate, point.load_factor + step * point.slope
-        found = correct(work, predicted, factor, normal, point.slope)
-        if found.reason or self.refuse(point, predicted, found.z, found.load_factor):
-            return None
-        ahead, _ = reached(work, found)
-        if ahead is None:
-            return None
-        ahead = directed(work, ahead, normal, point.slope)
-        moved = np.linalg.norm(((ahead.z - point.z) / work.unit)[: work.count])
-        length = float(np.hypot(moved, ahead.load_factor - point.load_factor))
-        return None if self._judged(point, ahead, length)[1] else ahead
 
     def remark(self, inertia: int = 0) -> str:
         """Where a path that reached its end passed critical points, and whether its last state, with that

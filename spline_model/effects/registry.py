@@ -207,24 +207,24 @@ def _driven_displacement(
     )
 
 
-def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterator[Effect]:
+def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterable[Effect]:
     """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
     del design, curvature, strain  # the design carries them to the two potentials
-    yield from ()
+    return ()
 
 
-def _taken_up(design: Design) -> Iterator[Effect]:
+def _taken_up(design: Design) -> Iterable[Effect]:
     """No effect of its own: bending takes up clamps that hold sections flat over the width, "clamped_width",
     and sections that flatten as wide strips bend, "anticlastic" (M(kappa) by Ashwell's law)."""
     del design
-    yield from ()
+    return ()
 
 
-def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterator[Effect]:
+def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterable[Effect]:
     """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0, which
     bending takes up."""
     del design, root
-    yield from ()
+    return ()
 
 
 def root_length(root: float | str = "monolithic") -> float:

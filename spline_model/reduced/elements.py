@@ -29,7 +29,7 @@ from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITE
 from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.preload import Preload, act, apart
-from spline_model.reduced.states import add_strip, by_state, unknowns_of
+from spline_model.reduced.states import add_strip, unknowns_of
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import ON_POINTS
 
@@ -152,7 +152,7 @@ class Elements(Followed):
         count.residual_evaluations += evaluations + int(answer.counters[CONFIRMED])
         count.tangent_evaluations += evaluations
         count.factorisations += evaluations
-        return answer.rows(slice(done))
+        return answer.rows(slice(0, done))
 
     @property
     def energy(self) -> float:
@@ -173,12 +173,6 @@ class Elements(Followed):
     def y(self, z: Array) -> Array:
         """The state in the order of the elements."""
         return z[..., self.place]
-
-    def z(self, y: Array, reaction: Array) -> Array:
-        """States (S, N) from those of the elements (S, Y) and the reactions of the drives (S, D)."""
-        z = np.empty((len(y), len(self.gradient)))
-        z[:, self.place], z[:, self.model.size :] = y, reaction
-        return z
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Gradient, tangent and energies at z."""
@@ -229,9 +223,10 @@ class Elements(Followed):
         return z
 
     def unknowns(self, z: Array) -> Array:
-        """The scene's unknowns at z."""
-        size = self.model.size
-        return np.asarray(unknowns_of(self.model, self.y(z)[None], z[None, size:])[0])
+        """The scene's unknowns at z (N,) or (S, N)."""
+        states = np.atleast_2d(z)
+        found = unknowns_of(self.model, self.y(states), states[:, self.model.size :])
+        return found.reshape(*z.shape[:-1], -1)
 
     def moved(self, z: Array, direction: Array) -> Array:
         """Change (Q,) of the scene's coordinates, dimensionless, with that of poses and w."""
@@ -258,7 +253,27 @@ class Elements(Followed):
             defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
             counters=np.zeros(4, dtype=np.int64),
         )
-        return by_state(self.model, factor, answer)
+        return self.compiled_rows(factor, answer)
+
+    def compiled_rows(self, factors: Array, answer: Answer) -> dict[str, Any]:
+        """The same from the answer at load factors (S,)."""
+        model, size = self.model, self.model.size
+        z = np.empty((len(factors), len(self.gradient)))
+        z[:, self.place], z[:, size:] = answer.y, answer.reaction
+        poses = answer.y[:, : 3 * len(model.system.scene.bodies)].copy()
+        poses[:, 0::3] *= model.length
+        poses[:, 1::3] *= model.length
+        return {
+            "load_factor": factors,
+            "poses": poses,
+            "reactions": answer.reaction * (model.energy / model.drive_length),
+            "z": z,
+            "stiffness": answer.stiffness * model.energy,
+            "energies": answer.energies * model.energy,
+            "done": answer.done * model.energy,
+            "inertia": answer.inertia,
+            "moment_defect": answer.defect,
+        }
 
 
 @lru_cache(maxsize=64)

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from spline_model.checks import SLOWEST_SPEED
 from spline_model.newton import FLOOR, LAST, ROUND_OFF
 from spline_model.reduced.arrays import (
     CHANGE,
@@ -17,12 +16,10 @@ from spline_model.reduced.arrays import (
     RAW,
     REACTION,
     REACTION_RATE,
-    SLOWEST,
     SPARE,
-    Y,
 )
 from spline_model.reduced.assembly import assemble, factorise, move_strips, solve_free
-from spline_model.strip.compiled import called, copy, kernel
+from spline_model.strip.compiled import called, kernel
 from spline_model.strip.condense import SINGULAR
 
 ITERATIONS, EVALUATIONS, HALVED, CONFIRMED = range(4)
@@ -175,38 +172,6 @@ def conjugate(held_rate, load_rate, bodies, y, space):
             slope -= load_rate * bodies.load[i] * (y[i] - bodies.rest[i])
             bend -= load_rate * bodies.load[i] * space.states[RATE, i]
     return slope, bend
-
-
-@kernel()
-def lead(target, rate, stable, y, arrays, tolerance, counters):
-    """Lead what is held to ``target`` (D,), all else in equilibrium, in place; False, and y as it was, if it
-    fails.
-
-    rate (D,): filled with the way. stable: whether a state with negative eigenvalues counts as none.
-    """
-    bodies, strips = arrays.bodies, arrays.strips
-    shape, space = arrays.shape, arrays.space
-    own, modes, before = 2 * shape.order.size - 6, strips.compliance.shape[1], space.states[Y]
-    copy(y, before)
-    # with what is held as it is
-    solved = newton(y, 0.0, False, arrays, tolerance, counters)[0] >= 0
-    if solved:
-        for d in range(target.size):
-            rate[d] = target[d] - before[bodies.held[d]]
-        tangent(rate, 0.0, arrays)
-        for i in range(y.size):
-            y[i] += space.states[RATE, i]
-        for d in range(target.size):
-            y[bodies.held[d]] = target[d]
-        negative = newton(y, 0.0, False, arrays, tolerance, counters)[0]
-        solved = negative == 0 or (negative > 0 and not stable)
-        solved = solved and space.out[SLOWEST] > SLOWEST_SPEED
-    for s in range(strips.roots.size):
-        behind = bodies.rest.size + s * (own + modes) + own
-        solved = solved and min(y[behind - 2], y[behind - 1]) > 0.0
-    if not solved:
-        copy(before, y)
-    return solved
 
 
 @kernel()

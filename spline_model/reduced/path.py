@@ -66,13 +66,14 @@ def _predict(t, known, at, states):
 
 @called()
 def _accepted(y, known, arrays):
-    """Whether a solved state is the continuation of the last one, with end tangents forward and no fold."""
+    """Whether a solved state is the continuation of the last one, if any is known, with end tangents forward
+    and no fold."""
     bodies, strips = arrays.bodies, arrays.strips
     shape, space = arrays.shape, arrays.space
     if not space.out[SLOWEST] > SLOWEST_SPEED:
         return False
     own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
-    last, predicted = space.states[known - 1], space.states[PREDICTED]
+    last, predicted = space.states[max(known, 1) - 1], space.states[PREDICTED]
     step = correction = 0.0
     for k in range(bodies.rest.size):
         step += (predicted[k] - last[k]) ** 2
@@ -84,7 +85,7 @@ def _accepted(y, known, arrays):
         for k in range(at, at + own):
             step += (predicted[k] - last[k]) ** 2
             correction += (y[k] - predicted[k]) ** 2
-    return correction <= max(LARGEST_CORRECTION**2 * step, SMALLEST_CORRECTION**2)
+    return known == 0 or correction <= max(LARGEST_CORRECTION**2 * step, SMALLEST_CORRECTION**2)
 
 
 @part()
@@ -206,7 +207,7 @@ def _reach(row, known, inertia, alone, route, judged, preload, arrays, tolerance
             _predict(here, known, known_at, states)
         negative = _solve_at(here, alone, route, preload, arrays, tolerance, counters)
         sound = negative >= 0 and (row == 0 or negative == inertia or route.passes)
-        sound = sound and _accepted(states[Y], max(known, 1), arrays)
+        sound = sound and _accepted(states[Y], known, arrays)
         if sound and _is_balanced(here, row == 0, judged, route, preload, arrays):
             at, known = here, _remember(here, known, known_at, states)
             if last:

@@ -3,17 +3,13 @@ tangent with nothing condensed, and how control points move."""
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import MixedStretching
-from spline_model.reduced.arrays import AXIAL, Answer
+from spline_model.reduced.arrays import AXIAL
 from spline_model.reduced.assembly import assemble, place_of
 from spline_model.reduced.model import Reduced
-from spline_model.solution import Later
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import GRADIENT, LAST, POINTS
 from spline_model.strip.ends import place_points, to_element
@@ -48,24 +44,6 @@ def _place_all(y, poses, shape, strips, local, out, points, forces):
                 forces[row, s, end, 2] = (p[inner] - p[outer]) * g[inner + 1] - (
                     p[inner + 1] - p[outer + 1]
                 ) * g[inner]
-
-
-def by_state(model: Reduced, factors: Array, answer: Answer) -> dict[str, Any]:
-    """What a ``Path`` has by state, in the scene's unknowns and in SI units; factors (S,)."""
-    bodies = answer.y[:, : 3 * len(model.system.scene.bodies)].copy()
-    bodies[:, 0::3] *= model.length
-    bodies[:, 1::3] *= model.length
-    return {
-        "load_factor": factors,
-        "poses": bodies,
-        "reactions": answer.reaction * (model.energy / model.drive_length),
-        "unknowns": Later(partial(unknowns_of, model, answer.y, answer.reaction)),
-        "stiffness": answer.stiffness * model.energy,
-        "energies": answer.energies * model.energy,
-        "done": answer.done * model.energy,
-        "inertia": answer.inertia,
-        "moment_defect": answer.defect,
-    }
 
 
 def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from spline_model import solve_loads, solve_mechanism
+from spline_model import solve_mechanism
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.published.case import published
@@ -27,7 +27,7 @@ def test_a_load_that_turns_round_keeps_its_sign():
 
 def work_balance(late=0):
     """Work of the load on Lee's frame, some states late, against the energy stored at the end of its path."""
-    path = solve_loads(lees_frame(control_points=10).scene, control="arc-length")[1]
+    path = solve_mechanism(lees_frame(control_points=10), control="arc-length")
     return abs(path.work[-1 - late] / path.energies[-1].sum() - 1)
 
 
@@ -38,7 +38,7 @@ def test_work_is_booked_through_limit_points():
 
 def test_inertia_goes_with_the_limit_points():
     """Requirement: between its two limit points the frame is unstable, before and after it is not."""
-    path = solve_loads(lees_frame(control_points=8).scene, control="arc-length")[1]
+    path = solve_mechanism(lees_frame(control_points=8), control="arc-length")
     slope = np.gradient(path.load_factor)
     turns = np.flatnonzero(np.diff(np.sign(slope))).tolist()
     assert set(path.inertia[: turns[0] - 1]) == {0}

@@ -1,5 +1,6 @@
 """A body held in a pose: strips solved one by one, against the bordered system with driven constraints."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -10,7 +11,7 @@ from spline_model import (
     DrivenRotation,
     HeldPivot,
     cross_axis_pivot,
-    solve_loads,
+    solve_mechanism,
     solve_statics,
 )
 from tests import gates
@@ -48,8 +49,9 @@ def disagreement(pose, increments=8, slide=None, **settings):
         DrivenRotation(body="body", angle=rotation),
         DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
-    system, path = solve_loads(reference.with_effects(*drives), increments=increments)
-    z = path.states[-1]
+    led = replace(reference, scene=reference.with_effects(*drives))
+    path = solve_mechanism(led, increments=increments)
+    system, z = path.system, path.states[-1]
     rows = system.layout.multipliers[-2:]
     torque = z[rows[0][0]]
     force = z[rows[1][0] : rows[1][0] + 2]

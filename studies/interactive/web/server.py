@@ -22,7 +22,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from spline_model.reduced import equilibrium
+from spline_model.reduced import many
 from studies.errors import BadInput
 from studies.interactive.motion import SOLVERS
 from studies.interactive.session import Session
@@ -226,7 +226,7 @@ def warm_up() -> None:
     What was never compiled is so in a process of its own: one that compiles a kernel may round otherwise
     than one that loads it, and a session that it records would not replay digit by digit.
     """
-    if not any((Path(equilibrium.__file__).parent / "__pycache__").glob("equilibrium.lead*.nbi")):
+    if not any((Path(many.__file__).parent / "__pycache__").glob("many.follow_all*.nbi")):
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
             pool.submit(_enter_kernels).result()
     _enter_kernels()

@@ -1,0 +1,143 @@
+"""The legs of a static path: loads come on before a rotation and stay, or grow with its size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.compile import System, compile_scene
+from spline_model.effects import DrivenDisplacement
+from spline_model.effects.base import Load
+from spline_model.effects.boundary import Sized
+from spline_model.path import Progress, follow
+from spline_model.scene import Scene
+from spline_model.solution import BY_STATE, Later, Path, Status, joined
+from spline_model.tables import LoadTable
+
+Array = NDArray[np.float64]
+
+LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
+
+
+class Leg(NamedTuple):
+    """A part of a path: a system that is followed through load factors.
+
+    steady: loads that act in full all along it, whatever its own load factor; returns: whether its last state
+    is a rest that nobody asked for.
+    """
+
+    system: System
+    factors: list[float]
+    steady: LoadTable | None = None
+    returns: bool = False
+
+
+def has_loads(scene: Scene) -> bool:
+    """Whether loads act that may come on first: beside a driven displacement all grow together."""
+    return bool(scene.of(Load)) and not scene.of(DrivenDisplacement)
+
+
+def steady(scene: Scene) -> Scene:
+    """The scene with loads and driven displacements in full at any load factor."""
+    timed = Sized | DrivenDisplacement
+    effects = (replace(e, steady=True) if isinstance(e, timed) else e for e in scene.effects)
+    return replace(scene, effects=tuple(effects))
+
+
+def growing(scene: Scene, increments: int, end: float = 1.0) -> Leg:
+    """All loads and drives of a scene from 0 to a load factor."""
+    return Leg(compile_scene(scene), np.linspace(0.0, end, increments + 1)[1:].tolist())
+
+
+def turning(driven: Callable[[float], Scene], rotations: Array, increments: int, order: str) -> list[Leg]:
+    """The legs of a body that is turned through rotations (R,) [rad] under the loads of its scene.
+
+    driven: the scene that is driven to a rotation; increments: those of the loads where they come on first.
+    Loads that grow together with the rotation go with its size: where the body turns the other way, that leg
+    is of the scene driven the other way, which begins where the other one has come back to rest. Without any
+    rotation loads grow from 0 to 1.
+    """
+    largest = float(max(rotations.tolist(), key=abs))
+    if largest == 0.0:
+        return [growing(driven(0.0), len(rotations))]
+    whole = driven(largest)
+    if order == LOADS_FIRST and has_loads(whole):
+        first = growing(driven(0.0), increments)
+        aims = (rotations / largest).tolist()
+        return [first, Leg(compile_scene(steady(whole)), aims, steady=first.system.loads)]
+    system, factors = compile_scene(whole), rotations / largest
+    if not system.loads.value.any() and sum(map(bool, system.drives.target.tolist())) < 2:
+        return [Leg(system, factors.tolist())]
+    return list(_sides(system, compile_scene(driven(-largest)), factors))
+
+
+def _sides(system: System, other: System, factors: Array) -> list[Leg]:
+    """Legs on both sides of rest, the ``other`` one driven the other way; zero is on the side before it."""
+    signs = np.sign(factors)
+    for i in range(1, len(signs)):
+        signs[i] = signs[i] or signs[i - 1]
+    signs[signs == 0.0] = signs[signs != 0.0][0]
+    cuts, legs = np.flatnonzero(np.diff(signs)) + 1, []
+    for k, part in enumerate(np.split(factors, cuts)):
+        sign = signs[np.append(0, cuts)[k]]
+        returns = bool(k < len(cuts) and part[-1] != 0.0)
+        legs.append(
+            Leg(system if sign > 0.0 else other, (sign * part).tolist() + [0.0] * returns, None, returns)
+        )
+    return legs
+
+
+def follow_legs(
+    legs: Sequence[Leg], branch: str = "primary", method: str = "condensed", progress: Progress | None = None
+) -> Path:
+    """The path through all legs, each from where the one before ends; branch and method as in ``follow``."""
+    path, back, done = None, False, 0
+    total = sum(len(leg.factors) - leg.returns for leg in legs)
+    for leg in legs:
+        told = None if progress is None else partial(_tell, progress, done, total)
+        start = None if path is None else path.states[-1]
+        part = follow(leg.system, leg.factors, told, start=start, branch=branch, method=method)
+        if part.critical_points:
+            branch = "primary"  # the branch was left, or there was none to follow
+        if leg.steady is not None:
+            part = _loaded(part, leg.steady)
+        path = part if path is None else _joined(path, part, back)
+        if path.status is not Status.CONVERGED:
+            break
+        done, back = done + len(leg.factors) - leg.returns, leg.returns
+    assert path is not None, "there is a leg"
+    return path
+
+
+def _tell(progress: Progress, done: int, total: int, increments: int, _: int) -> None:
+    """The progress of a leg, counted with what was done before it."""
+    progress(min(done + increments, total), total)
+
+
+def _loaded(path: Path, loads: LoadTable) -> Path:
+    """A path along which loads act in full: its load factor is theirs, and their work is in its own."""
+    moved = (path.states - path.states[0])[:, loads.coordinate] @ loads.value
+    points = tuple(replace(point, load_factor=1.0) for point in path.critical_points)
+    return replace(path, load_factor=np.ones(len(path.work)), work=path.work + moved, critical_points=points)
+
+
+def _joined(before: Path, after: Path, back: bool) -> Path:
+    """Two parts of a path, the second begun where the first ends; back: at a rest that nobody asked for."""
+    kept = len(before.work) - back
+    both = before.rows(slice(kept)), after.rows(slice(1, None))
+    parts: dict[str, Any] = {name: np.concatenate([rows[name] for rows in both]) for name in BY_STATE}
+    parts["work"][kept:] += before.work[-1]
+    parts["unknowns"] = Later(partial(joined, tuple(rows["unknowns"] for rows in both)))
+    return replace(
+        after,
+        message="; ".join(dict.fromkeys(m for m in (before.message, after.message) if m)),
+        critical_points=before.critical_points + after.critical_points,
+        counters={name: count + after.counters[name] for name, count in before.counters.items()},
+        history=before.history + after.history,
+        **parts,
+    )
