@@ -9,10 +9,9 @@ import json
 import os
 import platform
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -28,16 +27,19 @@ from studies.record.style import rendered
 DEPENDENCIES = ("numpy", "scipy", "numba", "scikit-fem", "pandas", "matplotlib")
 
 
-@dataclass(frozen=True, kw_only=True)
-class _State:
+#: Hashes of what a study is made from.
+Inputs = dict[str, Any]
+
+
+class _State(NamedTuple):
     """Whether a stored study is "fresh", "stale" or "missing", and why."""
 
     kind: str
     reason: str = ""
 
 
-def inputs(module: str, cases: Iterable[str]) -> dict[str, Any]:
-    """Return the hashes of what a study is made from: its source and its cases."""
+def inputs(module: str, cases: Iterable[str]) -> Inputs:
+    """Return the hashes of the source and the cases of a study."""
     return {
         "source_sha256": source_hash(module.partition(":")[0]),
         "cases": {name: _fingerprint(name) for name in cases},
@@ -97,14 +99,7 @@ class Store:
         require_writable_folder(self.root)
 
     def save_tables(
-        self,
-        study: str,
-        tables: Mapping[str, pd.DataFrame],
-        *,
-        module: str,
-        cases: Iterable[str],
-        command: str,
-        elapsed: float,
+        self, study: str, tables: Mapping[str, pd.DataFrame], now: Inputs, elapsed: float
     ) -> bool:
         """Store the tables of `study` in place of former ones, with the provenance of what they came from.
 
@@ -112,13 +107,12 @@ class Store:
         is stored.
         """
         contents = {f"{name}.csv": as_csv(table) for name, table in tables.items()}
-        fresh = self.state(study, module=module, cases=cases).kind == "fresh"
-        if fresh and self.record(study)["tables"] == _hashes(contents):
+        if self.state(study, now).kind == "fresh" and self.record(study)["tables"] == _hashes(contents):
             return False
         record = {
             "study": study,
-            "command": command,
-            "inputs": inputs(module, cases),
+            "command": f"python -m studies run {study}",
+            "inputs": now,
             "tables": _hashes(contents),
             "figures": None,
             "elapsed_s": round(elapsed, 2),
@@ -145,9 +139,9 @@ class Store:
         record["figures"] = _hashes(contents)
         self._note(study, record)
 
-    def renew(self, study: str, *, module: str, cases: Iterable[str]) -> None:
+    def renew(self, study: str, now: Inputs) -> None:
         """Note that the stored tables are those of the present source and cases."""
-        self._note(study, self.record(study) | {"inputs": inputs(module, cases)})
+        self._note(study, self.record(study) | {"inputs": now})
 
     def _note(self, study: str, record: Mapping[str, Any]) -> None:
         write_whole(self.data(study) / PROVENANCE, _as_json(record))
@@ -157,26 +151,25 @@ class Store:
         record: dict[str, Any] = json.loads((self.data(study) / PROVENANCE).read_text(encoding="utf-8"))
         return record
 
-    def state(self, study: str, *, module: str, cases: Iterable[str]) -> _State:
-        """Return whether the stored result of `study` is fresh, stale or missing."""
+    def state(self, study: str, now: Inputs) -> _State:
+        """Return whether the stored result of `study` is fresh, stale or missing, and why."""
         try:
             record = self.record(study)
         except FileNotFoundError:
-            return _State(kind="missing", reason="never run")
+            return _State("missing", "never run")
         for folder, kind in ((self.data(study), "tables"), (self.figures, "figures")):
             for name, digest in (record[kind] or {}).items():
                 path = folder / name
                 if not path.is_file():
-                    return _State(kind="missing", reason=f"{name} does not exist")
+                    return _State("missing", f"{name} does not exist")
                 if sha256(path.read_bytes()).hexdigest() != digest:
-                    return _State(kind="stale", reason=f"{name} was changed after it was made")
+                    return _State("stale", f"{name} was changed after it was made")
         if record["figures"] is None:
-            return _State(kind="missing", reason="no figure was drawn")
-        now = inputs(module, cases)
+            return _State("missing", "no figure was drawn")
         for part, said in (("cases", "a case"), ("source_sha256", "the source")):
             if record["inputs"][part] != now[part]:
-                return _State(kind="stale", reason=f"{said} was changed")
-        return _State(kind="fresh")
+                return _State("stale", f"{said} was changed")
+        return _State("fresh")
 
 
 def _as_json(record: Mapping[str, Any]) -> bytes:

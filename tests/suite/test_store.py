@@ -12,7 +12,7 @@ from studies.record import style
 from studies.record.digits import Digits, as_csv, differing
 from studies.record.files import OutputError, replace_folder, write_whole
 from studies.record.source import ROOT
-from studies.record.store import Store
+from studies.record.store import Store, inputs
 
 STUDY = "paper/example"
 MODULE = "studies.answers.metrics"
@@ -23,14 +23,7 @@ TABLE = pd.DataFrame(
 
 
 def _save(store: Store) -> bool:
-    return store.save_tables(
-        STUDY,
-        {"example": TABLE},
-        module=MODULE,
-        cases=CASES,
-        command="python -m studies run example",
-        elapsed=1.0,
-    )
+    return store.save_tables(STUDY, {"example": TABLE}, inputs(MODULE, CASES), 1.0)
 
 
 def _draw() -> dict:
@@ -50,7 +43,7 @@ def store(tmp_path):
 
 
 def _state(store: Store) -> tuple[str, str]:
-    state = store.state(STUDY, module=MODULE, cases=CASES)
+    state = store.state(STUDY, inputs(MODULE, CASES))
     return state.kind, state.reason
 
 
@@ -96,7 +89,7 @@ def test_fresh_stale_missing(store, monkeypatch):
     assert _state(store) == ("missing", "no figure was drawn")
     store.save_figures(STUDY, {})
     assert _state(store) == ("fresh", "")
-    assert Store(store.root / "empty").state(STUDY, module=MODULE, cases=CASES).reason == "never run"
+    assert Store(store.root / "empty").state(STUDY, {}).reason == "never run"
 
 
 def test_changed_case_is_stale(store):
