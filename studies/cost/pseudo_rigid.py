@@ -49,8 +49,7 @@ from typing import Any
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import Geometry, geometry_of
-from studies.cost.one_coordinate import Law, State, Surrogate
+from studies.cost.model import Geometry, Law, State, Surrogate, geometry_of
 from studies.errors import BadInput
 from studies.kinds import Array
 

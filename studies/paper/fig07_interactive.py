@@ -7,7 +7,7 @@ the machine and on what else it does; the snapshots are the page's own canvas.
 import base64
 import io
 import time
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -169,7 +169,7 @@ def _figure(tables: Tables) -> Figure:
     shots = tables["snapshots"].sort_values("frame").to_dict("records")
     taken: list[Drawn] = [partial(_snapshot, row, letter) for row, letter in zip(shots, "abc", strict=True)]
     rate, times = _rate(tables["frames_times"]), _times(tables["frames_times"], tables["alone_times"])
-    rows: list[list[Drawn]] = [[panel for panel in taken for _ in range(2)], [rate] * 3 + [times] * 3]
+    rows: list[Sequence[Drawn]] = [[panel for panel in taken for _ in range(2)], [rate] * 3 + [times] * 3]
     return sheet(7.2, 4.6, rows, heights=(1.15, 1.0), legend=3)
 
 

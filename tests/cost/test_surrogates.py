@@ -10,7 +10,7 @@ from studies.answers.reference import SolvedMotion, SolvedPath
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
-from studies.cost import one_coordinate
+from studies.cost import model as models
 from studies.cost.constraint_model import constraint_model
 from studies.cost.model import geometry_of, spline
 from studies.cost.pseudo_rigid import (
@@ -166,7 +166,7 @@ def energy_drift(model, step, duration=0.05):
     """Largest change of kinetic and potential energy of a swing from 90 degrees, over what is at stake."""
     law, start = model.law_of(CASE), math.pi / 2
     states = np.empty((round(duration / step) + 1, 2))
-    one_coordinate.integrate(start, step, states, *one_coordinate._series_of(law, start))
+    models.integrate(start, step, states, *models._series_of(law, start))
     p, v = states[:: len(states) // 250].T
     energy = 0.5 * law(p).inertia * v**2 + law(p).energy
     return np.abs(energy / energy[0] - 1.0).max()
