@@ -10,9 +10,8 @@ from studies.commands.parser import Argument, command, whole_number
 from studies.engine import Study, Tables
 from studies.errors import BadInput
 from studies.record import style
-from studies.record.digits import differing
 from studies.record.progress import Bar
-from studies.record.store import Inputs, Store, inputs
+from studies.record.store import Inputs, Store, differing, inputs
 from studies.registry import STUDIES, selected, study_of
 
 DIFFERS = 1

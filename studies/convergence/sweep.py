@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pandas as pd
@@ -171,6 +171,8 @@ COUNTS = {1: range(4, 13), 2: range(4, 9)}
 #: Segments of a strip with so many control points each.
 SEGMENTS, EACH = range(1, 6), 5
 MEASURES = ("material", "spatial")
+#: Stretch forms with axial modes.
+STRETCHES = ("mixed", "inextensible")
 #: Error that is asked of trajectory and torque [1].
 CLOSE = 1e-4
 #: Look of the default in a heat map.
@@ -184,17 +186,13 @@ def _settings() -> list[SplineSettings]:
     """
     grids = [(segments, n) for segments, counts in COUNTS.items() for n in counts]
     grids += [(segments, EACH) for segments in SEGMENTS if segments not in COUNTS]
-    forms: list[tuple[int, int, str, str, int | None]] = []
+    found = []
     for segments, n in grids:
-        modes = range(1, n) if segments in COUNTS else (n - 2,)
-        forms += [(segments, n, measure, "consistent", None) for measure in MEASURES]
-        forms += [
-            (segments, n, "material", stretch, m) for stretch in ("mixed", "inextensible") for m in modes
-        ]
-    return [
-        SplineSettings(segments=segments, measure=measure, control_points=n, stretch=stretch, axial_modes=m)
-        for segments, n, measure, stretch, m in forms
-    ]
+        plain = SplineSettings(segments=segments, control_points=n)
+        found += [replace(plain, measure=measure, stretch="consistent") for measure in MEASURES]
+        for stretch, m in product(STRETCHES, range(1, n) if segments in COUNTS else (n - 2,)):
+            found.append(replace(plain, measure="material", stretch=stretch, axial_modes=m))
+    return found
 
 
 def _default_modes(rows: pd.DataFrame) -> pd.DataFrame:

@@ -19,7 +19,7 @@ from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Part, Row
-from studies.record.digits import Digits
+from studies.record.store import Digits
 from studies.stability import verdict
 from studies.stability.verdict import DEFAULT, FE, LOCKING_FREE, PATHS, SIX, Question, Try, family
 

@@ -27,7 +27,7 @@ from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.paper import formulations as named
 from studies.paper.formulations import LOOKS, SETTINGS
-from studies.record.digits import Digits
+from studies.record.store import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.

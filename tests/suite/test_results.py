@@ -13,9 +13,8 @@ from studies.__main__ import main
 from studies.commands import readme
 from studies.errors import BadInput
 from studies.record import style
-from studies.record.digits import as_csv
 from studies.record.source import ROOT
-from studies.record.store import Store, inputs
+from studies.record.store import Store, as_csv, inputs
 from studies.registry import STUDIES, study_of
 from studies.stability.verdict import DEFAULT
 

@@ -9,10 +9,9 @@ import pandas as pd
 import pytest
 
 from studies.record import style
-from studies.record.digits import Digits, as_csv, differing
 from studies.record.files import OutputError, replace_folder, write_whole
 from studies.record.source import ROOT
-from studies.record.store import Store, inputs
+from studies.record.store import Digits, Store, as_csv, differing, inputs
 
 STUDY = "paper/example"
 MODULE = "studies.answers.metrics"
