@@ -51,7 +51,7 @@ def _surrogates(results: Results) -> Table:
     yield ["error below 1 % up to", *QUANTITIES]
     for model in (*SIMPLE, *SPLINES):
         own = (ends.loc[model, quantity] for quantity in QUANTITIES)
-        yield [model, *("the end" if pd.isna(end) else angle()(end) for end in own)]
+        yield [model, *("the end" if pd.isna(end) else angle(end) for end in own)]
 
 
 def _nearer(results: Results) -> float:
@@ -101,7 +101,7 @@ def _ranges(results: Results) -> Table:
     found = RANGES.rows(results).pivot(index="crossing_ratio", columns="strength", values="rotation_deg")
     yield ["crossing ratio", *(f"strength {significant(each, 1)}" for each in found.columns)]
     for ratio, own in found.iterrows():
-        yield [f"λ = {significant(ratio, 3)}", *map(dash(angle()), own)]
+        yield [f"λ = {significant(ratio, 3)}", *map(dash(angle), own)]
 
 
 @listing("points")
@@ -126,7 +126,7 @@ def _effects(results: Results) -> Table:
 LISTINGS["validity"] = VALIDITY.table(
     {
         "pivot": ("pivot", lambda name: name.replace("cross_axis", "benchmark").replace("_", " ")),
-        "rotation": ("rotation_deg", angle()),
+        "rotation": ("rotation_deg", angle),
         "t/L": ("thickness_ratio", significant),
         "b/L": ("width_ratio", significant),
         "clamping, from": ("clamped_least", percent),

@@ -42,18 +42,11 @@ def test_default_is_never_wrong(family):
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_references_are_settled(family):
-    """Requirement: what others are held against agrees with its own refinement and an independent model."""
-    found = tables(family)
-    if "references" not in found:
-        pytest.skip("judged by closed books or against itself")
-    references = found["references"]
-    assert (references["settled"] == "yes").all(), references[references["settled"] != "yes"].to_string()
-
-
-def test_the_paper_s_choices_are_seen_to_be_wrong():
-    """Requirement: the judgement has teeth: the locking cubic fails where the default does not."""
-    found = tables("stability/geometry")["outcomes"]
-    assert (found[found["model"] == PAPER]["outcome"] == "wrong").all()
+    """Requirement: what others are held against, if not closed books or themselves, agrees with its own
+    refinement and an independent model."""
+    if "references" in tables(family):
+        references = tables(family)["references"]
+        assert (references["settled"] == "yes").all(), references[references["settled"] != "yes"].to_string()
 
 
 def limit():
@@ -125,17 +118,14 @@ def test_both_models_are_on_the_same_branches():
     gates.hold("buckling_branches", energy_difference)
 
 
-def test_the_default_is_right():
-    """Requirement: limits, branches and the turned pivot: the default finds each, none is refused."""
+def test_the_default_is_right_where_the_paper_s_choices_are_wrong():
+    """Requirement: limits, branches and the turned pivot: the default finds each; the judgement has teeth,
+    the locking cubic fails in all geometries and misses most of what is asked of buckling."""
     counts = tables("stability/buckling")["counts"].set_index("model")
-    assert counts.loc[DEFAULT, "right"] == counts.loc[DEFAULT, "tried"]
-
-
-def test_the_paper_s_choices_are_wrong():
-    """The judgement has teeth: the locking cubic misses most of what is asked."""
-    counts = tables("stability/buckling")["counts"].set_index("model")
+    assert (counts.loc[[DEFAULT, TWELVE], "right"] == counts.loc[[DEFAULT, TWELVE], "tried"]).all()
     assert counts.loc[PAPER, "wrong"] > counts.loc[PAPER, "tried"] / 2
-    assert counts.loc[TWELVE, "right"] == counts.loc[TWELVE, "tried"]
+    found = tables("stability/geometry")["outcomes"]
+    assert (found[found["model"] == PAPER]["outcome"] == "wrong").all()
 
 
 def raising(error):
