@@ -206,13 +206,13 @@ def prices(design: Design) -> list[dict[str, Any]]:
     """
     spline = SplineSettings(control_points=CONTROL_POINTS)
     design = _sided(design)
-    own = Answer.of(design, spline)[0]
+    own = Answer.of(design, spline)
     missing = tuple(name for name in OF_SIDES if name not in design.effects.names)
     asked = {name: (name,) for name in missing} | ({ALL: missing} if len(missing) > 1 else {})
     found = [_price(name, with_sections(design, added), spline, lambda: own) for name, added in asked.items()]
     stiff = FeSettings(elements=ELEMENTS)
     sheared = replace(stiff, element="reissner")
-    return [*found, _price(SHEAR, design, sheared, lambda: Answer.of(design, stiff)[0])]
+    return [*found, _price(SHEAR, design, sheared, lambda: Answer.of(design, stiff))]
 
 
 def _changes(found: Answer, own: Answer) -> dict[str, float]:
@@ -231,7 +231,7 @@ def _changes(found: Answer, own: Answer) -> dict[str, float]:
 
 def _price(effect: str, design: Design, settings: Settings, own: Callable[[], Answer]) -> dict[str, Any]:
     """Return a row of `prices`; without changes where there was no answer."""
-    found, status, reason = tried(lambda: (own(), Answer.of(design, settings)[0]))
+    found, status, reason = tried(lambda: (own(), Answer.of(design, settings)))
     changes = dict.fromkeys(CHANGED, np.nan) if found is None else _changes(found[1], found[0])
     largest = np.fmax.reduce(np.abs([*changes.values()]))
     return {"effect": effect, "status": status, **changes, "largest": largest, "reason": reason}

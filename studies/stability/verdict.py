@@ -26,7 +26,7 @@ from studies.cases.problem import Problem
 from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.paper import formulations as named
-from studies.paper.formulations import LOOKS, SETTINGS
+from studies.paper.formulations import LOOKS
 from studies.record.store import Digits
 
 DEFAULT = "spline, default"
@@ -35,29 +35,23 @@ VARIED = "spline, settings varied"
 LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
     LOOKS[name].label for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE, named.SIX)
 )
+#: Finer splines, for paths in arc length: the default reaches its end there.
+EIGHT, TWELVE = "spline n = 8", "spline n = 12"
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
-COLUMNS: dict[str, Settings] = {
+SETTINGS: dict[str, Settings] = {
     DEFAULT: SplineSettings(),
-    **{
-        LOOKS[each].label: SETTINGS[each]
-        for each in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE)
-    },
-}
-
-#: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
-#: Motions and arcs of frames take six by default.
-PATHS: dict[str, Settings] = {**COLUMNS, SIX: SETTINGS[named.SIX]}
-
-#: Those of paths in arc length: finer splines, as the default reaches its end there.
-EIGHT, TWELVE = "spline n = 8", "spline n = 12"
-ARCS: dict[str, Settings] = {
-    **COLUMNS,
+    **{LOOKS[name].label: settings for name, settings in named.SETTINGS.items()},
     EIGHT: SplineSettings(control_points=8),
     TWELVE: SplineSettings(control_points=12),
 }
-
+#: Those of all families; of paths, where the default takes as many control points as it needs (motions and
+#: arcs of frames take six by default); and of paths in arc length.
+COLUMNS, PATHS, ARCS = (
+    {name: SETTINGS[name] for name in (DEFAULT, LOCKING_FREE, PAPER, PRINTED, FE, *more)}
+    for more in ((), (SIX,), (EIGHT, TWELVE))
+)
 #: All columns, in the order of tables and figures.
 ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
 
