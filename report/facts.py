@@ -12,7 +12,7 @@ import pandas as pd
 
 from report.forms import Form
 from studies.errors import BadInput
-from studies.record.store import Store
+from studies.record.store import Store, inputs
 from studies.registry import STUDIES
 
 #: A table of the report: its heading, then rows of cells, one for each part of the heading.
@@ -78,7 +78,7 @@ class Results:
             raise ReportError(f"{study}: got no stored result, {remedy}") from None
         # the names of the cases are part of the source that is compared, so those noted suffice here and the
         # study, with the models behind it, need not be imported
-        state = self.store.state(study, module=STUDIES[study], cases=cases)
+        state = self.store.state(study, inputs(STUDIES[study], cases))
         if state.kind == "fresh":
             return
         if state.kind == "missing" or not self._allow_stale:

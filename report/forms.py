@@ -94,9 +94,9 @@ def digits(number: int) -> Form:
     return lambda value: significant(value, number)
 
 
-def angle(number: int = 2) -> Form:
-    """Return a form that writes an angle given in degrees, with so many digits."""
-    return lambda value: f"{significant(value, number)}°"
+def angle(value: Any) -> str:
+    """Return an angle given in degrees."""
+    return f"{significant(value)}°"
 
 
 def dash(form: Form) -> Form:

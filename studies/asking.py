@@ -15,79 +15,54 @@ from studies.engine import Answer, Part, Study
 from studies.kinds import Progress
 from studies.registry import study_at
 
-#: Part and place of a point in a study.
-Key = tuple[int, int]
+#: Place of a study, number of its part and of the point.
+Key = tuple[str, int, int]
+#: Points of studies by their keys, in the order of their answers.
+Points = dict[Key, tuple[Part, Any]]
 #: An answer and the seconds that it took.
 Timed = tuple[Answer, float]
 
 
-class Asking:
-    """A study that is asked point by point.
-
-    Attributes:
-        study: the declaration.
-        points: part and point, by their key, in the order of the answers.
-        found: the answers by now.
-    """
-
-    def __init__(self, study: Study) -> None:
-        self.study = study
-        self.points = _points(study)
-        self.found: dict[Key, Timed] = {}
-
-    @property
-    def seconds(self) -> float:
-        """What all answers took, one after the other [s]."""
-        return sum(seconds for _, seconds in self.found.values())
-
-    def open(self) -> dict[Key, bool]:
-        """Return the points without an answer, and whether nothing may run beside them."""
-        return {key: part.alone for key, (part, _) in self.points.items() if key not in self.found}
-
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """Return the tables of the study, all points of which are answered."""
-        return self.study.tables(self.found[key][0] for key in self.points)
-
-
-def whole(askings: Mapping[str, Asking], progress: Progress, pool: Executor | None = None) -> Iterator[str]:
-    """Ask all points, and yield each study as soon as it is whole.
+def whole(
+    studies: Mapping[str, Study], progress: Progress, pool: Executor | None = None
+) -> Iterator[tuple[str, dict[str, pd.DataFrame], float]]:
+    """Ask all points, and yield each study as soon as it is whole: its place, its tables, and what all its
+    answers took, one after the other [s].
 
     Args:
-        askings: by the place of their study, as of `study_at`, where other processes find it.
+        studies: by their places, as of `study_at`, where other processes find them.
         progress: is told how many points of how many of all studies are done.
         pool: has points of all studies beside each other, but for those that must be alone, which come when
             it has done the others. Without it one study comes after the other.
     """
+    points = {key: one for place, study in studies.items() for key, one in _points(place, study).items()}
+    found: dict[Key, Timed] = {}
+    progress(0, len(points))
+    for key, timed in _answers(points, pool):
+        found[key] = timed
+        progress(len(found), len(points))
+        mine = [each for each in points if each[0] == key[0]]
+        if all(each in found for each in mine):
+            answers, seconds = zip(*(found[each] for each in mine), strict=True)
+            yield key[0], studies[key[0]].tables(answers), sum(seconds)
 
-    def tell() -> None:
-        progress(sum(len(each.found) for each in askings.values()), count)
 
-    count = sum(len(each.points) for each in askings.values())
-    tell()
-    waiting = {
-        pool.submit(_elsewhere, place, key): (place, key)
-        for place, asking in askings.items()
-        for key, alone in asking.open().items()
-        if pool and not alone
-    }
-    rest = dict(askings)
+def _answers(points: Points, pool: Executor | None) -> Iterator[tuple[Key, Timed]]:
+    """Yield the answer of each point: those of other processes, then those of this one."""
+    beside = [key for key, (part, _) in points.items() if pool and not part.alone]
+    waiting = {pool.submit(_elsewhere, key): key for key in beside if pool}
     for future in as_completed(waiting):
-        place, key = waiting[future]
-        askings[place].found[key] = future.result()
-        tell()
-        if not askings[place].open():
-            del rest[place]
-            yield place
-    for place, asking in rest.items():
-        for key in asking.open():
-            asking.found[key] = _timed(*asking.points[key])
-            tell()
-        yield place
+        yield waiting[future], future.result()
+    yield from ((key, _timed(*point)) for key, point in points.items() if key not in beside)
 
 
-def _points(study: Study) -> dict[Key, tuple[Part, Any]]:
+def _points(place: str, study: Study) -> Points:
     """Return part and point by their key."""
-    return {(i, k): (part, point) for i, part in enumerate(study.parts) for k, point in enumerate(part.at())}
+    return {
+        (place, i, k): (part, point)
+        for i, part in enumerate(study.parts)
+        for k, point in enumerate(part.at())
+    }
 
 
 def _timed(part: Part, point: Any) -> Timed:
@@ -96,14 +71,14 @@ def _timed(part: Part, point: Any) -> Timed:
     return part.answer(point), time.perf_counter() - start
 
 
-def _elsewhere(place: str, key: Key) -> Timed:
+def _elsewhere(key: Key) -> Timed:
     """Answer one point in another process, which has the study from its place."""
-    return _timed(*_found_at(place)[key])
+    return _timed(*_points_at(key[0])[key])
 
 
 @cache
-def _found_at(place: str) -> dict[Key, tuple[Part, Any]]:
-    return _points(study_at(place))
+def _points_at(place: str) -> Points:
+    return _points(place, study_at(place))
 
 
 @contextmanager

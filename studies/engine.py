@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from studies.cases.problem import TABLE_1
-from studies.record.digits import Digits
+from studies.record.store import Digits
 
 #: Tables of a study, by name.
 Tables = Mapping[str, pd.DataFrame]
@@ -128,7 +128,7 @@ class Study:
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
         figures: name -> what draws it from the tables as they come back from their files; none by default.
         varying: tables that differ from run to run, beside those whose name says time.
-        digits: tolerances that are not those of `studies.record.digits`, by "table.column" or "column"; None
+        digits: tolerances that are not those of `studies.record.store`, by "table.column" or "column"; None
             for a column that is not compared.
         missing: says in a line what this machine lacks for it, and nothing where it can be run.
     """

@@ -106,7 +106,7 @@ def question_of(name: str) -> str:
     module, _, constant = STUDIES[name].partition(":")
     path = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
     text = path.read_text(encoding="utf-8")
-    said = re.search(rf'^{constant} = .*?^\)\n"""(.*)', text, re.DOTALL | re.MULTILINE) if constant else None
+    said = re.search(rf'^{constant} = .*?\)\n"""(.*)', text, re.DOTALL | re.MULTILINE) if constant else None
     first = said[1] if said else text.removeprefix('"""')
     return first.partition("\n")[0].removesuffix('"""').removesuffix(".")
 

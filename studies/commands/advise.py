@@ -28,8 +28,7 @@ from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command
-from studies.cost.advice import advise_path, advise_swing
-from studies.cost.tried import PATH_ERRORS, PATH_JUDGED
+from studies.cost.tried import PATH_ERRORS, PATH_JUDGED, advise_path, advise_swing
 from studies.record.progress import Bar
 
 #: What is tried, the errors that it is judged by, and those that are told.

@@ -3,17 +3,15 @@
 import argparse
 import sys
 from collections.abc import Iterator
-from typing import Any
 
-from studies.asking import Asking, cores, processes, whole
+from studies.asking import cores, processes, whole
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
 from studies.engine import Study, Tables
 from studies.errors import BadInput
 from studies.record import style
-from studies.record.digits import differing
 from studies.record.progress import Bar
-from studies.record.store import Store
+from studies.record.store import Inputs, Store, differing, inputs
 from studies.registry import STUDIES, selected, study_of
 
 DIFFERS = 1
@@ -49,24 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"{name}: left as it is: {reason}", file=sys.stderr)
         else:
             names.append(name)
-    for name, asking, bar in _whole(names, arguments.processes):
-        study, tables = asking.study, asking.tables()
+    for name, study, tables, seconds, bar in _whole(names, arguments.processes):
         stored = _stored(store, name)
         other = _differing(stored, tables, study)
         kept = {each: stored[each] for each in stored if each not in other and not study.varies(each)}
-        changed = store.save_tables(
-            name,
-            {**tables, **kept},
-            module=STUDIES[name],
-            cases=study.cases,
-            command=f"python -m studies run {name}",
-            elapsed=asking.seconds,
-        )
-        if changed:
+        if store.save_tables(name, {**tables, **kept}, _inputs(name, study), seconds):
             with style.applied():
                 store.save_figures(name, study.draw(store.load_tables(name)))
         said = f"changed: {', '.join(other.values())}" if stored and other else "stored"
-        bar.say(f"{name}: {asking.seconds:.1f} s: {said}: {store.data(name)}, figures in {store.figures}")
+        bar.say(f"{name}: {seconds:.1f} s: {said}: {store.data(name)}, figures in {store.figures}")
     return 0
 
 
@@ -105,17 +94,16 @@ def verify(arguments: argparse.Namespace) -> int:
     store, code, asked = Store(arguments.results), 0, []
     for name in selected(arguments.names):
         study = study_of(name)
-        said = study.missing() or store.state(name, module=STUDIES[name], cases=study.cases).kind
+        said = study.missing() or store.state(name, _inputs(name, study)).kind
         if said == "stale" or (said == "fresh" and arguments.fresh_too):
             asked.append(name)
         else:
             print(f"{name}: {said}", file=sys.stderr)
-    for name, asking, bar in _whole(asked, arguments.processes):
-        known: dict[str, Any] = {"module": STUDIES[name], "cases": asking.study.cases}
-        other = _differing(store.load_tables(name), asking.tables(), asking.study)
+    for name, study, tables, _, bar in _whole(asked, arguments.processes):
+        now, other = _inputs(name, study), _differing(store.load_tables(name), tables, study)
         if not other:
-            store.renew(name, **known)
-        kind = store.state(name, **known).kind
+            store.renew(name, now)
+        kind = store.state(name, now).kind
         bar.say(f"{name}: " + (f"differs: {', '.join(other.values())}" if other else f"the same, {kind}"))
         code = DIFFERS if other or kind != "fresh" else code
     return code
@@ -132,20 +120,25 @@ def status(arguments: argparse.Namespace) -> int:
     """
     store = Store(arguments.results)
     width = max(map(len, STUDIES))
-    for name, module in STUDIES.items():
-        state = store.state(name, module=module, cases=study_of(name).cases)
+    for name in STUDIES:
+        state = store.state(name, _inputs(name, study_of(name)))
         print(f"{name:{width}}  {state.kind:7}  {state.reason}".rstrip())
     return 0
 
 
-def _whole(names: list[str], count: int) -> Iterator[tuple[str, Asking, Bar]]:
-    """Yield studies as their points are all answered, by so many processes, while a bar shows how far they
-    are."""
+def _inputs(name: str, study: Study) -> Inputs:
+    """Return the hashes of what a study is made from now."""
+    return inputs(STUDIES[name], study.cases)
+
+
+def _whole(names: list[str], count: int) -> Iterator[tuple[str, Study, Tables, float, Bar]]:
+    """Yield studies with their tables and seconds as their points are all answered, by so many processes,
+    while a bar shows how far they are."""
     names_at = {STUDIES[name]: name for name in names}
-    askings = {place: Asking(study_of(name)) for place, name in names_at.items()}
+    studies = {place: study_of(name) for place, name in names_at.items()}
     with processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
-        for place in whole(askings, bar, pool):
-            yield names_at[place], askings[place], bar
+        for place, tables, seconds in whole(studies, bar, pool):
+            yield names_at[place], studies[place], tables, seconds, bar
 
 
 def _stored(store: Store, name: str) -> Tables:

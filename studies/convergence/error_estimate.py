@@ -25,7 +25,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
-from studies.record.digits import Digits
+from studies.record.store import Digits
 
 SEED = 2013
 #: Static designs: how many, their bounds, and what is asked for [1].
@@ -175,21 +175,8 @@ def _of_problems(tables: Tables) -> Iterator[Row]:
         }
 
 
-#: Claims, what is measured of each kind of problem, its column, and the least that it may be.
-JUDGED = (
-    (
-        f"Estimates lie within {BAND[0]:g} to {BAND[1]:g} times the true error for {SHARE:.0%}",
-        "the share of designs and accuracies whose estimates all do",
-        "inside",
-        SHARE,
-    ),
-    (
-        "No estimate is optimistic by more than three times",
-        "the least estimate over its true error",
-        "least",
-        LEAST,
-    ),
-    ("The true error is below what was asked for", "the share of errors that are", "met", 1.0),
+_judged = partial(
+    Claim, formulation="{problem}, {estimates} estimates of {designs} designs", rows=_of_problems
 )
 
 #: Errors of a few units of round-off, and so which of them count, differ between processors.
@@ -207,16 +194,25 @@ STUDY = Study(
         Part(at=lambda: _drawn(SWING_BOUNDS, SWINGS), ask=_swings),
         Part(at=lambda: ACCURACIES, ask=lambda each: {"timings": _timed(each)}, alone=True),
     ),
-    claims=tuple(
-        Claim(
-            claim=claim,
-            formulation="{problem}, {estimates} estimates of {designs} designs",
-            quantity=quantity,
-            rows=_of_problems,
-            value=value,
-            least=least,
-        )
-        for claim, quantity, value, least in JUDGED
+    claims=(
+        _judged(
+            claim=f"Estimates lie within {BAND[0]:g} to {BAND[1]:g} times the true error for {SHARE:.0%}",
+            quantity="the share of designs and accuracies whose estimates all do",
+            value="inside",
+            least=SHARE,
+        ),
+        _judged(
+            claim="No estimate is optimistic by more than three times",
+            quantity="the least estimate over its true error",
+            value="least",
+            least=LEAST,
+        ),
+        _judged(
+            claim="The true error is below what was asked for",
+            quantity="the share of errors that are",
+            value="met",
+            least=1.0,
+        ),
     ),
     digits=DIGITS,
 )

@@ -16,7 +16,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.paper.formulations import FE, SETTINGS, SIX, STEPS, refined_swing, released, resolved
-from studies.record.digits import Digits
+from studies.record.store import Digits
 
 COUNTS = tuple(STEPS)
 #: Beyond this count the consistent form, whose axial waves are faster, needs shorter steps; nor does it lock.

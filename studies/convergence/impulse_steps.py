@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
+import pandas as pd
 from matplotlib.figure import Figure
 
 from spline_model.pivot import Pivot
@@ -14,7 +15,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Study, Tables
-from studies.record.marks import Level, Slope
+from studies.record.marks import MARK, Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import GREEN, GREY, ORANGE, RED, Look
 
@@ -32,6 +33,7 @@ LOOKS = {
     for group, colour in zip(GROUPS, (ORANGE, GREEN, GREY), strict=True)
 }
 FEW = Look(label="with 1, 2, 3 sweeps only", colour=RED, line="", marker="x")
+EQUAL = Look(label="_equal", colour=MARK)
 
 #: The paper's step [s].
 PAPER_STEP = 0.01
@@ -93,7 +95,7 @@ def _figure(tables: Tables) -> Figure:
         (
             Curves(rows[rows["sweeps"] == 0], LOOKS, by=("design", "group"), more={"markersize": 6}),
             Curves(rows[(rows["sweeps"] > 0) & (rows["ratio"] < 0.99)], FEW),
-            Slope(through=ends[:1] * 2, power=1, span=ends, label="_", line="-"),
+            Curves(pd.DataFrame({"predicted_s": ends, "measured_s": ends}), EQUAL),
             Level(PAPER_STEP, words="the paper's 1/100 s", line=":"),
         ),
     )

@@ -2,12 +2,10 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from studies.answers.adapters import answer_static
@@ -20,10 +18,10 @@ from studies.cases.problem import named_case
 from studies.engine import Claim, Part, Row, Study, Tables, percent
 from studies.kinds import Progress
 from studies.paper.formulations import FE, LOOKS, SIX, refined
-from studies.record.marks import Doubt
+from studies.record.marks import Doubt, HeatMap
 from studies.record.panels import CONTROL_POINTS, MESH, STRIP_POINTS, Axis, Curves, Panel, sheet
 from studies.record.progress import silent, watched
-from studies.record.style import ELEMENTS, STRETCH, page
+from studies.record.style import ELEMENTS, STRETCH, Look
 
 #: Meshes above this one are answered but not extrapolated from: their stiffness carries too much round-off.
 FINEST = 160
@@ -173,8 +171,12 @@ COUNTS = {1: range(4, 13), 2: range(4, 9)}
 #: Segments of a strip with so many control points each.
 SEGMENTS, EACH = range(1, 6), 5
 MEASURES = ("material", "spatial")
+#: Stretch forms with axial modes.
+STRETCHES = ("mixed", "inextensible")
 #: Error that is asked of trajectory and torque [1].
 CLOSE = 1e-4
+#: Look of the default in a heat map.
+RING = Look(label="_default", colour="white", line="", marker="o", hollow=True)
 
 
 def _settings() -> list[SplineSettings]:
@@ -184,17 +186,13 @@ def _settings() -> list[SplineSettings]:
     """
     grids = [(segments, n) for segments, counts in COUNTS.items() for n in counts]
     grids += [(segments, EACH) for segments in SEGMENTS if segments not in COUNTS]
-    forms: list[tuple[int, int, str, str, int | None]] = []
+    found = []
     for segments, n in grids:
-        modes = range(1, n) if segments in COUNTS else (n - 2,)
-        forms += [(segments, n, measure, "consistent", None) for measure in MEASURES]
-        forms += [
-            (segments, n, "material", stretch, m) for stretch in ("mixed", "inextensible") for m in modes
-        ]
-    return [
-        SplineSettings(segments=segments, measure=measure, control_points=n, stretch=stretch, axial_modes=m)
-        for segments, n, measure, stretch, m in forms
-    ]
+        plain = SplineSettings(segments=segments, control_points=n)
+        found += [replace(plain, measure=measure, stretch="consistent") for measure in MEASURES]
+        for stretch, m in product(STRETCHES, range(1, n) if segments in COUNTS else (n - 2,)):
+            found.append(replace(plain, measure="material", stretch=stretch, axial_modes=m))
+    return found
 
 
 def _default_modes(rows: pd.DataFrame) -> pd.DataFrame:
@@ -216,34 +214,18 @@ def _lines(tables: Tables) -> Figure:
 
 
 def _maps(tables: Tables) -> Figure:
-    figure = page(9.5, 4.4)
-    panels = figure.subplots(1, 2, sharey=True)
+    """Draw the error of the torque over control points and axial modes, with rings around the default."""
     rows = tables["map"].query("stretch == 'mixed' and measure == 'material'")
-    norm = LogNorm(1e-10, 1.0)
-    for panel, (segments, counts) in zip(panels, COUNTS.items(), strict=True):
-        _map(panel, rows[rows["segments"] == segments], counts, norm)
-        panel.set_title("one segment" if segments == 1 else f"{segments} segments")
-        panel.set_xlabel("control points a segment, n")
-    panels[0].set_ylabel("axial-force modes a segment, m")
-    figure.suptitle("Numbers: decimal exponent of the error; rings: the default m = n - 2; x: not converged")
-    figure.colorbar(panels[0].collections[0], ax=panels, label="largest error of the torque [1]")
-    return figure
-
-
-def _map(panel: Axes, rows: pd.DataFrame, counts: range, norm: LogNorm) -> None:
-    """Draw the errors as coloured squares with their decimal exponent; a failed point is a cross."""
-    modes = np.arange(1, max(counts))
-    told: list[str] = ["axial_modes", "control_points", "error_torque"]
-    for m, n, error in rows[told].itertuples(index=False):
-        text = f"{np.log10(error):.0f}" if np.isfinite(error) else "x"
-        colour = "white" if error < 1e-5 else "black"
-        panel.text(n, m, text, ha="center", va="center", fontsize=7.5, color=colour)
-    grid = rows.pivot(index=told[0], columns=told[1], values=told[2]).reindex(index=modes, columns=counts)
-    edges = np.arange(counts[0] - 0.5, counts[-1] + 1.0)
-    panel.pcolormesh(edges, np.arange(0.5, len(modes) + 1.0), grid, norm=norm, cmap="viridis")
-    panel.grid(False)
-    panel.plot(counts, np.array(counts) - 2, "o", markersize=15, markerfacecolor="none", color="white")
-    panel.set(xticks=list(counts), yticks=list(modes))
+    modes = Axis("axial_modes", "axial-force modes a segment, m", ticks=range(1, max(COUNTS[1])))
+    points = Axis("control_points", "control points a segment, n", each=True)
+    panels = []
+    for segments, title in zip(COUNTS, ("one segment", "two segments"), strict=True):
+        mine = rows[rows["segments"] == segments]
+        errors = HeatMap(rows=mine, column="error_torque", limits=(1e-10, 1.0))
+        rings = Curves(_default_modes(mine), RING, more={"markersize": 15})
+        panels.append(Panel(points, modes, (errors, rings), title=title))
+    title = "Numbers: decimal exponent of the error; rings: the default m = n - 2; x: not converged"
+    return sheet(9.5, 4.4, [panels], title=title, colours="largest error of the torque [1]")
 
 
 def _forms(tables: Tables) -> Iterator[Row]:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,15 +19,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from studies.answers.reference import largest_errors
+from studies.answers import reference
+from studies.answers.reference import Reference, SwingReference, largest_errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.problem import TABLE_1, named_case
+from studies.cases.design import Design
+from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cost import tried
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
+from studies.kinds import Array
 from studies.paper.formulations import INSTANTS
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
@@ -45,7 +49,16 @@ LEVELS = {"paths": (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6), "swings": (1e-1, 2e-2, 
 CERTAINTY = 2.0
 #: Columns of what was measured in seconds, which stand in tables of their own.
 TIMES = ("whole_s", "low_s", "high_s", "solve_s", "runs")
-NAMED = ("model", "group", "setting")
+#: Columns that say which setting it is.
+WHICH = ("model", "group", "setting")
+
+
+#: Control points and steps [s] of the splines that are the limit of a swing, the finer one first.
+SWINGS = {16: 3e-7, 14: 4e-7}
+#: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
+SHEAR_MESHES = (36, 54, 81, 121)
+#: What the other codes' rods with shear have beside it.
+ROTARY = "section_rotary_inertia"
 
 
 def _codes() -> list[dict[str, str]]:
@@ -62,7 +75,7 @@ def _codes() -> list[dict[str, str]]:
 def _paths() -> Answer:
     """Return limits, errors and times of the static path."""
     design = named_case()
-    limits, rows = tried.path_limits(design)
+    limits, rows = _path_limits(design)
     finest = []
     for model, settings in FINEST.items():
         if model.installed():
@@ -76,22 +89,60 @@ def _paths() -> Answer:
 def _swings() -> Answer:
     """Return limits, errors and times of the swing."""
     design = named_case()
-    limits, rows = tried.swing_limits(design, INSTANTS)
+    limits, rows = _swing_limits(design, INSTANTS)
     found = tried.compared(swings(), design, limits, INSTANTS)
     return {"swing_limits": rows, **_apart("swings", found)}
+
+
+def _path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
+    """Return the limits of all theories, and rows of how certain they are and how far apart."""
+    limits = {theory: tried.path_limit(design, theory) for theory in tried.THEORIES}
+    rows = [
+        {
+            "theory": theory,
+            "quantity": name,
+            "uncertainty": limit.uncertainty[name],
+            "distance_to_material": largest_errors(limit, limits[tried.MATERIAL])[name],
+            "source": limit.source,
+        }
+        for theory, limit in limits.items()
+        for name in reference.QUANTITIES
+    ]
+    return limits, rows
+
+
+def _swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
+    """Return the swing of either theory at the instants, with rows of how certain they are."""
+    with_rotary = replace(problem, effects=problem.effects.plus(ROTARY))
+    sheared = reference.swing_reference(
+        with_rotary,
+        duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",
+    )  # fmt: skip
+    limits = {tried.MATERIAL: tried.swing_limit(problem, instants, "leapfrog", SWINGS), tried.SHEAR: sheared}
+    rows = [
+        {
+            "theory": theory,
+            "rotation_rad": limit.uncertainty["rotation_rad"],
+            "frequency_error": limit.uncertainty["frequency"],
+            "distance_to_material_rad": float(np.abs(limit.rotation - limits[tried.MATERIAL].rotation).max()),
+            "source": limit.source,
+        }
+        for theory, limit in limits.items()
+    ]
+    return limits, rows
 
 
 def _apart(name: str, found: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Return errors and work, and the times, as tables of their own."""
     timed = found[found["runs"] > 0]
-    return {name: found.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*NAMED, *TIMES]]}
+    return {name: found.drop(columns=[*TIMES]), f"{name[:-1]}_times": timed[[*WHICH, *TIMES]]}
 
 
 def _joined(tables: Tables, name: str) -> pd.DataFrame:
     """Return errors and times in one table."""
     rows = tables[name].assign(setting=tables[name]["setting"].fillna(""))
     times = tables[f"{name[:-1]}_times"]
-    return rows.merge(times.assign(setting=times["setting"].fillna("")), on=[*NAMED], how="left")
+    return rows.merge(times.assign(setting=times["setting"].fillna("")), on=[*WHICH], how="left")
 
 
 def _ratios(name: str, tables: Tables) -> Iterator[Row]:

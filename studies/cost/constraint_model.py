@@ -27,8 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import geometry_of
-from studies.cost.one_coordinate import Law, State, Surrogate
+from studies.cost.model import Law, State, Surrogate, geometry_of
 from studies.errors import Unanswered
 from studies.kinds import Array
 

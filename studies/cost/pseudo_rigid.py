@@ -49,8 +49,7 @@ from typing import Any
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import Geometry, geometry_of
-from studies.cost.one_coordinate import Law, State, Surrogate
+from studies.cost.model import Geometry, Law, State, Surrogate, geometry_of
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -69,7 +68,7 @@ def small_angle_stiffness(problem: Problem) -> float:
     return 8.0 * rigidity / problem.length * (1.0 - 3.0 * away + 3.0 * away**2)
 
 
-def shift_coefficient(problem: Problem) -> float:
+def _shift_coefficient(problem: Problem) -> float:
     """Return d / p^2 of the linear pivot [m]."""
     away = 1.0 - problem.crossing_ratio
     return -(9.0 * away**2 - 9.0 * away + 1.0) * problem.length / (15.0 * math.sin(problem.inclination))
@@ -123,7 +122,7 @@ def _linear_law(problem: Problem) -> Law:
     b, c = 3.0 * away - 1.0, 1.0 - 2.0 * away
     strip = problem.density * problem.area * problem.length**3
     strips = 2.0 * strip * (b**2 / 5.0 + b * c / 3.0 + c**2 / 7.0)
-    return _constant(problem, small_angle_stiffness(problem), strips, shift_coefficient(problem))
+    return _constant(problem, small_angle_stiffness(problem), strips, _shift_coefficient(problem))
 
 
 def _pinned_law(problem: Problem) -> Law:
@@ -152,7 +151,7 @@ def link_length(problem: Problem) -> float:
     The linkage shifts by q b p^2 / (2 (q + b) sin(a)) with q b = L^2 (c^2/4 - e^2), e = crossing ratio - 1/2.
     """
     offset = problem.crossing_ratio - 0.5
-    wanted = shift_coefficient(problem) * math.sin(problem.inclination) / problem.length
+    wanted = _shift_coefficient(problem) * math.sin(problem.inclination) / problem.length
     return 4.0 * wanted + math.sqrt(16.0 * wanted**2 + 4.0 * offset**2)
 
 

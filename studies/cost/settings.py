@@ -49,7 +49,8 @@ WORDS = {
     "element": "{}",
     "solver": "{}",
 }
-COUNTS = ("control_points", "elements")
+#: What makes a setting finer: more of it, or less.
+FINER = {"step": -1.0, "accuracy": -1.0, "control_points": 1.0, "elements": 1.0}
 
 
 def missing() -> str:
@@ -83,18 +84,17 @@ class Setting:
     @property
     def family(self) -> str:
         """What settings have in common that differ from it in their fineness alone."""
-        finer = ("step",) if "step" in self.settings else ("accuracy", *COUNTS)
+        finer = ("step",) if "step" in self.settings else FINER
         same = {name: value for name, value in self.settings.items() if name not in finer}
         return ", ".join((self.model.name, *self._told(same)))
 
     @property
     def fineness(self) -> float:
         """A number that grows with it within a family."""
-        if "step" in self.settings:
-            return -float(self.settings["step"])
-        if "accuracy" in self.settings:
-            return -float(self.settings["accuracy"])
-        return float(next((self.settings[name] for name in COUNTS if name in self.settings), 1.0))
+        for name, sign in FINER.items():
+            if name in self.settings:
+                return sign * float(self.settings[name])
+        return 1.0
 
     @staticmethod
     def _told(settings: Mapping[str, Any]) -> list[str]:

@@ -2,7 +2,7 @@
 
 A time is that of a whole call, once all is compiled and loaded: from the design in memory to the answer in
 common terms, set-up included, and of a swing the static path to its start. What the model says of its
-increments or steps alone stands beside it.
+increments or steps alone stands beside it. An advice is the cheapest setting of every model on one design.
 """
 
 import math
@@ -16,11 +16,13 @@ import numpy as np
 import pandas as pd
 
 from studies.answers import reference
-from studies.answers.adapters import answer_release, answer_static
+from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.reference import Reference, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
+from studies.cost import settings as listed
+from studies.cost.model import elements, spline
 from studies.cost.settings import HINT, Setting
 from studies.engine import Row
 from studies.errors import BadInput, Unanswered
@@ -29,18 +31,12 @@ from studies.record.progress import measure, silent
 
 #: Theories of a strip, by what their energies are measured in: bending per reference length without shear,
 #: per current length as the paper's Eq 10, and per reference length with shear.
-MATERIAL, SPATIAL, SHEAR = "material", "spatial", "shear"
+THEORIES = MATERIAL, SPATIAL, SHEAR = "material", "spatial", "shear"
 #: Control points of the spatial limit, and of the one below that says how uncertain it is.
 SPATIAL_POINTS = (15, 13)
-#: Control points and steps [s] of the splines that are the limit of a swing, the finer one first.
-SWINGS = {16: 3e-7, 14: 4e-7}
 #: Records of these: the strips' own oscillations are some 40 times as fast as the swing, and cubic
 #: interpolation between so many errs by less than 1e-6 rad.
 RECORDS = 4000
-#: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
-SHEAR_MESHES = (36, 54, 81, 121)
-#: What the other codes' rods with shear have beside it.
-ROTARY = "section_rotary_inertia"
 
 
 def path_limit(design: Design, theory: str) -> Reference:
@@ -61,23 +57,6 @@ def path_limit(design: Design, theory: str) -> Reference:
     return Reference.of(
         fine, coarse, "spline with {} control points; its distance to one with {}".format(*SPATIAL_POINTS)
     )
-
-
-def path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
-    """Return the limits of all theories, and rows of how certain they are and how far apart."""
-    limits = {theory: path_limit(design, theory) for theory in (MATERIAL, SPATIAL, SHEAR)}
-    rows = [
-        {
-            "theory": theory,
-            "quantity": name,
-            "uncertainty": limit.uncertainty[name],
-            "distance_to_material": reference.largest_errors(limit, limits[MATERIAL])[name],
-            "source": limit.source,
-        }
-        for theory, limit in limits.items()
-        for name in reference.QUANTITIES
-    ]
-    return limits, rows
 
 
 def swing_limit(
@@ -101,27 +80,6 @@ def swing_limit(
     told = (f"n = {n}" + (f" at {1e6 * step:g} µs" if step else "") for n, step in steps.items())
     uncertainty = reference.swing_errors(coarse, fine)
     return SwingReference(**vars(fine), uncertainty=uncertainty, source=" and ".join(told))
-
-
-def swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
-    """Return the swing of either theory at the instants, with rows of how certain they are."""
-    with_rotary = replace(problem, effects=problem.effects.plus(ROTARY))
-    sheared = reference.swing_reference(
-        with_rotary,
-        duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",
-    )  # fmt: skip
-    limits = {MATERIAL: swing_limit(problem, instants, "leapfrog", SWINGS), SHEAR: sheared}
-    rows = [
-        {
-            "theory": theory,
-            "rotation_rad": limit.uncertainty["rotation_rad"],
-            "frequency_error": limit.uncertainty["frequency"],
-            "distance_to_material_rad": float(np.abs(limit.rotation - limits[MATERIAL].rotation).max()),
-            "source": limit.source,
-        }
-        for theory, limit in limits.items()
-    ]
-    return limits, rows
 
 
 #: Passes through all settings, far apart in time: what else the machine does lasts longer than one setting.
@@ -229,3 +187,77 @@ def cheapest(rows: pd.DataFrame, judged: Sequence[str], error: float) -> pd.Data
         place: Any = within["whole_s"].idxmin() if len(within) else best
         found.append(rows.loc[place].to_dict() | {"meets": bool(len(within))})
     return pd.DataFrame(found)
+
+
+#: A motion is followed for this many periods of the first mode at rest, and compared at so many instants.
+PERIODS, INSTANTS = 4.0, 501
+#: Control points of the spline that motions are held against, and of the one that says how uncertain it is.
+REFERENCE = (16, 14)
+#: Passes of timing of an advice.
+ADVISED = 2
+
+
+def advise_path(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
+    """Return the advice for the static path of a design, each model against the limit of its own theory.
+
+    A row a group: setting, meets (whether trajectory and torque are within `error` over the path, and stay so
+    in all finer settings), errors of trajectory, torque, stiffness and stress, and of each the `uncertainty`
+    of its limit, times as of `tried`, message (why a model has no answer). Of a group that does not meet the
+    error it is the best setting.
+
+    Raises:
+        NoReference: the finite elements do not reach the end of the path.
+    """
+    asked = _askable(listed.paths(), design)
+    limits = {theory: path_limit(design, theory) for theory in {each.theory for each in asked}}
+    rows = compared(asked, design, limits, passes=ADVISED, progress=progress)
+    return _uncertain(cheapest(rows, PATH_JUDGED, error), limits)
+
+
+def advise_swing(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
+    """Return the advice for the motion of a design after its release from the end of its path.
+
+    Columns as of `advise_path`, with the errors of rotation (largest over the motion, over the rotation at
+    the start) and of frequency. All are held against a spline of `REFERENCE` control points.
+
+    Raises:
+        NoReference: that spline's motion stops early.
+    """
+    frequency = float(answer_modes(design, SplineSettings(control_points=6), count=1).frequency[0])
+    instants, start = np.linspace(0.0, PERIODS / frequency, INSTANTS), abs(design.rotation or 0.0)
+    steps: dict[int, float | None] = dict.fromkeys(REFERENCE)
+    limit = swing_limit(design, instants, _integrator(design, 0.1 * PERIODS / frequency), steps)
+    limits = {MATERIAL: limit}
+    asked = [each for each in _askable(listed.swings(frequency), design) if each.theory in limits]
+    rows = compared(asked, design, limits, instants, passes=ADVISED, progress=progress)
+    rows["rotation"] = rows.pop("rotation_rad") / start
+    known = limit.uncertainty
+    uncertainty = {"rotation": known["rotation_rad"] / start, "frequency": known["frequency"]}
+    best = cheapest(rows, ("rotation", "frequency"), error)
+    return _uncertain(best, {MATERIAL: replace(limit, uncertainty=uncertainty)})
+
+
+def _askable(given: list[Setting], design: Design) -> list[Setting]:
+    """Return the settings of installed models; of a mechanism those of the suite's own."""
+    own = (spline, elements)
+    pivot = isinstance(design, Problem)
+    return [each for each in given if each.model.installed() and (pivot or each.model in own)]
+
+
+def _integrator(design: Design, duration: float) -> str:
+    """Return the spline's most accurate integrator that the scene allows, by trying."""
+    try:
+        spline.swing(design, duration, integrator="leapfrog", control_points=4)
+    except Unanswered:
+        return "energy"
+    return "leapfrog"
+
+
+def _uncertain(found: pd.DataFrame, limits: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the advice with how uncertain the limit of each quantity is."""
+    names = next(iter(limits.values())).uncertainty
+    columns: dict[str, list[Any]] = {
+        f"uncertainty_{name}": [limits[theory].uncertainty[name] for theory in found["theory"]]
+        for name in names
+    }
+    return found.assign(**columns)

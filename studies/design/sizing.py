@@ -21,7 +21,7 @@ from studies.design import task as questions
 from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers
 from studies.design.optimise import Outcome, best, search
 from studies.design.task import BASELINES, QUESTIONS, UNITS, Task, variables_of, varied
-from studies.effects.beyond import with_sections
+from studies.effects.audit import with_sections
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.record.panels import Axis, Curves, Panel, sheet

@@ -125,7 +125,7 @@ class Answer:
         mode: first natural frequency at rest [Hz], NaN without one.
         swing: frequency of the swing after the release [Hz], NaN where none is driven or none is whole.
         loss: energy dissipated in the motion over the largest kinetic and strain energy [1].
-        wall_s: of the static path and the motion [s]; NaN without a whole motion.
+        static_s: of the static path, wall_s: of it and the motion [s]; NaN without a whole motion.
         stopped: whether the motion stopped early; note: why there is no whole motion.
     """
 
@@ -134,6 +134,7 @@ class Answer:
     stiffness: Array
     stress: Array
     mode: float
+    static_s: float
     swing: float = math.nan
     loss: float = math.nan
     wall_s: float = math.nan
@@ -141,22 +142,22 @@ class Answer:
     note: str = ""
 
     @classmethod
-    def of(cls, design: Design, settings: Settings) -> tuple[Self, float]:
-        """Return the answer without a motion, and what its path took [s].
+    def of(cls, design: Design, settings: Settings) -> Self:
+        """Return the answer without a motion.
 
         Raises:
             BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
         """
         static, turned = answer_static(design, settings).whole(), slice(-design.increments - 1, None)
         modes = answer_modes(design, settings, count=1).whole().frequency
-        answer = cls(
+        return cls(
             path=np.array([*static.bodies.values()]).reshape(-1, len(static.torque), 3)[:, turned, :2],
             torque=static.torque[turned],
             stiffness=static.stiffness[turned],
             stress=static.max_stress[turned],
             mode=float(modes[0]) if len(modes) else math.nan,
+            static_s=static.wall_s,
         )
-        return answer, static.wall_s
 
 
 def tried(ask: Callable[[], Given]) -> tuple[Given | None, str, str]:
@@ -223,7 +224,7 @@ class Run:
         Raises:
             BadInput: what the model refuses. Unanswered: a path that stopped early, and why.
         """
-        answer, wall_s = Answer.of(design, self.settings)
+        answer = Answer.of(design, self.settings)
         if full is not None and abs(answer.mode / full.mode - 1.0) > LOST:
             return replace(answer, note="no motion: the first mode is another")
         # massless strips may snap through between two states of a long step, unseen: then a companion stops
@@ -237,7 +238,7 @@ class Run:
             answer,
             swing=motion.frequency if design.rotation else math.nan,
             loss=float(motion.dissipated[-1]) / largest if largest > 0.0 else 0.0,
-            wall_s=wall_s + motion.wall_s,
+            wall_s=answer.static_s + motion.wall_s,
         )
 
     def outcome(self, variant: Variant, full: Answer) -> Outcome:

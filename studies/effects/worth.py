@@ -42,15 +42,11 @@ def _designs() -> dict[str, Problem]:
     """Return the four designs: Table 1, ten times more slender, with a heavy and with a light body."""
     given = named_case()
     slender = of_moments(given.area / 10.0, given.second_moment_of_area / 1000.0)
-    bodies: dict[str, dict[str, Any]] = {
-        name: {
-            "body_mass": given.body_mass * factor,
-            "body_moment_of_inertia": given.body_moment_of_inertia * factor,
-        }
-        for name, factor in (("heavier", 10.0), ("lighter", 0.1))
-    }
     found = {"Table 1": given, "ten times more slender": replace(given, **slender)}
-    return found | {f"body ten times {name}": replace(given, **body) for name, body in bodies.items()}
+    for name, factor in (("heavier", 10.0), ("lighter", 0.1)):
+        body: Any = {each: factor * getattr(given, each) for each in ("body_mass", "body_moment_of_inertia")}
+        found[f"body ten times {name}"] = replace(given, **body)
+    return found
 
 
 def _audited(name: str) -> Answer:

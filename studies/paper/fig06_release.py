@@ -44,7 +44,9 @@ def _compared() -> Answer:
     point, since the limit takes most of the time.
     """
     limit = formulations.refined_swing()
-    motions = {name: _motion(name) for name in (*SPLINES, FE, REFINED_SPLINE)}
+    asked = {name: SETTINGS[name] for name in (*SPLINES, FE)}
+    asked[REFINED_SPLINE] = SplineSettings(control_points=10)
+    motions = {name: formulations.resolved(settings) for name, settings in asked.items()}
     traces = {name: sampled(motion, formulations.INSTANTS) for name, motion in motions.items()}
     return {
         "motions": pd.concat(_trace(name, each, limit) for name, each in {REFINED: limit, **traces}.items()),
@@ -88,14 +90,6 @@ def _largest(motions: pd.DataFrame, y: Axis, *marks: Doubt) -> Panel:
     so_far = late.assign(**{y.column: late[y.column].abs().groupby(late["formulation"]).cummax()})
     others = {name: look for name, look in LINES.items() if name != REFINED}
     return Panel(TIME, y, (Curves(so_far, others), *marks))
-
-
-def _motion(name: str) -> Motion:
-    """Return the motion of one formulation: the splines' at a resolved step, the elements' at their own."""
-    settings = SplineSettings(control_points=10) if name == REFINED_SPLINE else SETTINGS[name]
-    if isinstance(settings, SplineSettings):
-        return formulations.resolved(settings)
-    return formulations.released(settings)
 
 
 def _trace(name: str, swing: SolvedMotion, limit: SolvedMotion) -> pd.DataFrame:

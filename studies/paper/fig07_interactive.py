@@ -7,7 +7,8 @@ the machine and on what else it does; the snapshots are the page's own canvas.
 import base64
 import io
 import time
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,7 +21,9 @@ from PIL import Image
 from studies.engine import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session import Session
-from studies.record import style
+from studies.record.marks import Level
+from studies.record.panels import Axis, Curves, Drawn, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREY, RED, Look
 
 #: The paper's pictures a second.
 PAPER_RATE = 25.0
@@ -33,6 +36,17 @@ WATCHED = 300
 #: What is kept of the canvas, as parts of its width and height, the size of a stored snapshot [px] and its
 #: colours: three of them stay below the size of a figure.
 PART, SIZE, COLOURS = (0.20, 0.15, 0.80, 0.85), (320, 280), 64
+#: Looks of the frames that are shown, and of the times of a frame: by preset and work, and in the loop.
+SHOWN = Look(label="_shown", colour=BLUE)
+SOLVING, FINDING = "in the loop, solving", "and finding the markers"
+TIMES = {
+    (preset, work): Look(label=f"{name}, {work}", colour=colour, line=line)
+    for preset, name, colour in (("polymer", "polymer", BLUE), ("table-1", "Table 1", RED))
+    for work, line in (("four steps", "--"), ("pose", "-"))
+} | {
+    SOLVING: Look(label=SOLVING, colour=GREY, line=":"),
+    FINDING: Look(label=FINDING, colour=BLACK),
+}
 #: Repeats of the solver alone.
 REPEATS = 3
 
@@ -152,62 +166,53 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
 
 def _figure(tables: Tables) -> Figure:
     """Draw the snapshots above the times."""
-    page = style.page(7.2, 4.6)
-    grid = page.add_gridspec(2, 6, height_ratios=(1.15, 1.0))
-    for k, row in enumerate(tables["snapshots"].sort_values("frame").to_dict("records")):
-        _snapshot(page.add_subplot(grid[0, 2 * k : 2 * k + 2]), row, "abc"[k])
-    _rate(page.add_subplot(grid[1, :3]), tables["frames_times"])
-    times = page.add_subplot(grid[1, 3:])
-    _times(times, tables["frames_times"], tables["alone_times"])
-    # below the axes: the curves need all of them
-    page.legend(
-        *times.get_legend_handles_labels(), loc="outside lower center", ncols=3, title="95 % of the frames in"
-    )
-    return page
+    shots = tables["snapshots"].sort_values("frame").to_dict("records")
+    taken: list[Drawn] = [partial(_snapshot, row, letter) for row, letter in zip(shots, "abc", strict=True)]
+    rate, times = _rate(tables["frames_times"]), _times(tables["frames_times"], tables["alone_times"])
+    rows: list[Sequence[Drawn]] = [[panel for panel in taken for _ in range(2)], [rate] * 3 + [times] * 3]
+    return sheet(7.2, 4.6, rows, heights=(1.15, 1.0), legend=3)
 
 
-def _snapshot(panel: Axes, row: dict[Hashable, Any], letter: str) -> None:
+def _snapshot(row: dict[Hashable, Any], letter: str, panel: Axes) -> None:
     with Image.open(io.BytesIO(base64.b64decode(row["png_base64"]))) as picture:
         panel.imshow(np.asarray(picture.convert("RGB")), interpolation="none")
     panel.set_title(f"({letter}) {row['label']}, {np.degrees(row['rotation_rad']):.0f}°")
     panel.axis("off")
 
 
-def _rate(panel: Axes, frames: pd.DataFrame) -> None:
-    """Pictures shown a second, over one second each, beside the paper's."""
+def _rate(frames: pd.DataFrame) -> Panel:
+    """Return pictures shown a second, over one second each, beside the paper's."""
     at = np.sort(frames["at_s"].to_numpy())
     seconds = np.arange(1.0, at[-1])
     rate = [np.count_nonzero((at > s - 1.0) & (at <= s)) for s in seconds]
-    panel.step(seconds, rate, where="mid", color=style.BLUE, label="shown in the browser")
-    panel.axhline(PAPER_RATE, color=style.BLACK, linestyle="--", label="the paper's 25 Hz")
-    panel.set(xlabel="time [s]", ylabel="pictures a second [Hz]", ylim=(0.0, 40.0))
-    mean = (len(at) - 1) / (at[-1] - at[0])
-    panel.set_title(f"(d) frame rate, mean {mean:.1f} Hz")
-    panel.legend(loc="lower right")
+    shown = Curves(pd.DataFrame({"at_s": seconds, "rate_Hz": rate}), SHOWN, more={"drawstyle": "steps-mid"})
+    return Panel(
+        Axis("at_s", "time [s]"),
+        Axis("rate_Hz", "pictures a second [Hz]", limits=(0.0, 40.0)),
+        (shown, Level(PAPER_RATE, words="the paper's 25 Hz", line="--")),
+        title=f"(d) frame rate in the browser, mean {(len(at) - 1) / (at[-1] - at[0]):.1f} Hz",
+    )
 
 
-def _times(panel: Axes, frames: pd.DataFrame, alone: pd.DataFrame) -> None:
-    """Share of the frames that take less than a time: solver alone, and in the loop without and with the
-    search for the markers."""
-    best = alone.groupby(["preset", "work", "frame"], sort=True)["time_ms"].min().reset_index()
-    looks = {"polymer": style.BLUE, "table-1": style.RED}
-    for (preset, work), rows in best.groupby(["preset", "work"], sort=True):
-        line = "-" if work == "pose" else "--"
-        name = {"polymer": "polymer", "table-1": "Table 1"}[str(preset)]
-        _share(panel, rows["time_ms"], f"{name}, {work}", looks[str(preset)], line)
-    _share(panel, frames["solve_ms"], "in the loop, solving", style.GREY, ":")
-    _share(panel, frames["track_ms"] + frames["solve_ms"], "and finding the markers", style.BLACK, "-")
-    panel.axvline(1.0, color=style.BLACK, linewidth=0.8)
-    panel.axvline(1e3 / PAPER_RATE, color=style.BLACK, linewidth=0.8, linestyle="--")
-    panel.set(xscale="log", xlabel="time a frame [ms]", ylabel="share of frames [1]", xlim=(0.03, 300.0))
-    panel.set_title("(e) time a frame; lines at 1 ms and 40 ms")
-
-
-def _share(panel: Axes, times: pd.Series, label: str, colour: str, line: str) -> None:
-    ordered = np.sort(times.to_numpy())
-    share = np.arange(1, len(ordered) + 1) / len(ordered)
-    late = float(np.percentile(ordered, 95.0))
-    panel.step(ordered, share, where="post", color=colour, linestyle=line, label=f"{label}: {late:.2g} ms")
+def _times(frames: pd.DataFrame, alone: pd.DataFrame) -> Panel:
+    """Return the share of the frames that take less than a time: solver alone, and in the loop without and
+    with the search for the markers."""
+    best = alone.groupby(["preset", "work", "frame"])["time_ms"].min()
+    times: dict[Any, pd.Series] = dict(list(best.groupby(["preset", "work"])))
+    times |= {SOLVING: frames["solve_ms"], FINDING: frames["track_ms"] + frames["solve_ms"]}
+    curves = []
+    for key, look in TIMES.items():
+        ordered = np.sort(times[key].to_numpy())
+        rows = pd.DataFrame({"time_ms": ordered, "share": np.arange(1, len(ordered) + 1) / len(ordered)})
+        told = replace(look, label=f"{look.label}: {np.percentile(ordered, 95.0):.2g} ms")
+        curves.append(Curves(rows, told, more={"drawstyle": "steps-post"}))
+    limits = (Level(each, f"{each:g} ms", upright=True, line="--") for each in (1.0, 1e3 / PAPER_RATE))
+    return Panel(
+        Axis("time_ms", "time a frame [ms]", log=True, limits=(0.03, 300.0)),
+        Axis("share", "share of frames [1]"),
+        (*curves, *limits),
+        title="(e) time of a frame; legend: 95th percentile",
+    )
 
 
 STUDY = Study(

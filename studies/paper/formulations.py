@@ -95,10 +95,11 @@ def released(settings: Settings, **options: Any) -> Motion:
     return answer_release(named_case(), settings, duration=DURATION, records=RECORDS, **options)
 
 
-def resolved(settings: SplineSettings) -> Motion:
-    """Return the spline's motion at a step that no longer matters."""
-    step = STEPS[settings.points]
-    return released(settings, integrator="leapfrog", step=step)
+def resolved(settings: Settings) -> Motion:
+    """Return the motion at a step that no longer matters; elements choose their own."""
+    if isinstance(settings, FeSettings):
+        return released(settings)
+    return released(settings, integrator="leapfrog", step=STEPS[settings.points])
 
 
 @cache

@@ -1,11 +1,11 @@
 """Figs 3 to 5 of the paper: snapshots, path of the body's centre, torque, stiffness, and errors of each."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 
@@ -18,17 +18,25 @@ from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, MEANING, PAPER, REFINED, path_of, refined
 from studies.record.marks import Doubt, Level, Words
-from studies.record.panels import ROTATION, Axis, Curves, Panel, key, sheet
-from studies.record.style import page
+from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
+from studies.record.style import Look
 
 #: The paper's 1 %: of the travel, and of the length for shapes.
 BOUND = 0.01
 #: Parts of the path at which the pivot is drawn.
 SNAPSHOTS = (0.0, 0.25, 0.5, 0.75, 1.0)
-DRAWN = (PAPER, LOCKING_FREE, REFINED)
 
-#: In the snapshots the finite elements are points over the splines' lines, so that both can be seen.
-NODES = replace(LOOKS[REFINED], line="", marker="o").keywords() | {"markersize": 2.6}
+#: In the snapshots the finite elements are points over the splines' lines, so that both can be seen, and the
+#: two strips of a formulation have its look.
+STRIPS = {
+    (name, strip): replace(LOOKS[name], line=line, marker=marker)
+    for name, line, marker in ((PAPER, "-", ""), (LOCKING_FREE, "-", ""), (REFINED, "", "o"))
+    for strip in (1, 2)
+}
+POINTS, RIGID = {"markersize": 2.6, "markevery": 16}, {"linewidth": 4.0, "zorder": 0}
+BODY = Look(label="_body", colour="#b0b0b0")
+PLACE = Axis("x_m", "x [mm]", factor=1e3, limits=(-24.0, 70.0))
+HEIGHT = Axis("y_m", "y [mm]", factor=1e3, limits=(-6.0, 90.0), ticks=(0, 30, 60, 90))
 
 
 def _compared(name: str) -> Answer:
@@ -47,13 +55,9 @@ def _largest(tables: Tables) -> pd.DataFrame:
 
 def _shapes(tables: Tables) -> Figure:
     """Draw the snapshots in a row and the distance of the strips over the rotation below."""
-    drawn = page(9.5, 5.8)
-    panels = drawn.subplot_mosaic([list("abcde"), ["error"] * 5], height_ratios=(1.0, 1.2))
-    shapes = tables["shapes"]
-    for label, rotation in zip("abcde", sorted(shapes["rotation_rad"].unique()), strict=True):
-        _draw_pivot(panels[label], shapes[shapes["rotation_rad"] == rotation])
-        panels[label].set_title(f"{np.degrees(rotation):.3g}°")
-    panels["a"].set_ylabel("y [mm]")
+    rotations = sorted(tables["shapes"]["rotation_rad"].unique())
+    pivots = [_pivot(tables["shapes"].query("rotation_rad == @rotation")) for rotation in rotations]
+    pivots[1:] = [replace(each, y=replace(HEIGHT, label="")) for each in pivots[1:]]
     error = Panel(
         ROTATION,
         Axis("distance", "largest distance / length [1]", log=True),
@@ -63,27 +67,16 @@ def _shapes(tables: Tables) -> Figure:
         ),
         title="Distance of the strips to those of the refined finite elements",
     )
-    error(panels["error"])
-    key(drawn, (panels["error"], panels["a"]), columns=4)
-    return drawn
+    return sheet(9.5, 5.8, [pivots, [error] * len(pivots)], heights=(1.0, 1.2), legend=4)
 
 
-def _draw_pivot(panel: Axes, shapes: pd.DataFrame) -> None:
-    """Draw ground, strips and body of one snapshot; the formulations lie over one another."""
-    for name in DRAWN:
-        shape = shapes[shapes["formulation"] == name]
-        look = NODES if name == REFINED else LOOKS[name].keywords() | {"marker": ""}
-        every = 16 if name == REFINED else 1
-        ends = []
-        for _, strip in shape.groupby("strip"):
-            x, y = 1e3 * strip["x_m"].to_numpy(), 1e3 * strip["y_m"].to_numpy()
-            panel.plot(x[::every], y[::every], **look)
-            ends.append((x[[0, -1]], y[[0, -1]]))
-        if name == REFINED:
-            (x1, y1), (x2, y2) = ends
-            for end in (0, 1):
-                panel.plot([x1[end], x2[end]], [y1[end], y2[end]], color="#b0b0b0", linewidth=4.0, zorder=0)
-    panel.set(aspect="equal", xlim=(-24.0, 70.0), ylim=(-6.0, 90.0), xlabel="x [mm]", yticks=(0, 30, 60, 90))
+def _pivot(shapes: pd.DataFrame) -> Panel:
+    """Return ground, strips and body of one snapshot; the formulations lie over one another."""
+    ends = shapes.query("formulation == @REFINED and station in (0.0, 1.0)")
+    rigid = [Curves(each, BODY, along="strip", more=RIGID) for _, each in ends.groupby("station")]
+    strips = Curves(shapes, STRIPS, by=("formulation", "strip"), along="station", more=POINTS)
+    title = f"{np.degrees(shapes['rotation_rad'].iloc[0]):.3g}°"
+    return Panel(PLACE, HEIGHT, (strips, *rigid), title=title, equal=True)
 
 
 def _snapshots(name: str, answer: Response) -> pd.DataFrame:
@@ -136,32 +129,43 @@ FIG03 = Study(
 """Fig 3 of the paper: snapshots of the pivot, both models superposed, and the distance of their strips."""
 
 
-def _centres(name: str) -> Answer:
-    """Return a formulation's path, its error against the refined elements, and a summary; of these elements
-    the uncertainty."""
-    path = path_of(name)
-    error = errors(path, refined())["trajectory"]
-    columns = {"com_x_m": path.centre[:, 0], "com_y_m": path.centre[:, 1], "error_trajectory": error}
-    table = pd.DataFrame({"formulation": name, "rotation_rad": path.rotation, **columns})
+def _along(
+    name: str, table: str, quantities: Iterable[str], columns: Row, summary: Callable[[Any, Any], Row]
+) -> Answer:
+    """Return a formulation's path with the errors of quantities and a summary of both; of the refined
+    elements the uncertainties."""
+    path, limit = path_of(name), refined()
+    found = errors(path, limit)
+    known = {"formulation": name, "rotation_rad": path.rotation, **columns}
+    rows = pd.DataFrame(known | {f"error_{of}": found[of] for of in quantities})
     if name == REFINED:
-        known = {"quantity": "trajectory", "uncertainty": refined().uncertainty["trajectory"]}
-        return {"paths": table, "reference": known}
-    summary = {
-        "formulation": name,
-        "meaning": MEANING[name],
-        "status": path.status,
-        "error_end": error[-1],
-        "error_largest": error.max(),
+        return {
+            table: rows,
+            "reference": [{"quantity": q, "uncertainty": limit.uncertainty[q]} for q in quantities],
+        }
+    told = {"formulation": name, "meaning": MEANING[name], "status": path.status}
+    return {table: rows, "summary": told | summary(path, found)}
+
+
+def _centres(name: str) -> Answer:
+    """Return the way of the body's centre."""
+    centre = path_of(name).centre
+    columns = {"com_x_m": centre[:, 0], "com_y_m": centre[:, 1]}
+    return _along(name, "paths", ["trajectory"], columns, _of_centre)
+
+
+def _of_centre(path: Response, error: Mapping[str, Array]) -> Row:
+    return {
+        "error_end": error["trajectory"][-1],
+        "error_largest": error["trajectory"].max(),
         "difference_to_fe20_end": trajectory_error(path.centre, path_of(FE).centre)[-1],
         "centre_shift_end_m": float(np.linalg.norm(path.centre_shift[-1])),
     }
-    return {"paths": table, "summary": summary}
 
 
 def _trajectories(tables: Tables) -> Figure:
     """Draw the paths beside their errors over the rotation."""
-    drawn, paths = page(9.5, 5.6), tables["paths"]
-    panels = drawn.subplot_mosaic([["path", "error"], ["end", "error"]])
+    paths = tables["paths"]
     last = 1e3 * paths.query("formulation == @REFINED")[["com_x_m", "com_y_m"]].to_numpy()[-1]
     x = Axis("com_x_m", "x of the centre of mass [mm]", factor=1e3)
     y = Axis("com_y_m", "y [mm]", factor=1e3)
@@ -170,19 +174,16 @@ def _trajectories(tables: Tables) -> Figure:
         for axis, value, below, above in ((x, last[0], 0.8, 2.2), (y, last[1], 0.3, 1.4))
     )
     curves = Curves(paths, LOOKS, along="rotation_rad", more={"markersize": 3.5})
-    Panel(x, y, (curves,), title="Path from 0 to 90°")(panels["path"])
-    Panel(near_x, near_y, (curves,), title="Its end, enlarged")(panels["end"])
-    for name in ("path", "end"):
-        panels[name].set_aspect("equal")
+    whole = Panel(x, y, (curves,), title="Path from 0 to 90°", equal=True)
+    end = Panel(near_x, near_y, (curves,), title="Its end, enlarged", equal=True)
     marks = (
         Curves(paths.query("formulation != @REFINED"), LOOKS),
         Doubt(tables["reference"]["uncertainty"].max()),
         Level(BOUND, words="the paper's 1 %"),
     )
-    error = Axis("error_trajectory", "distance to the refined path / travel [1]", log=True)
-    Panel(ROTATION, error, marks, title="Error of the path")(panels["error"])
-    key(drawn, panels.values(), columns=4)
-    return drawn
+    y = Axis("error_trajectory", "distance to the refined path / travel [1]", log=True)
+    error = Panel(ROTATION, y, marks, title="Error of the path")
+    return sheet(9.5, 5.6, [[whole, error], [end, error]], legend=4)
 
 
 FIG04 = Study(
@@ -212,21 +213,14 @@ OF_FIG05 = {
 
 
 def _curves(name: str) -> Answer:
-    """Return torque and stiffness of a formulation with their errors and a summary; of the refined elements
-    the uncertainties."""
-    path = path_of(name)
-    error = {of: values for of, values in errors(path, refined()).items() if of in OF_FIG05}
-    columns = {column: getattr(path, of) for of, (column, _) in OF_FIG05.items()}
-    columns |= {f"error_{of}": values for of, values in error.items()}
-    table = pd.DataFrame({"formulation": name, "rotation_rad": path.rotation, **columns})
-    if name == REFINED:
-        known = [{"quantity": of, "uncertainty": refined().uncertainty[of]} for of in OF_FIG05]
-        return {"curves": table, "reference": known}
+    """Return torque and stiffness."""
+    columns = {column: getattr(path_of(name), of) for of, (column, _) in OF_FIG05.items()}
+    return _along(name, "curves", OF_FIG05, columns, _of_curves)
+
+
+def _of_curves(path: Response, error: Mapping[str, Array]) -> Row:
     half, torque, stiffness = len(refined().rotation) // 2, error["torque"], error["stiffness"]
-    summary = {
-        "formulation": name,
-        "meaning": MEANING[name],
-        "status": path.status,
+    return {
         "error_torque_half": torque[half] if half < len(torque) else np.nan,
         "error_torque_end": torque[-1],
         "error_torque_largest": float(np.abs(torque).max()),
@@ -236,7 +230,6 @@ def _curves(name: str) -> Answer:
         "bending_energy_end_J": path.bending_energy[-1],
         "max_stress_end_Pa": path.max_stress[-1],
     }
-    return {"curves": table, "summary": summary}
 
 
 def _stiffnesses(tables: Tables) -> Figure:

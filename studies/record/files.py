@@ -7,12 +7,10 @@ of another module: what is kept would then answer for a source that is gone.
 
 import json
 import os
-import re
 import shutil
 import tempfile
 from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -112,8 +110,6 @@ def replace_folder(folder: Path, contents: Mapping[str, bytes]) -> None:
 
 #: Packages that hold compiled kernels.
 COMPILED = ("spline_model", "fe_reference")
-#: What a module that holds kernels says.
-KERNEL = re.compile(r"^@(?:numba\.)?(?:njit|kernel|called|lane|part)\b", flags=re.MULTILINE)
 
 
 def forget(root: Path = ROOT, keep: Container[Path] = ()) -> int:
@@ -129,9 +125,9 @@ def forget_stale(root: Path = ROOT) -> bool:
     """Remove the compiled kernels whose code has changed since; return whether there were any.
 
     A mark beside the kernels holds places, times and sizes of all source files, which cost some milliseconds
-    to compare, and where these differ a hash of each file with kernels and of all it imports. Where there is
-    no mark, what is kept is of unknown source and removed. Nothing happens where nothing may be written:
-    numba then keeps its kernels elsewhere, by the place of the source.
+    to compare, and where these differ a hash of each file and of all it imports. Where there is no mark, what
+    is kept is of unknown source and removed. Nothing happens where nothing may be written: numba then keeps
+    its kernels elsewhere, by the place of the source.
     """
     mark = root / COMPILED[0] / "__pycache__" / "kernels.json"
     files = [file for package in COMPILED for file in sorted((root / package).rglob("*.py"))]
@@ -139,7 +135,8 @@ def forget_stale(root: Path = ROOT) -> bool:
     former = json.loads(mark.read_bytes()) if mark.is_file() else {"stats": [], "sources": {}}
     if stats == former["stats"]:
         return False
-    sources = {name: source_hash(name, root=root) for name in map(partial(_kernels, root), files) if name}
+    names = [".".join(file.relative_to(root).with_suffix("").parts) for file in files]
+    sources = {name: source_hash(name, root=root) for name in names if not name.endswith("__init__")}
     same = [name for name, source in sources.items() if former["sources"].get(name) == source]
     try:
         removed = forget(root, {root.joinpath(*name.split(".")).with_suffix(".py") for name in same})
@@ -148,12 +145,6 @@ def forget_stale(root: Path = ROOT) -> bool:
     except (OSError, OutputError):
         return False
     return removed > 0
-
-
-def _kernels(root: Path, file: Path) -> str:
-    """Return the name of a module that holds kernels, and nothing for any other."""
-    holds = KERNEL.search(file.read_text(encoding="utf-8"))
-    return ".".join(file.relative_to(root).with_suffix("").parts) if holds else ""
 
 
 def _marked(file: Path, root: Path) -> str:

@@ -1,14 +1,16 @@
-"""Marks of panels beside their curves: levels, slopes, words, and how uncertain a reference is."""
+"""Marks of panels beside their curves: levels, words, heat maps, and how uncertain a reference is."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 
 from studies.record.panels import Axis
 
-#: Colour of levels and slopes, and of the words beside them.
+#: Colour of levels, and of the words beside them.
 MARK = "#444444"
 #: What words beside a mark stand on, so that curves behind them do not disturb.
 BACKGROUND = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.85}
@@ -51,25 +53,27 @@ class Level:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slope:
-    """What goes with a power of x, over a span of x through a point: an order.
+class HeatMap:
+    """A column of a table over two others that count: squares with the decimal exponent of the value.
 
-    It comes after what it is held against, and leaves the limits of the panel as they are.
+    Attributes:
+        limits: values of the lowest and the highest colour. What is no finite number is a cross.
     """
 
-    through: tuple[float, float]
-    power: float
-    span: tuple[float, float]
-    label: str
-    line: str = ":"
+    rows: pd.DataFrame
+    column: str
+    limits: tuple[float, float]
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Draw the slope, within what else is drawn."""
-        at, value = self.through
-        ends, limits = np.array(self.span), panel.get_ylim()
-        look: dict[str, Any] = {"color": MARK, "linestyle": self.line, "linewidth": 0.9, "zorder": 1.5}
-        panel.plot(ends, value * (ends / at) ** self.power, **look, label=self.label)
-        panel.set_ylim(limits)
+        """Draw the squares."""
+        grid = self.rows.pivot(index=y.column, columns=x.column, values=self.column)
+        panel.pcolormesh(grid.columns, grid.index, grid, norm=LogNorm(*self.limits), cmap="viridis")
+        panel.grid(False)
+        dark = float(np.sqrt(self.limits[0] * self.limits[1]))
+        for across, up, value in self.rows[[x.column, y.column, self.column]].itertuples(index=False):
+            text = f"{np.log10(value):.0f}" if np.isfinite(value) else "x"
+            colour = "white" if value < dark else "black"
+            panel.text(across, up, text, ha="center", va="center", fontsize=7.5, color=colour)
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from studies.record.style import Look, page
@@ -136,12 +137,13 @@ class Curves:
 
 @dataclass(frozen=True)
 class Panel:
-    """Marks over two axes."""
+    """Marks over two axes; `equal`: in the same scale."""
 
     x: Axis
     y: Axis
     marks: Sequence[Mark]
     title: str = ""
+    equal: bool = False
 
     def __call__(self, panel: Axes) -> None:
         """Draw it all."""
@@ -152,6 +154,8 @@ class Panel:
         for name, axis in (("x", self.x), ("y", self.y)):
             axis.apply(panel, name, (value for some in rows for value in axis.of(some).dropna()))
         panel.set_title(self.title)
+        if self.equal:
+            panel.set_aspect("equal")
 
 
 #: What stands in a place of a sheet.
@@ -166,25 +170,34 @@ def sheet(
     title: str = "",
     columns: Sequence[str] = (),
     legend: int = 0,
+    heights: Sequence[float] = (),
+    colours: str = "",
 ) -> Figure:
     """Return the page with rows of panels; those with the same axis share it, and its name stands once.
+
+    A panel that stands in several neighbouring places fills them. On such a page no axis is shared.
 
     Args:
         width, height: as of `page` [inch]; title: of the whole; columns: titles of the columns.
         legend: columns of the one below all panels, for all of them; 0 for none.
+        heights: of the rows, in proportion; colours: what the colours of a heat map stand for.
     """
     drawn = page(width, height)
     across = list(zip(*rows, strict=True))
-    shared_x = all(_same("x", column) for column in across) and len(rows) > 1
+    places = [[id(panel) for panel in row] for row in rows]
+    apart = len({place for line in places for place in line}) == len(rows) * len(across)
+    shared_x = apart and all(_same("x", column) for column in across) and len(rows) > 1
     along: Any = "all" if _same("x", [panel for row in rows for panel in row]) else "col"
-    shared_y = all(_same("y", row) for row in rows) and len(across) > 1
+    shared_y = apart and all(_same("y", row) for row in rows) and len(across) > 1
     up: Any = "row" if shared_y else "col" if all(_same("y", column) for column in across) else "none"
-    grid = drawn.subplots(
-        len(rows), len(across), squeeze=False, sharex=along if shared_x else "none", sharey=up
-    )
-    for line, draws in zip(grid, rows, strict=True):
-        for panel, draw in zip(line, draws, strict=True):
-            draw(panel)
+    if apart:
+        sharing: Any = {"sharex": along if shared_x else "none", "sharey": up}
+        grid = drawn.subplots(len(rows), len(across), squeeze=False, **sharing)
+    else:
+        axes: Any = drawn.subplot_mosaic(places, height_ratios=heights or None)  # type: ignore[arg-type]
+        grid = np.array([[axes[place] for place in line] for line in places])
+    for panel, draw in dict(zip(grid.flat, (each for row in rows for each in row), strict=True)).items():
+        draw(panel)
     for panel in grid[:-1].flat if shared_x else ():
         panel.set_xlabel("")
     for panel in grid[:, 1:].flat if shared_y else ():
@@ -193,8 +206,10 @@ def sheet(
         panel.set_title(words)
     if title:
         drawn.suptitle(title)
+    if colours:
+        drawn.colorbar(grid[0, 0].collections[0], ax=list(grid.flat), label=colours)
     if legend:
-        key(drawn, grid.flat, columns=legend)
+        _key(drawn, grid.flat, columns=legend)
     return drawn
 
 
@@ -206,10 +221,10 @@ def _same(name: str, draws: Sequence[Drawn]) -> bool:
     )
 
 
-def key(drawn: Figure | SubFigure, panels: Iterable[Axes], *, columns: int) -> None:
+def _key(drawn: Figure, panels: Iterable[Axes], *, columns: int) -> None:
     """Put one legend below a figure that names what its panels show, each once."""
     handles: dict[str, Any] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
+            handles[label] = handle
     drawn.legend(handles.values(), handles, loc="outside lower center", ncols=columns)

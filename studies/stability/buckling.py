@@ -15,9 +15,9 @@ from studies.engine import Answer, Part, Row, Tables
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, arc_of
 from studies.published.case import published
-from studies.record.digits import Digits
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.record.store import Digits
 from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, Look
 from studies.stability import questions
 from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip

@@ -17,8 +17,8 @@ from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Part, Row
-from studies.stability.family import CHECK, TOLERANCE, path_distance
-from studies.stability.verdict import COLUMNS, DEFAULT, LOCKING_FREE, Found, as_mechanism, judged, study
+from studies.stability import verdict
+from studies.stability.verdict import DEFAULT, LOCKING_FREE, Found, judged, study
 
 #: Reversals, and releases with as many catches: of the default, and of the locking-free spline.
 EVENTS = {DEFAULT: 1000, LOCKING_FREE: 100}
@@ -44,17 +44,17 @@ def _tasks() -> Iterator[tuple[str, str, partial[Found], float]]:
         yield "drive reversed again and again", model, partial(_reversals, model, count), BOOKS
         yield "let go and caught again and again", model, partial(_catches, model, count), BOOKS
         yield "target jumps by 60° in a motion", model, partial(_jump_in_motion, model), BOOKS
-    for model, settings in COLUMNS.items():
+    for model, settings in verdict.COLUMNS.items():
         jumps = {f"from rest to {degrees:g}°": partial(_jump, settings, degrees) for degrees in JUMPS}
         jumps[f"between 60° and -60°, {ROUNDS} times"] = partial(_jumping, settings)
         jumps |= {"by {:g}, {:g} mm".format(*way): partial(_displaced, settings, way) for way in SHIFTS}
-        yield from ((f"target jumps {how}", model, jump, TOLERANCE) for how, jump in jumps.items())
+        yield from ((f"target jumps {how}", model, jump, verdict.TOLERANCE) for how, jump in jumps.items())
 
 
 @cache
 def _table_1(model: str) -> Any:
     """Return Table 1 in motion in a column of splines."""
-    return put(named_case(), COLUMNS[model], moving=True).modelled
+    return put(named_case(), verdict.COLUMNS[model], moving=True).modelled
 
 
 def _moved(model: str, **how: Any) -> Trajectory:
@@ -114,11 +114,11 @@ def _books(run: Trajectory) -> float:
 def _jump(settings: Settings, degrees: float) -> Found:
     """Follow a target that jumps from rest in one increment; against the refined path of many."""
     design = replace(named_case(), rotation=math.radians(degrees), increments=1)
-    many = answer_static(replace(design, increments=36), CHECK)
+    many = answer_static(replace(design, increments=36), verdict.CHECK)
     ends = {name: getattr(many, name)[[0, -1]] for name in ("load_factor", "torque")}
     reference = replace(many, **ends, bodies={name: poses[[0, -1]] for name, poses in many.bodies.items()})
     path = answer_static(design, settings)
-    return _bounded(Found.of(path, path_distance(path, reference)), 1)
+    return _bounded(Found.of(path, verdict.path_distance(path, reference)), 1)
 
 
 def _jumping(settings: Settings) -> Found:
@@ -135,11 +135,11 @@ def _jumping(settings: Settings) -> Found:
 
 def _displaced(settings: Settings, millimetres: tuple[float, float]) -> Found:
     """Follow a body whose centre's target jumps in one increment, free to rotate: its energy and rotation."""
-    given = as_mechanism(named_case(), 0.0)
+    given = verdict.as_mechanism(named_case(), 0.0)
     target = {"displacement": tuple(1e-3 * part for part in millimetres)}
     effects = given.effects.plus(driven_displacement=target)
     design = replace(given, rotation=None, increments=1, effects=effects)
-    reference = answer_static(replace(design, increments=40), CHECK)
+    reference = answer_static(replace(design, increments=40), verdict.CHECK)
     answer = answer_static(design, settings)
     energy = abs(answer.strain_energy[-1] / reference.strain_energy[-1] - 1.0)
     turn = abs(answer.bodies["body"][-1, 2] - reference.bodies["body"][-1, 2])
@@ -149,10 +149,8 @@ def _displaced(settings: Settings, millimetres: tuple[float, float]) -> Found:
 
 def _bounded(answer: Found, jumps: int) -> Found:
     """Return the answer, with a fault where it took more work than so many jumps may."""
-    work = answer.counters.get("newton_iterations", answer.counters.get("iterations", 0))
-    if work > MOST_ITERATIONS * jumps:
-        return replace(answer, fault=f"{work} Newton iterations for {jumps} jumps")
-    return answer
+    much = answer.iterations > MOST_ITERATIONS * jumps
+    return replace(answer, fault=f"{answer.iterations} Newton iterations for {jumps} jumps" * much)
 
 
 EVENTS_STUDY = study(
@@ -221,7 +219,5 @@ def _judgement(model: str, drift: pd.DataFrame) -> Row:
     return {"case": name, "model": model, **judged(lambda: found, DRIFT, model)}
 
 
-LONG_RUN = study(
-    Part(at=PIECES.items, ask=_long_run),
-)
+LONG_RUN = study(Part(at=PIECES.items, ask=_long_run))
 """A million steps of free swing without damping: energy and constraints."""

@@ -19,26 +19,23 @@ from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Part, Row
-from studies.record.digits import Digits
+from studies.record.store import Digits
 from studies.stability import verdict
-from studies.stability.family import CHECK, REFINED, Question, Try, Way, answers_of, of_path
-from studies.stability.verdict import COLUMNS, DEFAULT, FE, LOCKING_FREE, PAPER, PATHS, SIX, VARIED, study
+from studies.stability.verdict import DEFAULT, FE, LOCKING_FREE, PATHS, SIX, Question, Try, family
 
 #: Rotations [deg] and numbers of increments; a reference so far needs more points than at a quarter turn.
 ROTATIONS, INCREMENTS = (-180, -90, 90, 135, 150, 165, 180, 200, 220, 240, 260), (1, 2, 5, 20, 200)
-FAR: tuple[Way, Way] = (SplineSettings(control_points=16), {}), (SplineSettings(control_points=14), {})
+FAR: Any = {name: (SplineSettings(control_points=n), {}) for name, n in (("refined", 16), ("check", 14))}
 
 
 def _rotated() -> Iterator[Question]:
     """Yield every rotation in every number of increments."""
     for degrees, count in product(ROTATIONS, INCREMENTS):
         design = replace(named_case(), rotation=math.radians(degrees), increments=count)
-        yield of_path(f"{degrees} deg in {count}", degrees, count, design, finer=FAR)
+        yield verdict.of_path(f"{degrees} deg in {count}", degrees, count, design, **FAR)
 
 
-ROTATION = study(
-    Part(at=_rotated, ask=answers_of),
-)
+ROTATION = family(_rotated)
 """Rotation to a half turn and beyond, in any number of increments."""
 
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
@@ -50,14 +47,17 @@ INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
 
 def _slender_cases() -> Iterator[Question]:
     """Yield every slenderness at every rotation, and strips that cannot stretch."""
-    rigid = {name: _inextensible(PATHS[name]) for name in (DEFAULT, LOCKING_FREE, SIX)}
-    finer: tuple[Way, Way] = (_inextensible(REFINED), {}), (_inextensible(CHECK), {})
+    rigid = PATHS | {name: _inextensible(PATHS[name]) for name in (DEFAULT, LOCKING_FREE, SIX)}
+    far: Any = {
+        "refined": (_inextensible(verdict.REFINED), {}),
+        "check": (_inextensible(verdict.CHECK), {}),
+    }
     for degrees in SLENDER_ROTATIONS:
         for slenderness in SLENDER:
             design = replace(_slender(slenderness), rotation=math.radians(degrees))
-            yield of_path(f"L/t = {slenderness:g}, {degrees} deg", slenderness, degrees, design)
+            yield verdict.of_path(f"L/t = {slenderness:g}, {degrees} deg", slenderness, degrees, design)
         design = replace(_slender(SLENDER[-1]), rotation=math.radians(degrees))
-        yield of_path(f"inextensible, {degrees} deg", INEXTENSIBLE, degrees, design, rigid, finer)
+        yield verdict.of_path(f"inextensible, {degrees} deg", INEXTENSIBLE, degrees, design, rigid, **far)
 
 
 def _slender(slenderness: float) -> Problem:
@@ -91,8 +91,8 @@ def _limit() -> Iterator[Row]:
         }
 
 
-SLENDERNESS = study(
-    Part(at=_slender_cases, ask=answers_of),
+SLENDERNESS = family(
+    _slender_cases,
     Part(ask=lambda: {"limit": _limit()}),
     digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
 )
@@ -109,7 +109,7 @@ def _grid() -> Iterator[Question]:
     """Yield the pivots of all crossing ratios and inclinations, driven as the paper's."""
     for ratio, degrees in product(RATIOS_OF_CROSSING, INCLINATIONS):
         design = replace(named_case(), crossing_ratio=ratio, inclination=math.radians(degrees))
-        yield of_path(f"cross {ratio:g}, {degrees:g} deg", ratio, degrees, design)
+        yield verdict.of_path(f"cross {ratio:g}, {degrees:g} deg", ratio, degrees, design)
 
 
 def _others() -> Iterator[Question]:
@@ -133,7 +133,7 @@ def _others() -> Iterator[Question]:
         curved = (replace(first, rise=one * length), replace(second, rise=other * length))
         pairs[f"curved at rest, sagitta {one:+g} and {other:+g} L"] = curved
     for place, (name, strips) in enumerate(pairs.items()):
-        yield of_path(name, place, 0.0, replace(cross, strips=strips))
+        yield verdict.of_path(name, place, 0.0, replace(cross, strips=strips))
 
 
 def _beside(strip: Strip, by: float) -> Strip:
@@ -142,9 +142,7 @@ def _beside(strip: Strip, by: float) -> Strip:
     return replace(strip, name=STRIPS[1], start=(x + by, y), end=(end_x + by, end_y))
 
 
-GEOMETRY = study(
-    Part(at=lambda: chain(_grid(), _others()), ask=answers_of),
-)
+GEOMETRY = family(lambda: chain(_grid(), _others()))
 """Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
 
 COUNTS = (4, 5, 6, 8, 10)
@@ -164,19 +162,17 @@ def _discretised() -> Iterator[Question]:
         plain = SplineSettings(control_points=n)
         for m in range(1, n):
             modes = replace(plain, axial_modes=m)
-            add(MODES, VARIED, m, modes)
-            add(FLOATING, VARIED, m, replace(modes, slide_stiffness=0.0))
+            add(MODES, verdict.VARIED, m, modes)
+            add(FLOATING, verdict.VARIED, m, replace(modes, slide_stiffness=0.0))
         for points in range(1, n + 3):
             few = replace(plain, gauss_points=points)
-            add(POINTS, VARIED, points, few)
-            add(PAPER_POINTS, PAPER, points, replace(few, stretch="consistent", measure="spatial"))
+            add(POINTS, verdict.VARIED, points, few)
+            add(PAPER_POINTS, verdict.PAPER, points, replace(few, stretch="consistent", measure="spatial"))
     design = replace(named_case(), rotation=math.radians(45.0))
     yield Question(place={"case": TABLE_1}, design=design, tries=tries)
 
 
-AXIAL_MODES = study(
-    Part(at=_discretised, ask=answers_of),
-)
+AXIAL_MODES = family(_discretised)
 """Too few and too many axial modes, and too few Gauss points: singular ones are refused, with the reason."""
 
 #: Columns of swings. The paper's measure is for the leapfrog alone.
@@ -196,7 +192,7 @@ def _swinging(place: Row, step: float, **more: float) -> list[Try]:
     """Return the swings of all columns in steps of so long [s]."""
     implicit = {FE: {"integrator": "generalised-alpha"}}
     how = {name: {"step": step, **implicit.get(name, {}), **more} for name in SWINGING}
-    return [(place, name, COLUMNS[name], own) for name, own in how.items()]
+    return [(place, name, verdict.COLUMNS[name], own) for name, own in how.items()]
 
 
 def _steps() -> Iterator[Question]:
@@ -226,7 +222,7 @@ LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
 def _orders() -> pd.DataFrame:
     """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
     *answers, limit = (
-        answer_release(named_case(), COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
+        answer_release(named_case(), verdict.COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
         for step in (*ORDER_STEPS, LIMIT_STEP)
     )
     errors = [float(np.abs(answer.rotation - limit.rotation).max()) for answer in answers]
@@ -235,10 +231,7 @@ def _orders() -> pd.DataFrame:
     return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
 
 
-STEP_SIZE = study(
-    Part(at=_steps, ask=answers_of),
-    Part(ask=lambda: {"order": _orders()}),
-)
+STEP_SIZE = family(_steps, Part(ask=lambda: {"order": _orders()}))
 """Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
@@ -283,8 +276,8 @@ def _ratios() -> Iterator[Question]:
         )
 
 
-RATIOS = study(
-    Part(at=_ratios, ask=answers_of),
+RATIOS = family(
+    _ratios,
     digits={"outcomes.error": Digits(relative=0.05, floor=1e-9, rows="outcome == 'right'")},
 )
 """Ratios: bodies a million times lighter and heavier, massless and heavy strips, one strip far stiffer."""

@@ -16,8 +16,7 @@ from studies.engine import Answer, Part
 from studies.kinds import Array
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
-from studies.stability.family import CHECK, REFINED, TOLERANCE
-from studies.stability.verdict import ARCS, FE, Found, as_mechanism, judged
+from studies.stability.verdict import ARCS, CHECK, FE, REFINED, TOLERANCE, Found, as_mechanism, judged
 
 COLUMN, TOGGLE, LEE, PIVOT = "column", "Williams' toggle", "Lee's frame", "pivot pushed down"
 #: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].

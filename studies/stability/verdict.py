@@ -1,20 +1,33 @@
-"""How an answer to a hard case ends, right, refused, wrong or bad input, and which models are asked."""
+"""How an answer to a hard case ends, which models are asked, and families of such cases.
+
+A family asks every model for the paths or swings of its designs, beside a reference: a spline refined far
+beyond the default. It is settled where refinement moves it by less than half of the tolerance and finite
+elements, which share nothing with it, agree with it within the tolerance.
+"""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Self
 
+import numpy as np
 import pandas as pd
 
-from studies.answers.settings import Settings, SplineSettings
+from studies.answers.adapters import answer_release, answer_static
+from studies.answers.metrics import differences
+from studies.answers.motion import Motion
+from studies.answers.reference import rotation_error
+from studies.answers.response import Response
+from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.cases.design import Design
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.engine import Part, Row, Study
+from studies.engine import Answer, Part, Row, Study
 from studies.errors import BadInput
 from studies.paper import formulations as named
-from studies.paper.formulations import LOOKS, SETTINGS
-from studies.record.digits import Digits
+from studies.paper.formulations import LOOKS
+from studies.record.store import Digits
 
 DEFAULT = "spline, default"
 #: The locking-free spline where control points, axial modes or Gauss points are what a family varies.
@@ -22,29 +35,23 @@ VARIED = "spline, settings varied"
 LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
     LOOKS[name].label for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE, named.SIX)
 )
+#: Finer splines, for paths in arc length: the default reaches its end there.
+EIGHT, TWELVE = "spline n = 8", "spline n = 12"
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
-COLUMNS: dict[str, Settings] = {
+SETTINGS: dict[str, Settings] = {
     DEFAULT: SplineSettings(),
-    **{
-        LOOKS[each].label: SETTINGS[each]
-        for each in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE)
-    },
-}
-
-#: Those of the families of paths, where the default takes as many control points as it needs: six beside it.
-#: Motions and arcs of frames take six by default.
-PATHS: dict[str, Settings] = {**COLUMNS, SIX: SETTINGS[named.SIX]}
-
-#: Those of paths in arc length: finer splines, as the default reaches its end there.
-EIGHT, TWELVE = "spline n = 8", "spline n = 12"
-ARCS: dict[str, Settings] = {
-    **COLUMNS,
+    **{LOOKS[name].label: settings for name, settings in named.SETTINGS.items()},
     EIGHT: SplineSettings(control_points=8),
     TWELVE: SplineSettings(control_points=12),
 }
-
+#: Those of all families; of paths, where the default takes as many control points as it needs (motions and
+#: arcs of frames take six by default); and of paths in arc length.
+COLUMNS, PATHS, ARCS = (
+    {name: SETTINGS[name] for name in (DEFAULT, LOCKING_FREE, PAPER, PRINTED, FE, *more)}
+    for more in ((), (SIX,), (EIGHT, TWELVE))
+)
 #: All columns, in the order of tables and figures.
 ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
 
@@ -52,10 +59,8 @@ ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
 #: count there, as the paper has no such check.
 UNCHECKED = (PAPER, PRINTED)
 
-RIGHT, REFUSED, WRONG, BAD_INPUT = "right", "refused", "wrong", "bad input"
-
-#: The four outcomes in the order of tables and legends; there is no fifth.
-OUTCOMES = (RIGHT, REFUSED, WRONG, BAD_INPUT)
+#: The four outcomes in the order of tables; there is no fifth.
+OUTCOMES = RIGHT, REFUSED, WRONG, BAD_INPUT = "right", "refused", "wrong", "bad input"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,6 +85,11 @@ class Found:
     fault: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
     measured: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations."""
+        return self.counters.get("newton_iterations", self.counters.get("iterations", 0))
 
     @classmethod
     def of(cls, answer: Any, error: float, *, fault: str = "", **measured: float) -> Self:
@@ -112,13 +122,12 @@ def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> R
         kind = "" if outcome == BAD_INPUT else f"{type(fault).__name__}: "
         found = Found(error=math.nan, reason=" ".join(f"{kind}{fault}".split()))
     warning = "" if model in UNCHECKED else found.warning
-    work = found.counters
     return {
         "outcome": outcome or _outcome(found, tolerance, limited=found.states_limit or bool(warning)),
         "error": found.error,
         "reason": found.fault or (warning if found.reached else "") or found.reason or warning,
-        "iterations": work.get("newton_iterations", work.get("iterations", 0)),
-        "halvings": work.get("halved_increments", 0) + work.get("halved_steps", 0),
+        "iterations": found.iterations,
+        "halvings": sum(found.counters.get(each, 0) for each in ("halved_increments", "halved_steps")),
         "stopped": not found.reached,
         "warned": bool(found.warning),
         **found.measured,
@@ -173,3 +182,113 @@ def as_mechanism(given: Problem, degrees: float) -> Mechanism:
         increments=given.increments,
         effects=given.effects,
     )
+
+
+#: Largest distance that counts as right [1], over the largest torque and displacement of a path, and over the
+#: rotation at the start of a swing. The error of six control points grows to 0.03 at a half turn, and a step
+#: of a twentieth of the swing's period errs by as much after one swing; another branch or motion is off by
+#: more than 0.1.
+TOLERANCE = 0.05
+#: Largest gain of energy over that at the start: of the energy-consistent scheme, and of those that keep
+#: energy in the limit of short steps only.
+MOST_GAIN, MOST_GAIN_OF_OTHERS = 1e-8, 1e-2
+#: Records of a motion.
+RECORDS = 400
+#: Keywords of a motion beside its start and duration: `step` [s] and `integrator`.
+How = Mapping[str, Any]
+#: Settings of a model, and how its motion is integrated.
+Way = tuple[Settings, How]
+
+#: References of paths: a refined spline, the one that bounds what refinement still changes, and finer
+#: elements, asked where those of the column do not confirm it.
+REFINED, CHECK = SplineSettings(control_points=14), SplineSettings(control_points=11)
+ARBITER = FeSettings(elements=80)
+
+#: One answer that is asked for: its place in the tables, the column it counts for, and how it is made.
+Try = tuple[Row, str, Settings, How]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """A design, what is asked of it, and all who are asked.
+
+    Attributes:
+        place: of its reference in the tables. design: whose path is asked for, or with `motion` (start [rad]
+            and duration [s]) its swing. tries: who is asked.
+        refined, check: of the reference. arbiter: elements that decide where no column of theirs is right.
+    """
+
+    place: Row
+    design: Design
+    tries: Sequence[Try]
+    motion: How | None = None
+    refined: Way = (REFINED, {})
+    check: Way = (CHECK, {})
+    arbiter: Way = (ARBITER, {})
+
+    def answer(self, settings: Settings, how: How) -> Any:
+        """Return what a model answers."""
+        if self.motion is None:
+            return answer_static(self.design, settings)
+        return answer_release(self.design, settings, records=RECORDS, **{**self.motion, **how})
+
+    def found(self, settings: Settings, how: How, reference: Any) -> Found:
+        """Return an answer compared with the reference."""
+        answer = self.answer(settings, how)
+        if self.motion is None:
+            return Found.of(answer, path_distance(answer, reference))
+        if not len(answer.time):  # statics does not reach the start
+            return Found.of(answer, 0.0)
+        gain = float((answer.balance / answer.balance[0] - 1.0).max())
+        much = gain > (MOST_GAIN_OF_OTHERS if how.get("integrator") else MOST_GAIN)
+        fault = f"the energy grows by {gain:.2g} of itself" if much else ""
+        return Found.of(answer, _swing_distance(answer, reference), fault=fault, energy_gain=gain)
+
+
+def of_path(
+    name: str, x: float, y: float, design: Design, settings: Mapping[str, Settings] = PATHS, **more: Any
+) -> Question:
+    """Return the question for a path: its name, its place on the map, the columns that are asked, and what
+    is not usual of its reference."""
+    place = {"case": name, "x": x, "y": y}
+    tries: list[Try] = [(place, model, each, {}) for model, each in settings.items()]
+    return Question(place=place, design=design, tries=tries, **more)
+
+
+def _answers(question: Question) -> Answer:
+    """Return how all who are asked end, a row each, and the row of the reference."""
+    reference = question.answer(*question.refined)
+    rows: list[Row] = []
+    for place, model, settings, how in question.tries:
+        attempt = partial(question.found, settings, how, reference)
+        rows.append({**place, "model": model, **judged(attempt, TOLERANCE, model)})
+    confirmed = (row["error"] for row in rows if (row["model"], row["outcome"]) == (FE, RIGHT))
+    gap = min(confirmed, default=math.inf)
+    if not gap <= TOLERANCE:
+        gap = question.found(*question.arbiter, reference).error
+    spread = question.found(*question.check, reference).error
+    settled = reference.converged and spread <= TOLERANCE / 2.0 and gap <= TOLERANCE
+    known = {"refinement": spread, "independent": gap, "settled": "yes" if settled else "no"}
+    return {"outcomes": rows, "references": {**question.place, **known}}
+
+
+def family(questions: Callable[[], Iterable[Question]], *parts: Part, **declared: Any) -> Study:
+    """Return the study of a family of questions."""
+    return study(Part(at=questions, ask=_answers), *parts, **declared)
+
+
+def path_distance(path: Response, reference: Response) -> float:
+    """Return the largest distance of two paths over the states that both have: of torque or place [1].
+
+    Each over its largest value on the reference's path; infinite where the path is not of finite numbers.
+    """
+    apart = [each for each in differences(path, reference, ("path", "torque")).values() if each is not None]
+    return max(apart, default=0.0) if np.isfinite(apart).all() else math.inf
+
+
+def _swing_distance(motion: Motion, reference: Motion) -> float:
+    """Return the largest difference of rotation at the motion's records, as far as the reference goes, over
+    the rotation at the start [1]; infinite for a motion with one that is no number."""
+    if not len(motion.time) or len(reference.time) < 2 or not np.isfinite(motion.rotation).all():
+        return math.inf
+    return rotation_error(motion, reference, motion.time) / abs(float(reference.rotation[0]))

@@ -13,7 +13,7 @@ from studies.design.optimise import best, numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
 from studies.design.sizing import ANGLE, GRADE, LENGTH, toleranced
 from studies.design.task import OBJECTIVES, variables_of, varied
-from studies.effects.beyond import with_sections
+from studies.effects.audit import with_sections
 from studies.record.progress import silent
 from tests import gates
 from tests.design.gradients import gradient_error

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from studies.cases.problem import FOLDER
-from studies.cost import advice, settings
+from studies.cost import settings, tried
 from studies.cost.model import Model
 from studies.cost.tried import cheapest, kept
 from studies.errors import Unanswered
@@ -81,8 +81,8 @@ def test_no_model_meets_an_impossible_error(case, command):
 @pytest.mark.slow
 def test_dynamic_advice_as_a_table(command, monkeypatch):
     """The command with --dynamic prints each model's setting, errors of rotation and frequency, and times."""
-    monkeypatch.setattr(advice, "REFERENCE", (6, 5))
-    monkeypatch.setattr(advice, "PERIODS", 1.0)
+    monkeypatch.setattr(tried, "REFERENCE", (6, 5))
+    monkeypatch.setattr(tried, "PERIODS", 1.0)
     genuine = settings.swings
 
     class Failing(Model):

@@ -15,7 +15,7 @@ from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER
 from studies.effects import audit as module
 from studies.effects import scenes
-from studies.effects.beyond import prices
+from studies.effects.audit import prices
 from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
 
 TOLERANCE = 1e-3

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.record.marks import Level, Slope
+from studies.record.marks import HeatMap, Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.style import BLUE, RED, Look
 
@@ -60,7 +60,8 @@ def test_names_run_from_the_top():
 def test_sheet_shares_equal_axes_and_names_everything_once():
     """Panels with the same axis share it; its name and every curve's stand once on the page."""
     panel, other = Panel(COUNT, ERROR, (CURVES, Level(1e-2))), replace(ERROR, label="other")
-    page = sheet(4.0, 4.0, [[panel, panel], 2 * [replace(panel, y=other)]], columns=("a", "b"), legend=2)
+    rows = [[replace(panel), replace(panel)], [replace(panel, y=other) for _ in range(2)]]
+    page = sheet(4.0, 4.0, rows, columns=("a", "b"), legend=2)
     assert [each.get_xlabel() for each in page.axes] == ["", "", "count", "count"]
     assert [each.get_ylabel() for each in page.axes] == ["error [1]", "", "other", ""]
     assert [each.get_title(loc="left") or each.get_title() for each in page.axes] == ["a", "b", "", ""]
@@ -69,11 +70,11 @@ def test_sheet_shares_equal_axes_and_names_everything_once():
     assert not page.axes[0].get_shared_y_axes().joined(page.axes[0], page.axes[2])
 
 
-def test_slope_goes_with_its_power_and_leaves_the_limits():
-    """A slope of order p through a point changes by 2^p over twice x, and what it is held against fills the
-    panel."""
-    slope = Slope(through=(1.0, 1e-1), power=-2, span=(1.0, 2.0), label="order 2")
-    with_slope = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES, slope))]]).axes[0]
-    without = sheet(3.0, 2.0, [[Panel(COUNT, ERROR, (CURVES,))]]).axes[0]
-    np.testing.assert_allclose(with_slope.lines[-1].get_ydata(), [1e-1, 2.5e-2])
-    assert with_slope.get_ylim() == without.get_ylim()
+def test_heat_map_has_exponents_and_crosses():
+    """A square has the decimal exponent of its value, or a cross; a panel in two places fills both."""
+    rows = pd.DataFrame({"x": [1, 2, 2], "y": [1, 1, 2], "error": [1e-3, np.nan, 1e-7]})
+    heat = Panel(Axis("x", "x"), Axis("y", "y"), (HeatMap(rows=rows, column="error", limits=(1e-9, 1.0)),))
+    curves = Panel(COUNT, ERROR, (CURVES,))
+    page = sheet(4.0, 3.0, [[heat, heat], [curves, replace(curves)]], heights=(1, 2), colours="error")
+    assert [each.get_text() for each in page.axes[0].texts] == ["-3", "x", "-7"]
+    assert [each.get_ylabel() for each in page.axes] == ["y", "error [1]", "error [1]", "error"]

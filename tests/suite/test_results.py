@@ -13,9 +13,8 @@ from studies.__main__ import main
 from studies.commands import readme
 from studies.errors import BadInput
 from studies.record import style
-from studies.record.digits import as_csv
 from studies.record.source import ROOT
-from studies.record.store import Store
+from studies.record.store import Store, as_csv, inputs
 from studies.registry import STUDIES, study_of
 from studies.stability.verdict import DEFAULT
 
@@ -36,7 +35,7 @@ def test_study_declares_its_figures_and_its_cases(name):
 @pytest.mark.parametrize("name", STUDIES)
 def test_stored_result_is_fresh(name):
     """No committed result was made by other code or from another case than those of today."""
-    state = Store().state(name, module=STUDIES[name], cases=study_of(name).cases)
+    state = Store().state(name, inputs(STUDIES[name], study_of(name).cases))
     assert (state.kind, state.reason) == ("fresh", "")
 
 
@@ -108,7 +107,7 @@ def copied(tmp_path):
     store = Store(tmp_path)
     shutil.copytree(Store().data(NAME), store.data(NAME))
     shutil.copytree(Store().figures, store.figures)
-    store.renew(NAME, module=STUDIES[NAME], cases=study_of(NAME).cases)
+    store.renew(NAME, inputs(STUDIES[NAME], study_of(NAME).cases))
     return store
 
 
@@ -130,7 +129,7 @@ def command(store, *words):
 
 def state(store):
     """Whether the result is fresh."""
-    return store.state(NAME, module=STUDIES[NAME], cases=study_of(NAME).cases).kind
+    return store.state(NAME, inputs(STUDIES[NAME], study_of(NAME).cases)).kind
 
 
 @pytest.mark.slow

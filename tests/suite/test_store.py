@@ -9,10 +9,9 @@ import pandas as pd
 import pytest
 
 from studies.record import style
-from studies.record.digits import Digits, as_csv, differing
 from studies.record.files import OutputError, replace_folder, write_whole
 from studies.record.source import ROOT
-from studies.record.store import Store
+from studies.record.store import Digits, Store, as_csv, differing, inputs
 
 STUDY = "paper/example"
 MODULE = "studies.answers.metrics"
@@ -23,14 +22,7 @@ TABLE = pd.DataFrame(
 
 
 def _save(store: Store) -> bool:
-    return store.save_tables(
-        STUDY,
-        {"example": TABLE},
-        module=MODULE,
-        cases=CASES,
-        command="python -m studies run example",
-        elapsed=1.0,
-    )
+    return store.save_tables(STUDY, {"example": TABLE}, inputs(MODULE, CASES), 1.0)
 
 
 def _draw() -> dict:
@@ -50,8 +42,7 @@ def store(tmp_path):
 
 
 def _state(store: Store) -> tuple[str, str]:
-    state = store.state(STUDY, module=MODULE, cases=CASES)
-    return state.kind, state.reason
+    return store.state(STUDY, inputs(MODULE, CASES))
 
 
 def test_table_is_sorted_with_eight_digits():
@@ -81,13 +72,14 @@ def test_provenance_tells_the_origin_and_not_the_place(store):
         assert str(ROOT) not in text
 
 
-def test_fresh_stale_missing(store, monkeypatch):
+def test_fresh_stale_missing(store):
     """A result is fresh until the case, the source or a file changes, and missing without its files, of which
     figures may be none."""
     assert _state(store) == ("fresh", "")
-    with monkeypatch.context() as patch:
-        patch.setattr("studies.record.store.source_hash", lambda module: "another")
-        assert _state(store) == ("stale", "the source was changed")
+    now = inputs(MODULE, CASES)
+    for part, said in (("source_sha256", "the source"), ("cases", "a case")):
+        found = store.state(STUDY, now | {part: "another"})
+        assert found == ("stale", f"{said} was changed")
     (store.figures / "example.png").write_bytes(b"edited")
     assert _state(store) == ("stale", "example.png was changed after it was made")
     (store.figures / "example.png").unlink()
@@ -96,27 +88,14 @@ def test_fresh_stale_missing(store, monkeypatch):
     assert _state(store) == ("missing", "no figure was drawn")
     store.save_figures(STUDY, {})
     assert _state(store) == ("fresh", "")
-    assert Store(store.root / "empty").state(STUDY, module=MODULE, cases=CASES).reason == "never run"
-
-
-def test_changed_case_is_stale(store):
-    """A result whose case has changed since is stale."""
-    path = store.data(STUDY) / "provenance.json"
-    record = json.loads(path.read_text(encoding="utf-8"))
-    record["inputs"]["cases"]["cross_axis_pivot"] = "another"
-    path.write_text(json.dumps(record), encoding="utf-8")
-    assert _state(store) == ("stale", "a case was changed")
+    assert Store(store.root / "empty").state(STUDY, {}).reason == "never run"
 
 
 def test_figures_are_equal_byte_by_byte(store):
-    """Drawing again gives the same bytes."""
+    """Drawing again gives the same bytes; a figure that a study no longer draws does not linger."""
     before = {path.name: path.read_bytes() for path in store.figures.iterdir()}
     store.save_figures(STUDY, _draw())
     assert {path.name: path.read_bytes() for path in store.figures.iterdir()} == before
-
-
-def test_figure_no_longer_drawn_is_removed(store):
-    """A figure that a study no longer draws does not linger."""
     store.save_figures(STUDY, {"renamed": _draw()["example"]})
     assert sorted(path.name for path in store.figures.iterdir()) == ["renamed.png", "renamed.svg"]
 

@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pandas as pd
 import pytest
 
-from studies.asking import Asking, processes, whole
+from studies.asking import processes, whole
 from studies.engine import Claim, Part, Study, finding
 from studies.record.progress import silent
 
@@ -25,9 +25,8 @@ def study(numbers=(1, 2), **given):
 
 def answered(declared, progress=silent):
     """The tables of a study, its points asked one after the other."""
-    asking = Asking(declared)
-    assert [*whole({"": asking}, progress)] == [""]
-    return asking.tables()
+    ((_, tables, _),) = whole({"": declared}, progress)
+    return tables
 
 
 STUDY = study(numbers=(1, 2, 4))
@@ -89,20 +88,18 @@ def test_progress_is_told_of_every_point():
 def test_what_must_be_alone_comes_after_all_others():
     """A study is whole as soon as its points are answered; those that must be alone are asked last."""
     place = f"{__name__}:TWO_PARTS"
-    askings = {place: Asking(TWO_PARTS), __name__: Asking(STUDY)}
     ASKED.clear()
     with ThreadPoolExecutor(1) as pool:
-        assert [*whole(askings, silent, pool)] == [__name__, place]
+        found = [*whole({place: TWO_PARTS, __name__: STUDY}, silent, pool)]
+    assert [name for name, _, _ in found] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
-    assert all(asking.seconds > 0.0 for asking in askings.values())
+    assert all(seconds > 0.0 for _, _, seconds in found)
 
 
 @pytest.mark.slow
 def test_processes_give_the_same_tables():
     """Points answered beside each other stand where they do one after the other."""
-    asking = Asking(STUDY)
     with processes(2) as pool:
-        assert [*whole({__name__: asking}, silent, pool)] == [__name__]
-    beside = asking.tables()
+        ((_, beside, _),) = whole({__name__: STUDY}, silent, pool)
     for name, table in answered(STUDY).items():
         pd.testing.assert_frame_equal(beside[name], table)

@@ -1,0 +1,186 @@
+"""Hard cases: how an answer is judged, no wrong answer of the default, settled references, the gates."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from studies.answers.settings import SplineSettings
+from studies.errors import BadInput
+from studies.paper import formulations
+from studies.record.store import Store
+from studies.registry import STUDIES
+from studies.stability import verdict
+from studies.stability.buckling import OTHER, PRIMARY
+from studies.stability.questions import EULER, PUBLISHED, load_ratio, tip
+from studies.stability.verdict import DEFAULT, FE, OUTCOMES, PAPER, TWELVE, VARIED, Found, judged
+from tests import gates
+
+FAMILIES = [name for name in STUDIES if name.startswith("stability/")]
+
+
+@cache
+def tables(family):
+    """Return the stored tables of a family."""
+    return Store().load_tables(family)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_default_is_never_wrong(family):
+    """Requirement: the default's answers, or those of varied settings, are right or refused, never wrong."""
+    found = tables(family)["outcomes"]
+    mine = found[found["model"] == (VARIED if family.endswith("axial_modes") else DEFAULT)]
+    assert len(mine) > 0
+    wrong = mine[mine["outcome"] == "wrong"]
+    assert wrong.empty, wrong[["case", "error", "reason"]].to_string()
+    refused = mine[mine["outcome"].isin(("refused", "bad input"))]
+    assert (refused["reason"].astype(str).str.len() > 10).all()
+    assert (mine["outcome"] == "right").sum() > 0.3 * len(mine)  # a model that refuses all is no use
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_references_are_settled(family):
+    """Requirement: what others are held against, if not closed books or themselves, agrees with its own
+    refinement and an independent model."""
+    if "references" in tables(family):
+        references = tables(family)["references"]
+        assert (references["settled"] == "yes").all(), references[references["settled"] != "yes"].to_string()
+
+
+def limit():
+    """Return the differences to inextensible strips by slenderness."""
+    return tables("stability/slenderness")["limit"].set_index("slenderness")
+
+
+def slender_error(slenderness=1000.0):
+    """Largest difference of torque to the inextensible strip, at one slenderness."""
+    return float(limit().loc[slenderness, "error"])
+
+
+def test_slender_strips_tend_to_inextensible_ones():
+    """Requirement: at L/t = 1000 the torque is that of inextensible strips, and the work stays the same."""
+    gates.hold("stability_slender", slender_error)
+    table = limit()
+    iterations = table["iterations"]
+    assert iterations.max() <= 1.2 * iterations.min()
+    assert table["constant"].max() / table["constant"].min() < 1.01  # the error goes with (L/t)^-2
+    gates.hold("stability_slender_digits", lambda column="lost_digits": table[column].max())
+
+
+def energy_gain(model=DEFAULT):
+    """Largest gain of energy of a column over all steps and amplitudes."""
+    found = tables("stability/step_size")["outcomes"]
+    return float(found[found["model"] == model]["energy_gain"].max())
+
+
+def test_no_step_gains_energy():
+    """Requirement: from 1e-7 to 1e-2 s no step gains energy, but those of generalised-alpha."""
+    gates.hold("stability_energy_gain", energy_gain)
+
+
+def test_error_goes_with_the_square_of_the_step():
+    """Requirement: over the steps between the swing's period and the fastest waves the order is 2."""
+    order = tables("stability/step_size")["order"].set_index("step_s")
+    errors = order["error_rad"]
+    coarse = errors[order.index >= 1e-4]
+    slope = np.polyfit(np.log(coarse.index), np.log(coarse), 1)[0]
+    assert slope > 2 - 0.15, order
+    assert order["order"].iloc[-2:].min() > 2 - 0.15, order  # and below them again
+
+
+def on(branch, model):
+    """Return the states of the pushed pivot on a branch, by depth."""
+    rows = tables("stability/buckling")["branches"].set_index("asked_mm").sort_index()
+    return rows[(rows["model"] == model) & (rows["branch"] == branch)]
+
+
+@pytest.mark.parametrize("model", [TWELVE, FE])
+def test_the_turned_branch_is_the_stable_one(model):
+    """Requirement: pushed beyond the buckling of its strips the pivot turns: stable, with less energy."""
+    turned, straight = on(OTHER, model), on(PRIMARY, model)
+    assert (turned["unstable_directions"] == 0).all()
+    assert (straight["unstable_directions"] == 2).all()
+    assert (turned["energy_J"] < straight["energy_J"]).all()
+
+
+def energy_difference(model=TWELVE):
+    """Largest difference of stored energy to that of the elements, over both branches and all depths."""
+    return max(
+        float(np.abs(on(branch, model)["energy_J"] / on(branch, FE)["energy_J"] - 1.0).max())
+        for branch in (PRIMARY, OTHER)
+    )
+
+
+def test_both_models_are_on_the_same_branches():
+    """Requirement: on either branch both models store the same energy."""
+    gates.hold("buckling_branches", energy_difference)
+
+
+def test_the_default_is_right_where_the_paper_s_choices_are_wrong():
+    """Requirement: limits, branches and the turned pivot: the default finds each; the judgement has teeth,
+    the locking cubic fails in all geometries and misses most of what is asked of buckling."""
+    counts = tables("stability/buckling")["counts"].set_index("model")
+    assert (counts.loc[[DEFAULT, TWELVE], "right"] == counts.loc[[DEFAULT, TWELVE], "tried"]).all()
+    assert counts.loc[PAPER, "wrong"] > counts.loc[PAPER, "tried"] / 2
+    found = tables("stability/geometry")["outcomes"]
+    assert (found[found["model"] == PAPER]["outcome"] == "wrong").all()
+
+
+def raising(error):
+    """Return an attempt that raises."""
+
+    def attempt():
+        raise error
+
+    return attempt
+
+
+@pytest.mark.parametrize(
+    ("attempt", "outcome"),
+    [
+        (lambda: Found(error=0.01), "right"),
+        (lambda: Found(error=0.5), "wrong"),
+        (lambda: Found(error=math.nan), "wrong"),
+        (lambda: Found(error=math.inf), "wrong"),
+        (lambda: Found(error=0.01, reached=False, reason="stopped"), "refused"),
+        (lambda: Found(error=0.5, reached=False, reason="stopped"), "wrong"),
+        (lambda: Found(error=0.5, reason="too coarse", states_limit=True), "refused"),
+        (lambda: Found(error=0.01, reason="too coarse", states_limit=True), "right"),
+        (lambda: Found(error=0.01, fault="energy grows", states_limit=True), "wrong"),
+        (raising(BadInput("length: got -1")), "bad input"),
+        (raising(ZeroDivisionError("division by zero")), "wrong"),
+    ],
+)
+def test_every_ending_has_its_outcome(attempt, outcome):
+    """An answer is right, refused, wrong or bad input; a refusal must leave a good state."""
+    assert judged(attempt, 0.05)["outcome"] == outcome
+    assert outcome in OUTCOMES
+
+
+def test_columns_are_what_they_say():
+    """The default is the model's own default, and the paper's choices are those of the paper's figures."""
+    assert verdict.COLUMNS[verdict.DEFAULT] == SplineSettings()
+    assert verdict.COLUMNS[verdict.PAPER] == formulations.SETTINGS[formulations.PAPER]
+    assert set(verdict.COLUMNS) <= set(verdict.ORDER)
+
+
+def equation_error(rtol=1e-10):
+    """Largest miss of the tip, integrated from the root: theta'' = -P sin theta, no moment at the end."""
+    missed = []
+    for angle in np.radians(list(PUBLISHED)):
+        load = EULER * load_ratio(angle)
+
+        def along(_, y, load=load):
+            return [y[1], -load * np.sin(y[0]), np.cos(y[0]), np.sin(y[0])]
+
+        start = [0.0, np.sqrt(2.0 * load * (1.0 - np.cos(angle))), 0.0, 0.0]
+        end = solve_ivp(along, (0.0, 1.0), start, rtol=rtol, atol=1e-2 * rtol).y[:, -1]
+        missed.append(np.abs(end - [angle, 0.0, *tip(angle)]).max())
+    return max(missed)
+
+
+def test_tip_solves_the_elastica():
+    """Requirement: angle, place and vanishing moment of the tip are those of the column's equation."""
+    gates.hold("elastica_equation", equation_error)
