@@ -4,12 +4,15 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from studies.answers.answer import Answer
 from studies.answers.models import Asked, model_of, put
 from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
-from studies.answers.settings import FeSettings, Settings
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
+from studies.cases.effects import Effects
+from studies.cases.keys import GROUND
+from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.progress import measure
@@ -119,7 +122,8 @@ def _released(
         )
     except model.ConvergenceError as error:
         asked = put(design, settings, moving=True)
-        return Motion.without_start(asked, f"statics does not reach the start: {error}")
+        message = f"statics does not reach the start: {error}"
+        return Motion(asked=asked, status="not_converged", message=message)
     asked, at, result = timing.result
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
@@ -155,11 +159,11 @@ def answer_modes(
         BadInput: a setting or option that the model refuses; one line.
     """
     asked = put(design, settings, moving=True)
-    still = rotation is None and (held or isinstance(design, Problem))
+    still = rotation is None and (held or design.crossing_point is not None)
     how: dict[str, Any] = {"count": count, "held": held, "rotation": 0.0 if still else rotation}
     how |= {} if accuracy is None else {"accuracy": accuracy}
     solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
-    state: dict[str, Any] = {"rotation": rotation or 0.0, "held": held}
+    state: dict[str, Any] = {"turned": rotation or 0.0, "held": held}
     try:
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
@@ -196,3 +200,65 @@ def _drive_of(asked: Asked) -> dict[str, Any]:
     if design.rotation is None:
         raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
     return {"drive": asked.model.DrivenRotation(body=design.body, angle=design.rotation, **given)}
+
+
+#: What either model calls its answers -> their neutral form.
+FORMS = {"StaticSolution": Response, "Trajectory": Motion, "Modes": Spectrum}
+
+
+def answer_of(solution: Any, modelled: Any) -> Answer:
+    """Return the neutral answer to what a model was asked directly.
+
+    Args:
+        solution: static solution, trajectory or modes of `spline_model` or `fe_reference`.
+        modelled: the pivot or mechanism of the model that it is of; sections are taken as rectangles.
+
+    Raises:
+        BadInput: something else, or of two models; one line.
+    """
+    package = type(solution).__module__.partition(".")[0]
+    form: Any = FORMS.get(type(solution).__name__)
+    if form is None or type(modelled).__module__.partition(".")[0] != package:
+        got = f"{type(solution).__name__} and {type(modelled).__name__}"
+        raise BadInput(
+            f"solution: got {got}, expected a static solution, a trajectory or modes, with their design"
+        )
+    settings = SplineSettings() if package == "spline_model" else FeSettings(element=modelled.element)
+    body = getattr(solution, "driven", None) or getattr(solution, "body", None)
+    design = _design_of(modelled, body)
+    state = {"turned": solution.rotation, "held": solution.held} if form is Spectrum else {}
+    found: Answer = form.of(Asked(design, settings, form is not Response, modelled), solution, **state)
+    return found
+
+
+def _design_of(modelled: Any, body: str | None) -> Mechanism:
+    """Return the design of a pivot or mechanism of a model."""
+    given = modelled.design if hasattr(modelled, "design") else modelled
+    bodies = tuple(
+        Body(name=b.name, centre=tuple(b.centre), mass=b.mass, moment_of_inertia=b.moment_of_inertia)
+        for b in given.bodies
+    )
+    on: dict[Any, Any] = {**{k: each.name for k, each in enumerate(bodies)}, -1: GROUND, -2: None}
+    taken = ("youngs_modulus", "area", "second_moment_of_area", "poisson_ratio", "density")
+    strips = []
+    for strip in given.strips:
+        section, nodes = getattr(strip, "section", strip), getattr(strip, "nodes", None)
+        start, end = (strip.start, strip.end) if nodes is None else (nodes[0], nodes[-1])
+        strips.append(
+            Strip(
+                name=strip.name,
+                start=tuple(start),
+                end=tuple(end),
+                root=on.get(strip.root, strip.root),
+                tip=on.get(strip.tip, strip.tip),
+                **{name: getattr(section, name) for name in taken},
+            )
+        )
+    return Mechanism(
+        strips=tuple(strips),
+        bodies=bodies,
+        body=body or next((each.name for each in bodies), None),
+        rotation=None,
+        increments=1,
+        effects=Effects(),
+    )

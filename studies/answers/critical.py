@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from spline_model.solution import named
+from studies.answers.answer import Answer
 from studies.answers.metrics import extrapolate
 from studies.answers.models import Asked, put
-from studies.answers.response import Answered, Response, assembled
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from studies.errors import BadInput
 
 #: The effect that is raised, and those that load or lead bodies, which are left out.
@@ -34,7 +34,7 @@ UNSTABLE, NONE = "unstable at zero force", ""
 
 
 @dataclass(frozen=True, kw_only=True)
-class CriticalLoad(Answered):
+class CriticalLoad(Answer):
     """The first force that a design does not bear, in one direction.
 
     Its status is "converged" where two discretisations agree, on a force or on none; else its message says
@@ -50,6 +50,8 @@ class CriticalLoad(Answered):
         soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
             critical load is found; None where they do not. softer: relative uncertainty of both [1].
     """
+
+    analysis = "critical load"
 
     direction: float
     held: bool
@@ -104,7 +106,7 @@ class _Question:
         design = self.design
         left = design.effects.renamed([name for name in design.effects.names if name not in LOADS])
         way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
-        load = {"force": way} | ({} if isinstance(design, Problem) else {"body": self.body})
+        load = {"force": way, "body": self.body}
         return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
 
     def path(self, asked: Asked) -> Any:
@@ -239,9 +241,8 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
             "kind": UNSTABLE if unstable else str(point.kind),
             "preload": float(point.preload),
         }
-    about = CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)}
     known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
-    return CriticalLoad(**about | known | found)
+    return CriticalLoad(asked=asked, solution=path if settled else None, **known | found)
 
 
 def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoad) -> CriticalLoad:

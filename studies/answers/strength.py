@@ -1,6 +1,6 @@
 """What an answer bears: its largest stress, and from which load factor and rotation on a strip yields."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -8,8 +8,6 @@ import numpy as np
 
 from studies.answers.models import put
 from studies.answers.response import Response
-from studies.answers.settings import Settings, settings_of_model
-from studies.cases.design import Design
 from studies.errors import Unanswered
 from studies.kinds import Array
 
@@ -150,14 +148,15 @@ def _between(places: Array, at: float) -> Array:
 
 def _solved(answer: Response, place: Array) -> Response:
     """Return the answer to a path that ends at a load factor and rotation on that of an answer."""
-    design: Design = answer.design
-    effects = design.effects
+    design, effects = answer.design, answer.design.effects
     if set(effects.names) & SCALED.keys():
         effects = replace(effects, tables=_scaled(effects.parameters(), float(place[0])))
     changes: dict[str, Any] = {"effects": effects}
     if design.rotation is not None:
         changes["rotation"] = float(place[1])
-    asked = put(replace(design, **changes), _settings(answer))
+    given = answer.asked.settings
+    known = {each.name: answer.settings[each.name] for each in fields(given) if each.name in answer.settings}
+    asked = put(replace(design, **changes), replace(given, **known))
     path = asked.static_path(raise_on_failure=False)
     if str(path.status.value) != "converged":
         raise Unanswered(path.message)
@@ -174,10 +173,3 @@ def _scaled(parameters: Mapping[str, Mapping[str, Any]], factor: float) -> dict[
             value = np.multiply(found[name][key], factor)
             found[name][key] = float(value) if value.ndim == 0 else tuple(map(float, value))
     return found
-
-
-def _settings(answer: Response) -> Settings:
-    """Return the settings that an answer was reached with."""
-    make: Callable[..., Settings] = settings_of_model
-    names = {each.name for each in fields(make(answer.model))} - {"element"}
-    return make(answer.model, **{name: value for name, value in answer.settings.items() if name in names})

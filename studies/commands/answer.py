@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.motion import Spectrum
-from studies.answers.response import PLACES, Answered, Response, Solved
+from studies.answers.answer import Answer
+from studies.answers.response import PLACES
 from studies.answers.strength import Strength
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from studies.pictures.shown import Shown
 
 NOT_CONVERGED = 3
+#: Analyses whose errors are estimated, or told not to be.
+ESTIMATED = ("static", "modes")
 #: What a static answer prints, and the names by which models estimate its error.
 PRINTED = {
     "places": PLACES,
@@ -43,7 +45,7 @@ def deliver(
     table: Iterable[str],
     *,
     failure: str | None,
-    answers: Sequence[Answered] = (),
+    answers: Sequence[Answer] = (),
     frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
     """Draw what there is of `answers` where `--plot` says, print `table`, and write `document` where `--json`
@@ -87,9 +89,10 @@ def not_converged(why: object) -> int:
 
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
+    loads = ["resolution"] if answer.analysis == "critical load" else []
     names = ("status", "message", "resolution", "model", "settings", "effects")
-    found = {name: getattr(answer, name) for name in names if hasattr(answer, name)}
-    if isinstance(answer, Response | Spectrum):
+    found = keyed(answer, *(name for name in names if name not in loads))
+    if answer.analysis in ESTIMATED:
         found["not_estimated"] = not_estimated(answer)
     return found
 
@@ -99,19 +102,19 @@ def keyed(answer: Any, *keys: str) -> dict[str, Any]:
     return {key: getattr(answer, key if hasattr(answer, key) else key.rpartition("_")[0]) for key in keys}
 
 
-def pose(answer: Solved) -> dict[str, Array]:
+def pose(answer: Answer) -> dict[str, Array]:
     """Return how the only body moves, as files have it."""
     x, y = answer.centre.T
     return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
 
 
-def described(answer: Answered) -> str:
+def described(answer: Answer) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
     given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
     return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
 
 
-def estimated(answer: Answered) -> Iterator[str]:
+def estimated(answer: Answer) -> Iterator[str]:
     """Yield what an answer says of its errors, and of which of what it prints they are not estimated."""
     errors = {name: error for name, error in answer.errors.items() if math.isfinite(error)}
     if errors:
@@ -120,17 +123,17 @@ def estimated(answer: Answered) -> Iterator[str]:
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
-    unknown = not_estimated(answer) if isinstance(answer, Response | Spectrum) else []
+    unknown = not_estimated(answer) if answer.analysis in ESTIMATED else []
     if not errors:
         yield "errors not estimated: --accuracy estimates them"
     elif unknown:
         yield f"error not estimated: {', '.join(unknown)}"
 
 
-def not_estimated(answer: Response | Spectrum) -> list[str]:
+def not_estimated(answer: Any) -> list[str]:
     """Return what a path or modes print whose error is not among those that are estimated."""
     errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
-    if isinstance(answer, Spectrum):
+    if answer.analysis == "modes":
         return [] if errors else ["frequency"]
     there = {
         "places": bool(answer.bodies),
@@ -144,10 +147,9 @@ def not_estimated(answer: Response | Spectrum) -> list[str]:
     return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
 
 
-def ending(answer: Solved | Spectrum) -> str:
+def ending(answer: Answer) -> str:
     """Return how the solve ended, its work and its time in a line."""
-    counters: dict[str, int] = getattr(answer, "counters", {})  # modes count nothing
-    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counters.items())
+    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in answer.counters.items())
     parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
     return "; ".join(filter(None, parts))
 
@@ -210,14 +212,11 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def shown_of(case: str, answer: Answered) -> "Shown":
-    """Return an answer as pictures show it, with the least known yield strength of its strips."""
-    from studies.answers.fields import fields_of
+def shown_of(case: str, answer: Answer) -> "Shown":
+    """Return an answer as pictures show it."""
     from studies.pictures.shown import Shown
 
-    known = [strip.yield_strength for strip in answer.design.strips if strip.yield_strength is not None]
-    name, fields = called(case, answer), fields_of(answer)
-    return Shown(name=name, fields=fields, yield_strength=min(known, default=None))
+    return Shown(name=called(case, answer), answer=answer)
 
 
 def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:

@@ -78,23 +78,23 @@ class _Compared(NamedTuple):
     not_estimated: list[str]
 
 
-def _values(answer: Response, shown: Shown) -> dict[str, Any]:
+def _values(answer: Response) -> dict[str, Any]:
     """Return the numbers of a path by their keys."""
-    fields, limits = shown.fields, strength(answer)
+    limits, stiffness, shift = strength(answer), answer.stiffness, answer.shift
     found: dict[str, Any] = {
-        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(fields) if q.standing},
+        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(answer) if q.standing},
         "safety": limits.safety,
         "yield_rotation_rad": limits.yields and limits.yields.rotation,
     }
-    if shown.rotation is not None:
-        found["rotation_rad"] = shown.rotation[-1]
-    if fields.stiffness is not None:
-        found["stiffness_begin_Nm_per_rad"] = begin = fields.stiffness[0]
-        found["stiffness_end_Nm_per_rad"] = fields.stiffness[-1]
-        variation = np.ptp(fields.stiffness) / abs(begin)
+    if answer.body is not None:
+        found["rotation_rad"] = answer.rotation[-1]
+    if answer.driven:
+        found["stiffness_begin_Nm_per_rad"] = begin = stiffness[0]
+        found["stiffness_end_Nm_per_rad"] = stiffness[-1]
+        variation = np.ptp(stiffness) / abs(begin)
         found["stiffness_variation"] = variation if variation > ROUND_OFF else 0.0
-    if shown.shift is not None:
-        found["largest_centre_shift_m"] = shown.shift.max()
+    if shift is not None:
+        found["largest_centre_shift_m"] = shift.max()
     return found
 
 
@@ -155,7 +155,7 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Co
     unknown = [name for name in not_estimated(answer) if name not in NOT_SHOWN]
     if len(answer.load_factor):
         shown = shown_of(case, answer)
-        found = _values(answer, shown)
+        found = _values(answer)
     if set(INERTIA) & set(design.effects.names):
         spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
         unknown += not_estimated(spectrum)

@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.fields import Fields, fields_of
-from studies.answers.response import Answered
+from studies.answers.answer import Answer
 from studies.answers.settings import Settings
 from studies.cases.design import Design
 from studies.commands import arguments as take
@@ -85,13 +84,12 @@ def main(arguments: argparse.Namespace) -> int:
     answer = _solved(arguments.analysis, design, settings, own)
     if answer.solution is None:
         return not_converged(answer.message)
-    fields = fields_of(answer)
-    files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
-    write(arguments.out, files, fields, Path(arguments.case).name)
+    files = contents(answer, arguments.formats, _drawn(answer, arguments.draw_deg))
+    write(arguments.out, files, answer, Path(arguments.case).name)
     print("\n".join((described(answer), *estimated(answer))))
-    if resolution := getattr(answer, "resolution", ""):
-        print(resolution)
-    print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
+    if answer.resolution:
+        print(answer.resolution)
+    print(f"{arguments.out}: {len(answer.values)} states of {answer.analysis} in {len(files)} files")
     return 0 if answer.converged else not_converged(answer.message)
 
 
@@ -110,7 +108,7 @@ def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: own[name] if value is None else value for name, value in given.items()}
 
 
-def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Answered:
+def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Answer:
     with Bar(f"export {settings.model}") as bar:
         if analysis == "static":
             return answer_static(design, settings, progress=bar)
@@ -119,14 +117,13 @@ def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, An
         return answer_modes(design, settings, rotation=design.rotation, **own)
 
 
-def _drawn(fields: Fields, degrees: tuple[float, ...] | None) -> list[int]:
+def _drawn(answer: Answer, degrees: tuple[float, ...] | None) -> list[int]:
     """Return the numbers of the states that a drawing shows, each once, in order."""
-    last = len(fields.values) - 1
-    if fields.mode_shape is not None:
+    last = len(answer.values) - 1
+    if answer.analysis == "modes":
         return list(range(last + 1))
     if degrees is None:
         return sorted({round(part * last) for part in DRAWN})
-    if not fields.blocks:
+    if answer.body is None:
         raise BadInput("--draw-deg: got it for a design without bodies, expected none")
-    turns = np.degrees(fields.bodies[:, fields.driven, 2])
-    return sorted({int(np.abs(turns - angle).argmin()) for angle in degrees})
+    return sorted({int(np.abs(np.degrees(answer.rotation) - angle).argmin()) for angle in degrees})

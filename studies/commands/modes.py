@@ -59,7 +59,8 @@ def _document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         **tell.headed(answer),
-        **tell.keyed(answer, "rotation_rad", "held", "frequency_Hz", "body_shapes", "slide_frequency_Hz"),
+        "rotation_rad": answer.turned,
+        **tell.keyed(answer, "held", "frequency_Hz", "body_shapes", "slide_frequency_Hz"),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "wall_s": answer.wall_s,
     }

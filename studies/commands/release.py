@@ -37,11 +37,10 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.quantities import ENERGIES, energy_floor
+from studies.answers.quantities import MOTION, QUANTITIES, energy_floor
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
-from studies.cases.problem import Problem
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
@@ -155,11 +154,13 @@ def _last_time(design: Design) -> float:
 
 def _document(answer: Motion) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
-    pivot, estimate = isinstance(answer.design, Problem), answer.estimate
+    pivot, estimate = answer.crossing is not None, answer.estimate
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
     few = pivot and set(answer.effects) <= {*DEFAULT, "inextensible"}
-    energies = list(ENERGIES.items())[: 2 if few else None]
+    energies = [
+        q for q in QUANTITIES if MOTION in q.analyses and q.unit == "J" and not (few and q.mechanisms)
+    ]
     return {
         **tell.headed(answer),
         **tell.keyed(answer, "rotation_error_rad", "displacement_error_m"),
@@ -168,7 +169,7 @@ def _document(answer: Motion) -> dict[str, Any]:
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
         **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
-        **{key: getattr(answer, name) for key, (name, _) in energies},
+        **{each.key: each.of(answer) for each in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
