@@ -5,6 +5,7 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +13,15 @@ import numpy as np
 
 from studies.answers.answer import Answer
 from studies.answers.response import PLACES
+from studies.answers.settings import Settings
 from studies.answers.strength import Strength
+from studies.commands.arguments import chosen_settings
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.record.files import write_whole
+from studies.record.progress import Bar
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,35 +45,64 @@ PRINTED = {
 
 def deliver(
     arguments: argparse.Namespace,
-    document: Mapping[str, Any],
+    document: Mapping[str, Any] | list[dict[str, Any]],
     table: Iterable[str],
     *,
     failure: str | None,
-    answers: Sequence[Answer] = (),
-    frame: "Callable[[], pd.DataFrame] | None" = None,
+    answers: Sequence[Any] = (),
+    beside: Callable[[Any], dict[str, Any]] = lambda answers: {},
+    frame: "Callable[[Any], pd.DataFrame] | None" = None,
 ) -> int:
     """Draw what there is of `answers` where `--plot` says, print `table`, and write `document` where `--json`
     says and `frame` where `--csv` does; return the exit code. What goes to the output stream stands alone.
 
     Args:
         arguments: of the command.
-        document: the answer as a JSON object; its arrays and tuples are lists there, and null is what is no
-            finite number.
+        document: the answer as a JSON object, or that of each; its arrays and tuples are lists there, and
+            null is what is no finite number. beside: what that of several answers has as well.
         table: the answer in lines to read.
         failure: why the answer is not complete; None, or nothing, when it is.
-        frame: makes the answer as a table of numbers, of a command that has `--csv`.
+        frame: makes the answers a table of numbers, of a command that has `--csv`.
     """
-    if answers and arguments.plot is not None:
+    if answers and getattr(arguments, "plot", None) is not None:
         shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
         draw(arguments, shown, arguments.plot)
     csv = getattr(arguments, "csv", None)
+    if isinstance(document, list):
+        document = document[0] if len(document) == 1 else {"answers": document, **beside(answers)}
     if STREAM not in (arguments.json, csv):
         print("\n".join(table))
     if arguments.json is not None:
         _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
-        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
+        _put(csv, frame(answers).to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     return not_converged(failure) if failure else 0
+
+
+def asked(
+    arguments: argparse.Namespace,
+    ask: Callable[[Settings, Bar], Any],
+    document: Callable[[Any], dict[str, Any]],
+    table: Callable[[list[Any]], Iterable[str]],
+    *,
+    stopped: Callable[[Any], str] = attrgetter("message"),
+    **how: Any,
+) -> int:
+    """Ask every chosen model, one after another, and deliver the answers; return the exit code.
+
+    Args:
+        arguments: of the command.
+        ask: makes an answer of settings, and tells how far it is.
+        document: of an answer its JSON object. table: of all answers the lines to read.
+        stopped: why an answer is not complete. how: keywords of `deliver`.
+    """
+    answers = []
+    for settings in chosen_settings(arguments):
+        with Bar(f"{Path(arguments.case).stem}: {settings.model}") as bar:
+            answers.append(ask(settings, bar))
+    failure = "; ".join(stopped(each) for each in answers if not each.converged)
+    whole = [document(each) for each in answers]
+    return deliver(arguments, whole, table(answers), failure=failure, answers=answers, **how)
 
 
 def _put(target: Path, text: str, form: str) -> None:

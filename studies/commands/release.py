@@ -45,6 +45,7 @@ from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
+from studies.record.progress import Bar
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -92,23 +93,18 @@ LINES = 20
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
-    design = take.chosen_design(arguments)
-    settings = take.chosen_settings(arguments)[0]
-    if settings.model == "spline":
-        take.refuse(arguments, FE_OPTIONS, OPTIONS)
-    options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
-    duration, options["step"] = _pace(arguments, design, settings)
-    answer = answer_release(
-        design,
-        settings,
-        start=design.rotation if arguments.rotation is None else arguments.rotation,
-        duration=duration,
-        repeat=arguments.repeat,
-        check=not arguments.no_check,
-        **options,
-    )
-    failure = None if answer.converged else answer.message
-    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure, answers=[answer])
+    design, start = take.chosen_design(arguments), arguments.rotation
+
+    def ask(settings: Settings, bar: Bar) -> Motion:
+        if settings.model == "spline":
+            take.refuse(arguments, FE_OPTIONS, OPTIONS)
+        options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS, "repeat")}
+        duration, options["step"] = _pace(arguments, design, settings)
+        return answer_release(
+            design, settings, start=start, duration=duration, check=not arguments.no_check, **options
+        )
+
+    return tell.asked(arguments, ask, _document, _readable)
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -176,8 +172,9 @@ def _document(answer: Motion) -> dict[str, Any]:
     }
 
 
-def _readable(answer: Motion) -> Iterator[str]:
+def _readable(answers: list[Motion]) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
+    (answer,) = answers
     yield tell.described(answer)
     last, scale = len(answer.time) - 1, flexural_scale(answer.design)
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
