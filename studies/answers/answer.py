@@ -203,10 +203,15 @@ class Answer:
         """(S, G, P) larger magnitude of axial and bending stress together at the two outer fibres [Pa]."""
         return read_only(stress_of(self.design.strips, self.along.axial_force, self.along.bending_moment))
 
+    @cached_property
+    def strip_stress(self) -> Array:
+        """(S, G) largest stress of each strip, between the stations as well [Pa]."""
+        return read_only(peak(self.stress))
+
     @property
     def max_stress(self) -> Array:
-        """(S,) largest of all strips, between the stations as well [Pa]."""
-        return np.asarray(peak(self.stress).max(axis=1))
+        """(S,) the largest of all strips [Pa]."""
+        return np.asarray(self.strip_stress.max(axis=1, initial=0.0))
 
     @property
     def shift(self) -> Array | None:

@@ -18,28 +18,13 @@ from studies.kinds import Array
 
 #: Analyses.
 PATH, MOTION, MODES = "static", "release", "modes"
-#: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
+#: What solvers do not resolve: moments and energies in EI/L of the strips, stress in E.
 FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
 #: Which state stands for a path, by what is said of it, of values (..., S).
 STANDING: dict[str, Callable[[Array], Array]] = {
     "end": lambda values: np.asarray(values[..., -1]),
     "largest": lambda values: np.asarray(np.abs(values).max(axis=-1)),
 }
-
-
-def moment_floor(design: Design) -> float:
-    """Return the moment, or stiffness of a turn, that is round-off [N m]."""
-    return FORCE_FLOOR * flexural_scale(design)
-
-
-def energy_floor(design: Design) -> float:
-    """Return the energy that is round-off [J]."""
-    return ENERGY_FLOOR * flexural_scale(design)
-
-
-def stress_floor(design: Design) -> float:
-    """Return the stress that is round-off [Pa]."""
-    return STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in design.strips)
 
 
 #: What stands for a number that there is none of.
@@ -112,7 +97,7 @@ class Quantity(Scale):
         meaning: what it is.
         of: its values (S,) in an answer.
         analyses: that have it, of PATH, MOTION and MODES.
-        floor: of a design, the value that is round-off.
+        floor: value that is round-off, in EI/L of the stiffest strip, or in E of a stress.
         digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
@@ -124,7 +109,7 @@ class Quantity(Scale):
     key: str
     meaning: str
     of: Callable[[Any], Array]
-    floor: Callable[[Design], float]
+    floor: float
     analyses: tuple[str, ...] = (PATH,)
     highest: int = 0
     digits: int = 7
@@ -140,6 +125,12 @@ class Quantity(Scale):
         """Name of its column in a sweep."""
         return self.swept or self.key
 
+    def least(self, design: Design) -> float:
+        """Return the value of a design that is round-off, in its unit."""
+        if self.unit == "Pa":
+            return self.floor * max(float(strip.youngs_modulus) for strip in design.strips)
+        return self.floor * flexural_scale(design)
+
 
 def _of_motion(key: str, name: str, meaning: str, *, mechanisms: bool = False) -> Quantity:
     """Return an energy of a motion by the attribute of its answer."""
@@ -150,7 +141,7 @@ def _of_motion(key: str, name: str, meaning: str, *, mechanisms: bool = False) -
         unit="J",
         meaning=meaning,
         of=attrgetter(name),
-        floor=energy_floor,
+        floor=ENERGY_FLOOR,
         standing="",
         column=not mechanisms,
         mechanisms=mechanisms,
@@ -164,7 +155,7 @@ QUANTITIES = (
         unit="N m",
         meaning="torque of the drive",
         of=attrgetter("torque"),
-        floor=moment_floor,
+        floor=FORCE_FLOOR,
         drive=True,
     ),
     Quantity(
@@ -173,7 +164,7 @@ QUANTITIES = (
         unit="N m/rad",
         meaning="stiffness of the driven rotation at fixed loads",
         of=attrgetter("stiffness"),
-        floor=moment_floor,
+        floor=FORCE_FLOOR,
         standing="",
         drive=True,
     ),
@@ -183,7 +174,7 @@ QUANTITIES = (
         unit="J",
         meaning="energy stored in all strips",
         of=attrgetter("strain_energy"),
-        floor=energy_floor,
+        floor=ENERGY_FLOOR,
         swept="energy_J",
         chart=False,  # its parts are drawn
     ),
@@ -193,7 +184,7 @@ QUANTITIES = (
         unit="J",
         meaning="energy of the weight against rest",
         of=attrgetter("gravity_energy"),
-        floor=energy_floor,
+        floor=ENERGY_FLOOR,
         standing="",
         column=False,
         mechanisms=True,
@@ -205,7 +196,7 @@ QUANTITIES = (
         unit="J",
         meaning="work of drives and loads since the first state",
         of=attrgetter("work"),
-        floor=energy_floor,
+        floor=ENERGY_FLOOR,
         analyses=(PATH, MOTION),
         standing="",
         column=False,
@@ -218,7 +209,7 @@ QUANTITIES = (
         unit="Pa",
         meaning="largest extreme-fibre stress of all strips",
         of=attrgetter("max_stress"),
-        floor=stress_floor,
+        floor=STRAIN_FLOOR,
         analyses=(PATH, MOTION),
         highest=6,
         digits=6,
@@ -237,7 +228,7 @@ QUANTITIES = (
         unit="Hz",
         meaning="of the mode; negative where the state is unstable",
         of=attrgetter("frequency"),
-        floor=lambda design: 0.0,
+        floor=0.0,
         standing="",
     ),
 )

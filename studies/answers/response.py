@@ -8,7 +8,7 @@ import numpy as np
 
 from studies.answers.answer import Answer, centre_shift, own, read_only, shift_error
 from studies.answers.models import Asked
-from studies.answers.quantities import peak, stress_of
+from studies.answers.quantities import stress_of
 from studies.kinds import Array
 
 #: What the models call the error of the bodies' places.
@@ -82,19 +82,9 @@ class Response(Answer):
         return self.bending_energy + self.axial_energy + self.shear_energy
 
     @cached_property
-    def extreme_fibre_stress(self) -> Array:
-        """(S, G, P) largest magnitude over the section's depth [Pa]."""
+    def stress(self) -> Array:
+        """(S, G, P) as of any answer, of the forces that are its own [Pa]."""
         return read_only(stress_of(self.design.strips, self.axial_force, self.bending_moment))
-
-    @cached_property
-    def strip_stress(self) -> Array:
-        """(S, G) largest extreme-fibre stress of each strip, between the stations as well [Pa]."""
-        return read_only(peak(self.extreme_fibre_stress))
-
-    @property
-    def max_stress(self) -> Array:
-        """(S,) the largest of all strips [Pa]."""
-        return np.asarray(self.strip_stress.max(axis=1, initial=0.0))
 
     @property
     def yield_share(self) -> Array | None:

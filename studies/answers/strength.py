@@ -78,7 +78,7 @@ def strength(answer: Response) -> Strength:
     stress, strips = answer.strip_stress, answer.design.strips
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip = map(int, np.unravel_index(first, stress.shape))
-    along = answer.extreme_fibre_stress[state, strip]
+    along = answer.stress[state, strip]
     station = int(np.argmax(along >= (1.0 - SAME) * along.max()))
     load_factor, rotation = map(float, answer.places[state])
     share = answer.yield_share

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.answer import Answer
-from studies.answers.response import PLACES
+from studies.answers.quantities import QUANTITIES
+from studies.answers.response import PLACES, Response
 from studies.answers.settings import Settings
-from studies.answers.strength import Strength
+from studies.answers.strength import strength
 from studies.commands.arguments import chosen_settings
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
@@ -67,13 +68,13 @@ def deliver(
     if answers and getattr(arguments, "plot", None) is not None:
         shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
         draw(arguments, shown, arguments.plot)
-    csv = getattr(arguments, "csv", None)
+    csv, stream = getattr(arguments, "csv", None), getattr(arguments, "json", None)
     if isinstance(document, list):
         document = document[0] if len(document) == 1 else {"answers": document, **beside(answers)}
-    if STREAM not in (arguments.json, csv):
-        print("\n".join(table))
-    if arguments.json is not None:
-        _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
+    if STREAM not in (stream, csv) and (lines := list(table)):
+        print("\n".join(lines))
+    if stream is not None:
+        _put(stream, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
         _put(csv, frame(answers).to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     return not_converged(failure) if failure else 0
@@ -187,9 +188,10 @@ def ending(answer: Answer) -> str:
     return "; ".join(filter(None, parts))
 
 
-def strength_told(found: Strength, *, floor: float) -> Iterator[str]:
-    """Yield where the stress is largest and what of it the material bears; below the floor there is none."""
-    if found.stress < floor:
+def strength_told(answer: Response) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
+    found = strength(answer)
+    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
         yield "no stress: nothing is turned, and no load acts"
         return
     at = _state(found.load_factor, found.rotation)
@@ -214,8 +216,9 @@ def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
     return f"at load factor {load_factor:.{digits}g}"
 
 
-def strength_document(found: Strength) -> dict[str, Any]:
+def strength_document(answer: Response) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
+    found = strength(answer)
     error = found.yields and {"relative_error": found.yields.error}
     return {
         "max_stress_Pa": found.stress,

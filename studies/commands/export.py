@@ -14,6 +14,7 @@ input; 3: not converged, and then the converged part of a path or a motion is wr
 
 import argparse
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +23,8 @@ import numpy as np
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import Settings
-from studies.cases.design import Design
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import described, estimated, not_converged
 from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
 from studies.errors import BadInput
 from studies.exchange.formats import FORMATS, contents, require_own, write
@@ -78,19 +78,27 @@ def main(arguments: argparse.Namespace) -> int:
     design = take.driven(take.chosen_design(arguments), arguments)
     if arguments.analysis == "modes" and arguments.rotation is None:
         design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more
-    (settings,) = take.chosen_settings(arguments)
     own = _own_options(arguments)
     require_own(arguments.out)
-    answer = _solved(arguments.analysis, design, settings, own)
-    if answer.solution is None:
-        return not_converged(answer.message)
-    files = contents(answer, arguments.formats, _drawn(answer, arguments.draw_deg))
-    write(arguments.out, files, answer, Path(arguments.case).name)
-    print("\n".join((described(answer), *estimated(answer))))
-    if answer.resolution:
-        print(answer.resolution)
-    print(f"{arguments.out}: {len(answer.values)} states of {answer.analysis} in {len(files)} files")
-    return 0 if answer.converged else not_converged(answer.message)
+
+    def ask(settings: Settings, bar: Bar) -> Answer:
+        if arguments.analysis == "static":
+            return answer_static(design, settings, progress=bar)
+        if arguments.analysis == "release":
+            return answer_release(design, settings, swings=False, **own)
+        return answer_modes(design, settings, rotation=design.rotation, **own)
+
+    def written(answers: list[Answer]) -> Iterator[str]:
+        (answer,) = answers
+        if answer.solution is None:
+            return
+        files = contents(answer, arguments.formats, _drawn(answer, arguments.draw_deg))
+        write(arguments.out, files, answer, Path(arguments.case).name)
+        yield from (tell.described(answer), *tell.estimated(answer))
+        yield from filter(None, [answer.resolution])
+        yield f"{arguments.out}: {len(answer.values)} states of {answer.analysis} in {len(files)} files"
+
+    return tell.asked(arguments, ask, lambda answer: {}, written)
 
 
 def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -106,15 +114,6 @@ def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
     own = OPTIONS[arguments.analysis]
     given = {name: getattr(arguments, name) for name in own}
     return {name: own[name] if value is None else value for name, value in given.items()}
-
-
-def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Answer:
-    with Bar(f"export {settings.model}") as bar:
-        if analysis == "static":
-            return answer_static(design, settings, progress=bar)
-        if analysis == "release":
-            return answer_release(design, settings, swings=False, **own)
-        return answer_modes(design, settings, rotation=design.rotation, **own)
 
 
 def _drawn(answer: Answer, degrees: tuple[float, ...] | None) -> list[int]:

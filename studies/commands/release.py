@@ -37,7 +37,7 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.quantities import MOTION, QUANTITIES, energy_floor
+from studies.answers.quantities import ENERGY_FLOOR, MOTION, QUANTITIES
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
@@ -184,7 +184,7 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
             *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
             angle(answer.rotation[shown]),
             *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
-            *quantity("J", floor=energy_floor(answer.design), kinetic=kinetic, strain=strain),
+            *quantity("J", floor=ENERGY_FLOOR * scale, kinetic=kinetic, strain=strain),
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )

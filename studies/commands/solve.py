@@ -35,10 +35,9 @@ import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
-from studies.answers.quantities import quantities_of, stress_floor
+from studies.answers.quantities import quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
-from studies.answers.strength import strength
 from studies.answers.validity import validity
 from studies.commands import answer as tell
 from studies.commands import arguments as take
@@ -176,7 +175,7 @@ def _document(answer: Response) -> dict[str, Any]:
         "critical_points": _critical(answer),
         **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         **_arrays(answer),
-        "strength": tell.strength_document(strength(answer)),
+        "strength": tell.strength_document(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
@@ -216,7 +215,7 @@ def _readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from tell.strength_told(strength(answer), floor=stress_floor(answer.design))
+    yield from tell.strength_told(answer)
     # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
@@ -245,7 +244,7 @@ def _columns(answer: Response) -> Iterator[Column]:
     for each, values in quantities_of(answer):
         if each.column and np.isfinite(values).any():
             named: dict[str, Any] = {each.heading: values}
-            floor = each.floor(answer.design)
+            floor = each.least(answer.design)
             yield from quantity(each.unit, floor=floor, highest=each.highest, digits=each.digits, **named)
     if answer.crossing is None:
         for name, place in answer.bodies.items():

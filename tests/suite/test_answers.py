@@ -91,7 +91,7 @@ def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
 def test_largest_stress_is_that_of_all_strips_and_sections():
     """The largest stress of a state is found wherever it stands: any strip, any section."""
     answer = answer_static(dataclasses.replace(TABLE_1, rotation=0.1, increments=2), FeSettings(elements=2))
-    stress = np.ones_like(answer.extreme_fibre_stress)
+    stress = np.ones_like(answer.stress)
     stress[1, 0, 2], stress[2, 1, 0] = 3.0, 5.0
     pulled = {"axial_force": TABLE_1.area * stress, "bending_moment": np.zeros_like(stress)}
     assert dataclasses.replace(answer, solution=SimpleNamespace(**pulled)).max_stress == pytest.approx(
