@@ -1,6 +1,6 @@
 """Put a design to either model, and get a neutral answer: its static path, its release, its natural modes."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
@@ -93,19 +93,11 @@ def answer_release(
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
-    at = design.rotation if start is None else start
+    start, model = design.rotation if start is None else start, model_of(settings)
     how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
-    return _released(design, settings, at, how, repeat=repeat, check=check)
-
-
-def _released(
-    design: Design, settings: Settings, start: float | None, how: dict[str, Any], *, repeat: int, check: bool
-) -> Motion:
-    """Return the motion after a release from `start` [rad], as `answer_release` has it."""
-    model = model_of(settings)
     if isinstance(settings, FeSettings):
-        words = {"records": "samples"}
-        how = {words.get(name, name): value for name, value in how.items()} | {"raise_on_failure": False}
+        how = {"samples" if name == "records" else name: value for name, value in how.items()}
+        how["raise_on_failure"] = False
 
     def solve() -> tuple[Asked, dict[str, Any], Any]:
         asked = put(design, settings, moving=True)
@@ -113,17 +105,12 @@ def _released(
             at = {"start": start, "body": design.body} | _drive_of(asked)
             return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
 
+    many = {"repeat": repeat, "warm_up": 1 if repeat > 1 else 0}
     try:
-        timing = measure(
-            solve,
-            repeat=repeat,
-            warm_up=1 if repeat > 1 else 0,
-            part=lambda solved: float(solved[-1].seconds["solve"]),
-        )
+        timing = measure(solve, **many, part=lambda solved: float(solved[-1].seconds["solve"]))
     except model.ConvergenceError as error:
-        asked = put(design, settings, moving=True)
         message = f"statics does not reach the start: {error}"
-        return Motion(asked=asked, status="not_converged", message=message)
+        return Motion(asked=put(design, settings, moving=True), status="not_converged", message=message)
     asked, at, result = timing.result
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
@@ -233,32 +220,21 @@ def answer_of(solution: Any, modelled: Any) -> Answer:
 
 def _design_of(modelled: Any, body: str | None) -> Mechanism:
     """Return the design of a pivot or mechanism of a model."""
-    given = modelled.design if hasattr(modelled, "design") else modelled
-    bodies = tuple(
-        Body(name=b.name, centre=tuple(b.centre), mass=b.mass, moment_of_inertia=b.moment_of_inertia)
-        for b in given.bodies
-    )
-    on: dict[Any, Any] = {**{k: each.name for k, each in enumerate(bodies)}, -1: GROUND, -2: None}
-    taken = ("youngs_modulus", "area", "second_moment_of_area", "poisson_ratio", "density")
+    given = getattr(modelled, "design", modelled)
+    bodies = tuple(Body(**_taken(Body, each)) for each in given.bodies)
+    on = {-1: GROUND, -2: None} | dict(enumerate(each.name for each in bodies))
     strips = []
     for strip in given.strips:
-        section, nodes = getattr(strip, "section", strip), getattr(strip, "nodes", None)
-        start, end = (strip.start, strip.end) if nodes is None else (nodes[0], nodes[-1])
-        strips.append(
-            Strip(
-                name=strip.name,
-                start=tuple(start),
-                end=tuple(end),
-                root=on.get(strip.root, strip.root),
-                tip=on.get(strip.tip, strip.tip),
-                **{name: getattr(section, name) for name in taken},
-            )
-        )
-    return Mechanism(
-        strips=tuple(strips),
-        bodies=bodies,
-        body=body or next((each.name for each in bodies), None),
-        rotation=None,
-        increments=1,
-        effects=Effects(),
-    )
+        found = _taken(Strip, getattr(strip, "section", strip)) | _taken(Strip, strip)
+        if hasattr(strip, "nodes"):  # of elements, on bodies by their number
+            found |= {"start": strip.nodes[0], "end": strip.nodes[-1]}
+            found |= {"root": on[strip.root], "tip": on[strip.tip]}
+        strips.append(Strip(**found))
+    moved = body or next((each.name for each in bodies), None)
+    how: dict[str, Any] = {"rotation": None, "increments": 1, "effects": Effects()}
+    return Mechanism(strips=tuple(strips), bodies=bodies, body=moved, **how)
+
+
+def _taken(kind: Any, part: Any) -> dict[str, Any]:
+    """Return what a part of a model has of the attributes of a part of a case."""
+    return {each.name: getattr(part, each.name) for each in fields(kind) if hasattr(part, each.name)}
