@@ -9,101 +9,66 @@ from functools import cache
 from multiprocessing import get_context
 from typing import Any
 
-import pandas as pd
-
-from studies.engine import Answer, Part, Study
+from studies.engine import Answer, Part, Study, Tables
 from studies.kinds import Progress
 from studies.registry import study_at
 
-#: Part and place of a point in a study.
-Key = tuple[int, int]
-#: An answer and the seconds that it took.
-Timed = tuple[Answer, float]
+#: A point: the place of its study, as of `study_at`, its part and its number in that.
+Key = tuple[str, int, int]
 
 
-class Asking:
-    """A study that is asked point by point.
-
-    Attributes:
-        study: the declaration.
-        points: part and point, by their key, in the order of the answers.
-        found: the answers by now.
-    """
-
-    def __init__(self, study: Study) -> None:
-        self.study = study
-        self.points = _points(study)
-        self.found: dict[Key, Timed] = {}
-
-    @property
-    def seconds(self) -> float:
-        """What all answers took, one after the other [s]."""
-        return sum(seconds for _, seconds in self.found.values())
-
-    def open(self) -> dict[Key, bool]:
-        """Return the points without an answer, and whether nothing may run beside them."""
-        return {key: part.alone for key, (part, _) in self.points.items() if key not in self.found}
-
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """Return the tables of the study, all points of which are answered."""
-        return self.study.tables(self.found[key][0] for key in self.points)
-
-
-def whole(askings: Mapping[str, Asking], progress: Progress, pool: Executor | None = None) -> Iterator[str]:
-    """Ask all points, and yield each study as soon as it is whole.
+def answered(
+    studies: Mapping[str, Study], progress: Progress, pool: Executor | None = None
+) -> Iterator[tuple[str, Tables, float]]:
+    """Ask all points; yield each study's place, tables and seconds of all answers [s] as soon as it is whole.
 
     Args:
-        askings: by the place of their study, as of `study_at`, where other processes find it.
+        studies: by their place, where other processes find them.
         progress: is told how many points of how many of all studies are done.
         pool: has points of all studies beside each other, but for those that must be alone, which come when
             it has done the others. Without it one study comes after the other.
     """
+    points = {key: each for place, study in studies.items() for key, each in _points(place, study).items()}
+    found: dict[Key, tuple[Answer, float]] = {}
 
-    def tell() -> None:
-        progress(sum(len(each.found) for each in askings.values()), count)
+    def keep(key: Key, answer: tuple[Answer, float]) -> Iterator[tuple[str, Tables, float]]:
+        found[key] = answer
+        progress(len(found), len(points))
+        own = [found.get(each) for each in points if each[0] == key[0]]
+        if None not in own:
+            answers, seconds = zip(*filter(None, own), strict=True)
+            yield key[0], studies[key[0]].tables(answers), sum(seconds)
 
-    count = sum(len(each.points) for each in askings.values())
-    tell()
-    waiting = {
-        pool.submit(_elsewhere, place, key): (place, key)
-        for place, asking in askings.items()
-        for key, alone in asking.open().items()
-        if pool and not alone
-    }
-    rest = dict(askings)
+    progress(0, len(points))
+    beside = {key for key, (part, _) in points.items() if pool and not part.alone}
+    waiting = {pool.submit(_elsewhere, key): key for key in points if key in beside} if pool else {}
     for future in as_completed(waiting):
-        place, key = waiting[future]
-        askings[place].found[key] = future.result()
-        tell()
-        if not askings[place].open():
-            del rest[place]
-            yield place
-    for place, asking in rest.items():
-        for key in asking.open():
-            asking.found[key] = _timed(*asking.points[key])
-            tell()
-        yield place
+        yield from keep(waiting[future], future.result())
+    for key, point in points.items():
+        if key not in beside:
+            yield from keep(key, _timed(*point))
 
 
-def _points(study: Study) -> dict[Key, tuple[Part, Any]]:
-    """Return part and point by their key."""
-    return {(i, k): (part, point) for i, part in enumerate(study.parts) for k, point in enumerate(part.at())}
+def _points(place: str, study: Study) -> dict[Key, tuple[Part, Any]]:
+    """Return part and point of a study by their key."""
+    parts = enumerate(study.parts)
+    return {(place, i, k): (part, point) for i, part in parts for k, point in enumerate(part.at())}
 
 
-def _timed(part: Part, point: Any) -> Timed:
+def _timed(part: Part, point: Any) -> tuple[Answer, float]:
     """Answer one point; return the seconds that it took as well."""
     start = time.perf_counter()
     return part.answer(point), time.perf_counter() - start
 
 
-def _elsewhere(place: str, key: Key) -> Timed:
+def _elsewhere(key: Key) -> tuple[Answer, float]:
     """Answer one point in another process, which has the study from its place."""
-    return _timed(*_found_at(place)[key])
+    return _timed(*_found_at(key[0])[key])
 
 
 @cache
 def _found_at(place: str) -> dict[Key, tuple[Part, Any]]:
-    return _points(study_at(place))
+    return _points(place, study_at(place))
 
 
 @contextmanager

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from typing import Any
 
-from studies.asking import Asking, cores, processes, whole
+from studies.asking import answered, cores, processes
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
 from studies.engine import Study, Tables
@@ -49,8 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"{name}: left as it is: {reason}", file=sys.stderr)
         else:
             names.append(name)
-    for name, asking, bar in _whole(names, arguments.processes):
-        study, tables = asking.study, asking.tables()
+    for name, tables, seconds, bar in _whole(names, arguments.processes):
+        study = study_of(name)
         stored = _stored(store, name)
         other = _differing(stored, tables, study)
         kept = {each: stored[each] for each in stored if each not in other and not study.varies(each)}
@@ -60,13 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
             module=STUDIES[name],
             cases=study.cases,
             command=f"python -m studies run {name}",
-            elapsed=asking.seconds,
+            elapsed=seconds,
         )
         if changed:
             with style.applied():
                 store.save_figures(name, study.draw(store.load_tables(name)))
         said = f"changed: {', '.join(other.values())}" if stored and other else "stored"
-        bar.say(f"{name}: {asking.seconds:.1f} s: {said}: {store.data(name)}, figures in {store.figures}")
+        bar.say(f"{name}: {seconds:.1f} s: {said}: {store.data(name)}, figures in {store.figures}")
     return 0
 
 
@@ -110,9 +110,10 @@ def verify(arguments: argparse.Namespace) -> int:
             asked.append(name)
         else:
             print(f"{name}: {said}", file=sys.stderr)
-    for name, asking, bar in _whole(asked, arguments.processes):
-        known: dict[str, Any] = {"module": STUDIES[name], "cases": asking.study.cases}
-        other = _differing(store.load_tables(name), asking.tables(), asking.study)
+    for name, tables, _, bar in _whole(asked, arguments.processes):
+        study = study_of(name)
+        known: dict[str, Any] = {"module": STUDIES[name], "cases": study.cases}
+        other = _differing(store.load_tables(name), tables, study)
         if not other:
             store.renew(name, **known)
         kind = store.state(name, **known).kind
@@ -138,14 +139,14 @@ def status(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _whole(names: list[str], count: int) -> Iterator[tuple[str, Asking, Bar]]:
-    """Yield studies as their points are all answered, by so many processes, while a bar shows how far they
-    are."""
-    names_at = {STUDIES[name]: name for name in names}
-    askings = {place: Asking(study_of(name)) for place, name in names_at.items()}
+def _whole(names: list[str], count: int) -> Iterator[tuple[str, Tables, float, Bar]]:
+    """Yield studies as their points are all answered, by so many processes, with their tables and seconds,
+    while a bar shows how far they are."""
+    at = {STUDIES[name]: name for name in names}
+    studies = {place: study_of(name) for place, name in at.items()}
     with processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
-        for place in whole(askings, bar, pool):
-            yield names_at[place], askings[place], bar
+        for place, tables, seconds in answered(studies, bar, pool):
+            yield at[place], tables, seconds, bar
 
 
 def _stored(store: Store, name: str) -> Tables:

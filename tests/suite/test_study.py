@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pandas as pd
 import pytest
 
-from studies.asking import Asking, processes, whole
+from studies.asking import answered, processes
 from studies.engine import Claim, Part, Study, finding
 from studies.record.progress import silent
 
@@ -23,11 +23,10 @@ def study(numbers=(1, 2), **given):
     return Study(cases=(), parts=(Part(at=lambda: numbers, ask=squared),), figures={}, **given)
 
 
-def answered(declared, progress=silent):
+def tables_of(declared, progress=silent):
     """The tables of a study, its points asked one after the other."""
-    asking = Asking(declared)
-    assert [*whole({"": asking}, progress)] == [""]
-    return asking.tables()
+    ((_, tables, _),) = answered({"": declared}, progress)
+    return tables
 
 
 STUDY = study(numbers=(1, 2, 4))
@@ -40,7 +39,7 @@ TWO_PARTS = Study(
 
 def test_tables_follow_from_rows_and_from_tables():
     """Rows of all points stand below each other, and what follows sees the tables before it."""
-    tables = answered(study(made={"sum": lambda tables: [{"sum": tables["squares"]["square"].sum()}]}))
+    tables = tables_of(study(made={"sum": lambda tables: [{"sum": tables["squares"]["square"].sum()}]}))
     assert list(tables) == ["squares", "next", "sum"]
     assert tables["squares"].to_dict("list") == {"number": [1, 2], "square": [1, 4]}
     assert tables["sum"]["sum"].item() == 5
@@ -51,7 +50,7 @@ def test_tuples_are_taken_apart_and_tables_are_taken_whole():
     part = Part(
         at=lambda: [(1, "a"), (2, "b")], ask=lambda n, name: {"t": pd.DataFrame({"n": n, "s": [name, name]})}
     )
-    tables = answered(Study(cases=(), parts=(part,), figures={}))
+    tables = tables_of(Study(cases=(), parts=(part,), figures={}))
     assert tables["t"]["s"].tolist() == ["a", "a", "b", "b"]
 
 
@@ -72,37 +71,35 @@ def test_claims_are_held_against_rows():
         claims=(claim,),
         figures={},
     )
-    found = answered(declared)["findings"]
+    found = tables_of(declared)["findings"]
     assert found["formulation"].tolist() == ["f", "number 1", "number 2"]
     assert found["holds"].tolist() == ["yes", "yes", "no"]
     assert found["quantity"].iloc[2] == "2.0 squared"
-    assert "findings" not in answered(study())
+    assert "findings" not in tables_of(study())
 
 
 def test_progress_is_told_of_every_point():
     """The number of points that are done grows to that of all."""
     told = []
-    answered(study(), lambda *done: told.append(done))
+    tables_of(study(), lambda *done: told.append(done))
     assert told == [(0, 2), (1, 2), (2, 2)]
 
 
 def test_what_must_be_alone_comes_after_all_others():
     """A study is whole as soon as its points are answered; those that must be alone are asked last."""
     place = f"{__name__}:TWO_PARTS"
-    askings = {place: Asking(TWO_PARTS), __name__: Asking(STUDY)}
     ASKED.clear()
     with ThreadPoolExecutor(1) as pool:
-        assert [*whole(askings, silent, pool)] == [__name__, place]
+        found = [*answered({place: TWO_PARTS, __name__: STUDY}, silent, pool)]
+    assert [each[0] for each in found] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
-    assert all(asking.seconds > 0.0 for asking in askings.values())
+    assert all(seconds > 0.0 for _, _, seconds in found)
 
 
 @pytest.mark.slow
 def test_processes_give_the_same_tables():
     """Points answered beside each other stand where they do one after the other."""
-    asking = Asking(STUDY)
     with processes(2) as pool:
-        assert [*whole({__name__: asking}, silent, pool)] == [__name__]
-    beside = asking.tables()
-    for name, table in answered(STUDY).items():
+        ((_, beside, _),) = answered({__name__: STUDY}, silent, pool)
+    for name, table in tables_of(STUDY).items():
         pd.testing.assert_frame_equal(beside[name], table)
