@@ -41,14 +41,14 @@ HARMONICS = 9
 FEWEST = 16
 
 
-class SignalMode(NamedTuple):
+class _SignalMode(NamedTuple):
     """A mode in a record: its frequency [Hz], and its amplitude in the unit of the record [rad]."""
 
     frequency_Hz: float
     amplitude_rad: float
 
 
-def signal_modes(time: Array, value: Array) -> list[SignalMode]:
+def signal_modes(time: Array, value: Array) -> list[_SignalMode]:
     """Return the modes that a record (T,) contains at equal instants (T,) [s], the largest first.
 
     Lines of its spectrum, with a Hann window, begin a fit of sines by least squares. Lines nearer than the
@@ -77,7 +77,7 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
     amplitudes = _fit(at, value, frequencies)[0]
     found = sorted(zip(amplitudes, frequencies, strict=True), reverse=True)
     return [
-        SignalMode(float(frequency), float(amplitude))
+        _SignalMode(float(frequency), float(amplitude))
         for amplitude, frequency in found
         if amplitude >= LEAST * found[0][0]
     ]
@@ -182,7 +182,7 @@ class Motion(Answer):
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
     @cached_property
-    def modes(self) -> list[SignalMode]:
+    def modes(self) -> list[_SignalMode]:
         """Frequencies that the rotation contains, with amplitudes, the largest first."""
         return signal_modes(self.time, self.rotation)
 

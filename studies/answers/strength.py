@@ -29,7 +29,7 @@ PRECISION = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True)
-class Yield:
+class _Yield:
     """Where a strip begins to yield.
 
     Attributes:
@@ -44,7 +44,7 @@ class Yield:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Strength:
+class _Strength:
     """The largest stress on a path, and how far it is from yield.
 
     Attributes:
@@ -62,7 +62,7 @@ class Strength:
     rotation: float
     yield_strength: float | None
     safety: float | None
-    yields: Yield | None
+    yields: _Yield | None
 
     @property
     def place(self) -> str:
@@ -73,7 +73,7 @@ class Strength:
         return f"at {self.station:.2f} of its length"
 
 
-def strength(answer: Response) -> Strength:
+def strength(answer: Response) -> _Strength:
     """Return the largest stress of an answer, and what of its path the material bears."""
     stress, strips = answer.strip_stress, answer.design.strips
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
@@ -82,7 +82,7 @@ def strength(answer: Response) -> Strength:
     station = int(np.argmax(along >= (1.0 - SAME) * along.max()))
     load_factor, rotation = map(float, answer.places[state])
     share = answer.yield_share
-    return Strength(
+    return _Strength(
         stress=float(stress.max()),
         strip=strips[strip].name,
         station=float(answer.stations[station]),
@@ -94,7 +94,7 @@ def strength(answer: Response) -> Strength:
     )
 
 
-def _first_yield(answer: Response, share: Array) -> Yield | None:
+def _first_yield(answer: Response, share: Array) -> _Yield | None:
     """Return where the share (S,) of the yield strength is first 1 on the path of an answer; None if nowhere.
 
     The states between two increments are solved for, with the discretisation of the answer.
@@ -104,7 +104,7 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
         return None
     places, after = answer.places, int(beyond[0])
     if after == 0:
-        return Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
+        return _Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
     known: dict[float, tuple[float, Array]] = {
         float(k): (share[k] - 1.0, places[k]) for k in (after - 1, after)
     }
@@ -117,7 +117,7 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
     found, step = known[at][1], places[after] - places[after - 1]
     turned = bool(abs(step[1]) > 0.0 and found[1] != 0.0)
     part = abs(step[1] / found[1]) if turned else abs(step[0] / found[0])
-    return Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
+    return _Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
 
 
 def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
