@@ -1,15 +1,18 @@
 """Put a design to either model, and get a neutral answer: its static path, its release, its natural modes."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
+from studies.answers.answer import Answer
 from studies.answers.models import Asked, model_of, put
 from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
-from studies.answers.settings import FeSettings, Settings
+from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
+from studies.cases.effects import Effects
+from studies.cases.keys import GROUND
+from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.progress import measure
@@ -90,19 +93,11 @@ def answer_release(
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
         raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
-    at = design.rotation if start is None else start
+    start, model = design.rotation if start is None else start, model_of(settings)
     how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
-    return _released(design, settings, at, how, repeat=repeat, check=check)
-
-
-def _released(
-    design: Design, settings: Settings, start: float | None, how: dict[str, Any], *, repeat: int, check: bool
-) -> Motion:
-    """Return the motion after a release from `start` [rad], as `answer_release` has it."""
-    model = model_of(settings)
     if isinstance(settings, FeSettings):
-        words = {"records": "samples"}
-        how = {words.get(name, name): value for name, value in how.items()} | {"raise_on_failure": False}
+        how = {"samples" if name == "records" else name: value for name, value in how.items()}
+        how["raise_on_failure"] = False
 
     def solve() -> tuple[Asked, dict[str, Any], Any]:
         asked = put(design, settings, moving=True)
@@ -110,16 +105,12 @@ def _released(
             at = {"start": start, "body": design.body} | _drive_of(asked)
             return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
 
+    many = {"repeat": repeat, "warm_up": 1 if repeat > 1 else 0}
     try:
-        timing = measure(
-            solve,
-            repeat=repeat,
-            warm_up=1 if repeat > 1 else 0,
-            part=lambda solved: float(solved[-1].seconds["solve"]),
-        )
+        timing = measure(solve, **many, part=lambda solved: float(solved[-1].seconds["solve"]))
     except model.ConvergenceError as error:
-        asked = put(design, settings, moving=True)
-        return Motion.without_start(asked, f"statics does not reach the start: {error}")
+        message = f"statics does not reach the start: {error}"
+        return Motion(asked=put(design, settings, moving=True), status="not_converged", message=message)
     asked, at, result = timing.result
     if check:
         result = model.dynamics.checked(asked.modelled, result, **at)
@@ -155,11 +146,11 @@ def answer_modes(
         BadInput: a setting or option that the model refuses; one line.
     """
     asked = put(design, settings, moving=True)
-    still = rotation is None and (held or isinstance(design, Problem))
+    still = rotation is None and (held or design.crossing_point is not None)
     how: dict[str, Any] = {"count": count, "held": held, "rotation": 0.0 if still else rotation}
     how |= {} if accuracy is None else {"accuracy": accuracy}
     solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
-    state: dict[str, Any] = {"rotation": rotation or 0.0, "held": held}
+    state: dict[str, Any] = {"turned": rotation or 0.0, "held": held}
     try:
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
@@ -196,3 +187,54 @@ def _drive_of(asked: Asked) -> dict[str, Any]:
     if design.rotation is None:
         raise BadInput("drive.rotation_deg: got none, expected the rotation that a history or held_s leads")
     return {"drive": asked.model.DrivenRotation(body=design.body, angle=design.rotation, **given)}
+
+
+#: What either model calls its answers -> their neutral form.
+FORMS = {"StaticSolution": Response, "Trajectory": Motion, "Modes": Spectrum}
+
+
+def answer_of(solution: Any, modelled: Any) -> Answer:
+    """Return the neutral answer to what a model was asked directly.
+
+    Args:
+        solution: static solution, trajectory or modes of `spline_model` or `fe_reference`.
+        modelled: the pivot or mechanism of the model that it is of; sections are taken as rectangles.
+
+    Raises:
+        BadInput: something else, or of two models; one line.
+    """
+    package = type(solution).__module__.partition(".")[0]
+    form: Any = FORMS.get(type(solution).__name__)
+    if form is None or type(modelled).__module__.partition(".")[0] != package:
+        got = f"{type(solution).__name__} and {type(modelled).__name__}"
+        raise BadInput(
+            f"solution: got {got}, expected a static solution, a trajectory or modes, with their design"
+        )
+    settings = SplineSettings() if package == "spline_model" else FeSettings(element=modelled.element)
+    body = getattr(solution, "driven", None) or getattr(solution, "body", None)
+    design = _design_of(modelled, body)
+    state = {"turned": solution.rotation, "held": solution.held} if form is Spectrum else {}
+    found: Answer = form.of(Asked(design, settings, form is not Response, modelled), solution, **state)
+    return found
+
+
+def _design_of(modelled: Any, body: str | None) -> Mechanism:
+    """Return the design of a pivot or mechanism of a model."""
+    given = getattr(modelled, "design", modelled)
+    bodies = tuple(Body(**_taken(Body, each)) for each in given.bodies)
+    on = {-1: GROUND, -2: None} | dict(enumerate(each.name for each in bodies))
+    strips = []
+    for strip in given.strips:
+        found = _taken(Strip, getattr(strip, "section", strip)) | _taken(Strip, strip)
+        if hasattr(strip, "nodes"):  # of elements, on bodies by their number
+            found |= {"start": strip.nodes[0], "end": strip.nodes[-1]}
+            found |= {"root": on[strip.root], "tip": on[strip.tip]}
+        strips.append(Strip(**found))
+    moved = body or next((each.name for each in bodies), None)
+    how: dict[str, Any] = {"rotation": None, "increments": 1, "effects": Effects()}
+    return Mechanism(strips=tuple(strips), bodies=bodies, body=moved, **how)
+
+
+def _taken(kind: Any, part: Any) -> dict[str, Any]:
+    """Return what a part of a model has of the attributes of a part of a case."""
+    return {each.name: getattr(part, each.name) for each in fields(kind) if hasattr(part, each.name)}

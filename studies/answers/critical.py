@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from spline_model.solution import named
+from studies.answers.answer import Answer
 from studies.answers.metrics import extrapolate
 from studies.answers.models import Asked, put
-from studies.answers.response import Answered, Response, assembled
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from studies.errors import BadInput
 
 #: The effect that is raised, and those that load or lead bodies, which are left out.
@@ -34,7 +34,7 @@ UNSTABLE, NONE = "unstable at zero force", ""
 
 
 @dataclass(frozen=True, kw_only=True)
-class CriticalLoad(Answered):
+class CriticalLoad(Answer):
     """The first force that a design does not bear, in one direction.
 
     Its status is "converged" where two discretisations agree, on a force or on none; else its message says
@@ -50,6 +50,8 @@ class CriticalLoad(Answered):
         soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
             critical load is found; None where they do not. softer: relative uncertainty of both [1].
     """
+
+    analysis = "critical load"
 
     direction: float
     held: bool
@@ -104,7 +106,7 @@ class _Question:
         design = self.design
         left = design.effects.renamed([name for name in design.effects.names if name not in LOADS])
         way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
-        load = {"force": way} | ({} if isinstance(design, Problem) else {"body": self.body})
+        load = {"force": way, "body": self.body}
         return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
 
     def path(self, asked: Asked) -> Any:
@@ -149,13 +151,14 @@ def critical_load(
         expected = f"one of {', '.join(known)}" if known else "a design with a body that the force acts on"
         raise BadInput(f"body: got {name or 'none'}, expected {expected}")
     question = _Question(design=design, direction=direction, held=held, body=name)
-    tried = tuple(_refined(settings))
     found: list[CriticalLoad] = []
-    for each in tried:
+    for each in _refined(settings):
         found.append(_of(question, each))
-        if len(found) > 1 and _settled(settings, found):
+        settled = len(found) > 1 and found[-1].apart(found[-2]) <= SETTLED
+        # elements are always doubled twice for their limit, unless there is no force
+        if settled and (found[-1].kind == NONE or isinstance(each, SplineSettings)):
             break
-    return _agreed(question, tried[: len(found)], found)
+    return _agreed(question, found)
 
 
 def _refined(settings: Settings) -> Iterator[Settings]:
@@ -174,43 +177,30 @@ def _refined(settings: Settings) -> Iterator[Settings]:
         yield from (replace(settings, control_points=POINTS[0], segments=each) for each in finer_ones)
 
 
-def _settled(settings: Settings, found: Sequence[CriticalLoad]) -> bool:
-    """Return whether no finer discretisation is needed: none of a verdict without a force."""
-    apart = found[-1].apart(found[-2])
-    return apart <= SETTLED and (found[-1].kind == NONE or isinstance(settings, SplineSettings))
-
-
-def _agreed(question: _Question, tried: Sequence[Settings], found: Sequence[CriticalLoad]) -> CriticalLoad:
+def _agreed(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
     """Return what the last two discretisations agree on, with their difference; or that they do not."""
     last, apart = found[-1], found[-1].apart(found[-2])
     if apart > AGREED:
-        said = "; ".join(f"{_name(s)}: {each.verdict}" for s, each in zip(tried, found, strict=True))
-        message = f"not resolved: {said}; {_remedy(tried[-1])}"
+        said = "; ".join(f"{_fineness(each.asked.settings)[0]}: {each.verdict}" for each in found)
+        message = f"not resolved: {said}; {_fineness(last.asked.settings)[1]}"
         return replace(last, status="not_converged", message=message, force=None, kind=NONE)
     if last.kind == NONE:
-        return _softened(question, tried, last)
+        return _softened(question, found)
     value, error = last.value, apart * last.value
-    elements = isinstance(tried[-1], FeSettings) and len(found) == len(MESHES)
+    elements = isinstance(last.asked.settings, FeSettings) and len(found) == len(MESHES)
     if elements and found[0].apart(found[1]) <= AGREED:
         limit = extrapolate([np.array([each.value]) for each in found])
         value, error = float(limit.value[0]), float(limit.uncertainty[0])
-    if last.kind == UNSTABLE:
-        return replace(last, preload=value, uncertainty=error / value)
-    return replace(last, force=value, uncertainty=error / value)
+    known: dict[str, Any] = {"preload" if last.kind == UNSTABLE else "force": value}
+    return replace(last, uncertainty=error / value, **known)
 
 
-def _name(settings: Settings) -> str:
-    """Return how fine settings are, in words."""
+def _fineness(settings: Settings) -> tuple[str, str]:
+    """Return how fine settings are, in words, and what is finer."""
     if isinstance(settings, FeSettings):
-        return f"{settings.elements} elements"
-    return named(settings.segments, settings.points)
-
-
-def _remedy(settings: Settings) -> str:
-    """Return what is finer than the finest that was tried."""
-    if isinstance(settings, FeSettings):
-        return f"take {2 * settings.elements} elements"
-    return f"leave the number open, or take segments = {2 * settings.segments}"
+        return f"{settings.elements} elements", f"take {2 * settings.elements} elements"
+    finer = f"leave the number open, or take segments = {2 * settings.segments}"
+    return named(settings.segments, settings.points), finer
 
 
 def _of(question: _Question, settings: Settings) -> CriticalLoad:
@@ -239,13 +229,13 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
             "kind": UNSTABLE if unstable else str(point.kind),
             "preload": float(point.preload),
         }
-    about = CriticalLoad.about(asked, path if settled else None) | {"effects": assembled(asked.effects)}
     known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
-    return CriticalLoad(**about | known | found)
+    return CriticalLoad(asked=asked, solution=path if settled else None, **known | found)
 
 
-def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoad) -> CriticalLoad:
-    """Return the answer of a design without a critical load with the forces at which it turns and yields."""
+def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
+    """Return the last answer of a design without a critical load with the forces at which it turns and
+    yields."""
     shares: dict[str, Callable[[Response], Any]] = {
         "soft": lambda answer: np.abs(answer.bodies[question.body][:, 2]) / SOFT,
         "yields": lambda answer: answer.yield_share,
@@ -255,13 +245,13 @@ def _softened(question: _Question, tried: Sequence[Settings], found: CriticalLoa
     forces: dict[str, float | None] = {}
     apart = [FOUND]
     for name, share in shares.items():
-        coarse, fine = (_passing(question, each, share) for each in tried[-2:])
+        coarse, fine = (_passing(question, each.asked.settings, share) for each in found[-2:])
         forces[name] = fine
         if fine is not None:
             same = coarse == fine  # such as both passed without any force
             apart.append(0.0 if same else abs(coarse / fine - 1.0) if coarse and fine else math.nan)
     softer = max(apart) if any(forces.values()) else math.nan
-    return replace(found, soft=forces["soft"], yields=forces.get("yields"), softer=softer)
+    return replace(found[-1], soft=forces["soft"], yields=forces.get("yields"), softer=softer)
 
 
 def _passing(question: _Question, settings: Settings, share: Callable[[Response], Any]) -> float | None:

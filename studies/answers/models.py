@@ -1,17 +1,13 @@
 """The two models side by side: the one file that knows both, and how a design is put to either."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
-from studies.cases.problem import Problem
 from studies.errors import BadInput
-from studies.kinds import Array
 
 
 def model_of(settings: Settings) -> Any:
@@ -61,7 +57,8 @@ class Asked:
     @property
     def effects(self) -> tuple[str, ...]:
         """Names of the effects, as the model took them."""
-        return effects_of(self.modelled)
+        effects = getattr(self.modelled, "mechanism", self.modelled).effects
+        return tuple(getattr(effects, "names", effects))
 
     def discretised(self, result: Any) -> dict[str, Any]:
         """Return the keywords of the discretisation that a result was reached with, and what else the model
@@ -74,9 +71,29 @@ class Asked:
             given["segments"] = getattr(result, "segments", given["segments"])
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
-    def refusals(self) -> AbstractContextManager[None]:
+    def fine(self, result: Any) -> Any:
+        """Return the design in the model as a result was reached: in motion, with the control points or
+        elements that an accuracy has taken."""
+        asked = self.modelled
+        if hasattr(asked, "with_control_points"):
+            grid = asked.design.discretisation
+            chosen = getattr(result, "settings", {}).get("control_points", grid.points)
+            points = getattr(result, "control_points", chosen)
+            made = asked.on(getattr(result, "segments", grid.segments), points)
+            return made.in_motion() if self.moving else made
+        from fe_reference.refined import finer
+
+        for _ in getattr(result.estimate, "meshes", ())[1:]:
+            asked = finer(asked)
+        return asked
+
+    @contextmanager
+    def refusals(self) -> Iterator[None]:
         """Turn what the model refuses into one line."""
-        return _refusals(self.settings)
+        try:
+            yield
+        except self.model.InvalidParameter as error:
+            raise BadInput(f"{self.settings.model}: {error}") from None
 
     def static_path(self, **how: Any) -> Any:
         """Return the model's static solution.
@@ -90,9 +107,7 @@ class Asked:
         design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
         with self.refusals():
-            if isinstance(design, Problem):
-                return self.model.solve_statics(self.modelled, **given)
-            return self.model.solve_mechanism(self.modelled, body=design.body, **given)
+            return self.model.solve_mechanism(self.modelled, **{"body": design.body} | given)
 
 
 def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
@@ -101,19 +116,12 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
     Raises:
         BadInput: a setting or an effect that the model refuses; one line.
     """
-    model = model_of(settings)
+    asked = Asked(design, settings, moving, None)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
-    with _refusals(settings):
-        keywords = scene | _keywords(model, settings.keywords(), moving)
-        if isinstance(design, Problem):
-            modelled = model.cross_axis_pivot(**design.pivot_parameters(), **keywords)
-        else:
-            parts = design.mechanism_parameters()
-            modelled = model.compliant_mechanism(
-                strips=[model.StripDesign(**strip) for strip in parts["strips"]],
-                bodies=[model.BodyDesign(**body) for body in parts["bodies"]],
-                **keywords,
-            )
+    with asked.refusals():
+        modelled = design.modelled(
+            asked.model, **scene, **_keywords(asked.model, settings.keywords(), moving)
+        )
     return Asked(design, settings, moving, modelled)
 
 
@@ -122,25 +130,3 @@ def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]
     if not moving or "control_points" not in given:
         return given
     return {"slide_stiffness": model.swinging_slide_stiffness(given["control_points"])} | given
-
-
-def effects_of(modelled: Any) -> tuple[str, ...]:
-    """Return the names of the effects of a pivot or mechanism of a model."""
-    effects = getattr(modelled, "mechanism", modelled).effects
-    return tuple(getattr(effects, "names", effects))
-
-
-@contextmanager
-def _refusals(settings: Settings) -> Iterator[None]:
-    try:
-        yield
-    except model_of(settings).InvalidParameter as error:
-        raise BadInput(f"{settings.model}: {error}") from None
-
-
-def mode_bodies(modes: Any, names: Sequence[str]) -> Array:
-    """Return the modal displacements of bodies (C, B, 3), which one model holds by name, one by place."""
-    count = len(modes.frequency)
-    if hasattr(modes, "bodies"):
-        return np.array([modes.bodies[name] for name in names]).reshape(-1, count, 3).swapaxes(0, 1)
-    return np.asarray(modes.body_shapes, dtype=float).reshape(count, -1, 3)

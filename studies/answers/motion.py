@@ -1,16 +1,16 @@
-"""The neutral answers to a release and to small motion: arrays that do not tell which model they are of."""
+"""The neutral answers to a release and to small motion, and the modes that a record contains."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from studies.answers import metrics
+from studies.answers.answer import Answer, own, read_only
 from studies.answers.metrics import Frequency, swing_frequency
-from studies.answers.models import Asked, mode_bodies
-from studies.answers.response import Answered, Solved
+from studies.answers.models import Asked
 from studies.cases.design import flexural_scale
 from studies.kinds import Array
 
@@ -41,14 +41,14 @@ HARMONICS = 9
 FEWEST = 16
 
 
-class SignalMode(NamedTuple):
+class _SignalMode(NamedTuple):
     """A mode in a record: its frequency [Hz], and its amplitude in the unit of the record [rad]."""
 
     frequency_Hz: float
     amplitude_rad: float
 
 
-def signal_modes(time: Array, value: Array) -> list[SignalMode]:
+def signal_modes(time: Array, value: Array) -> list[_SignalMode]:
     """Return the modes that a record (T,) contains at equal instants (T,) [s], the largest first.
 
     Lines of its spectrum, with a Hann window, begin a fit of sines by least squares. Lines nearer than the
@@ -77,7 +77,7 @@ def signal_modes(time: Array, value: Array) -> list[SignalMode]:
     amplitudes = _fit(at, value, frequencies)[0]
     found = sorted(zip(amplitudes, frequencies, strict=True), reverse=True)
     return [
-        SignalMode(float(frequency), float(amplitude))
+        _SignalMode(float(frequency), float(amplitude))
         for amplitude, frequency in found
         if amplitude >= LEAST * found[0][0]
     ]
@@ -116,32 +116,53 @@ def _fit(at: Array, value: Array, frequencies: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion(Solved):
+class Motion(Answer):
     """Motion of a design after its release at rest, T records, the start first.
 
+    The status is "converged", "not_converged" or "unstable", the whole call includes the static path to the
+    start, and the settings have integrator and step.
+
     Attributes:
-        settings: discretisation keywords, integrator and step.
-        status: "converged", "not_converged" or "unstable".
-        rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the
-            places of all bodies and free ends [m], by companion motions; NaN without.
         time: (T,) [s]; empty when statics does not reach the start.
         kinetic_energy, strain_energy: (T,) of strips and bodies together [J].
         gravity_energy: (T,) against rest [J]; work, dissipated: (T,) by loads, and lost, since the start [J].
-        constraint_residual: (T,) largest gap of clamps [m].
-        starts_still: whether it starts at rest in equilibrium, to the round-off of the problem.
-        wall_s: time of the whole call, the static path to its start included [s].
     """
 
-    time: Array
-    kinetic_energy: Array
-    strain_energy: Array
-    gravity_energy: Array
-    work: Array
-    dissipated: Array
-    constraint_residual: Array
-    starts_still: bool = False
-    rotation_error: float = math.nan
-    displacement_error: float = math.nan
+    analysis = "release"
+    series = "time_s"
+    parts = ("kinetic", "strain", "gravity", "dissipated")
+
+    time = own("time")
+    kinetic_energy = own("kinetic_energy")
+    strain_energy = own("strain_energy")
+    gravity_energy = own("gravity_energy")
+    work = own("work")
+    dissipated = own("dissipated")
+
+    @property
+    def dissipated_energy(self) -> Array:
+        """(T,) lost since the start [J]."""
+        return self.dissipated
+
+    @cached_property
+    def constraint_residual(self) -> Array:
+        """(T,) largest gap of clamps [m]; zero where constraints are kept exactly."""
+        return read_only(np.array(getattr(self.solution, "constraint_residual", 0.0 * self.time)))
+
+    @property
+    def starts_still(self) -> bool:
+        """Whether it starts at rest in equilibrium, to the round-off of the problem."""
+        return bool(getattr(self.solution, "starts_still", False))
+
+    @property
+    def rotation_error(self) -> float:
+        """Estimated error of the rotations of all bodies [rad], by companion motions; NaN without."""
+        return float(getattr(self.solution, "rotation_error", math.nan))
+
+    @property
+    def displacement_error(self) -> float:
+        """Estimated error of the places of all bodies and free ends [m], as that of the rotations."""
+        return float(getattr(self.solution, "displacement_error", math.nan))
 
     @property
     def balance(self) -> Array:
@@ -161,7 +182,7 @@ class Motion(Solved):
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
     @cached_property
-    def modes(self) -> list[SignalMode]:
+    def modes(self) -> list[_SignalMode]:
         """Frequencies that the rotation contains, with amplitudes, the largest first."""
         return signal_modes(self.time, self.rotation)
 
@@ -183,58 +204,68 @@ class Motion(Solved):
         return self.swing.value
 
     @classmethod
-    def of(cls, asked: Asked, result: Any, **seconds: float) -> "Motion":
-        """Return the neutral form of a model's trajectory; seconds: its times.
-
-        One without a part of the design's energy in it stands still, and says so.
-        """
-        own = {name: getattr(result, name, math.nan) for name in ("rotation_error", "displacement_error")}
-        own["starts_still"] = bool(result.starts_still)
-        if not hasattr(result, "constraint_residual"):  # where constraints are kept exactly
-            own["constraint_residual"] = np.zeros(len(result.time))
-        kinetic = np.asarray(result.kinetic_energy)
-        if len(kinetic) and float(kinetic.max()) <= STILL * flexural_scale(asked.design):
-            own |= {"message": result.message or NOTHING_MOVES, "resolution": ""}
-        return cls.made(asked, result, **own, **seconds)
-
-    @classmethod
-    def without_start(cls, asked: Asked, message: str) -> "Motion":
-        """Return the motion of a design that statics does not bring to the start: without a record."""
-        nothing: dict[str, Any] = {name: np.zeros(0) for name in cls.arrays()}
-        return cls(
-            status="not_converged",
-            message=message,
-            bodies={body.name: np.zeros((0, 3)) for body in asked.design.bodies},
-            **cls.about(asked),
-            **nothing,
-        )
+    def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
+        """Return the neutral form of a model's trajectory; one without a part of the design's energy in it
+        stands still, which is its message."""
+        found = super().of(asked, result, **given)
+        kinetic = float(found.kinetic_energy.max(initial=0.0))
+        if not len(found.time) or kinetic > STILL * flexural_scale(asked.design):
+            return found
+        return replace(found, message=found.message or NOTHING_MOVES, resolution="")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spectrum(Answered):
+class Spectrum(Answer):
     """Natural modes of small motion about a static state, F modes, the lowest first.
 
     Attributes:
-        rotation: of the static state [rad]; held: whether it is held.
+        turned: rotation of the static state [rad]; held: whether it is held.
         frequency: (F,) [Hz]; negative where the state is unstable.
-        body_shapes: (F, 3) displacement x, y and rotation of the body at unit modal mass.
+        mode_shape: (F, G, P, 2) of the strips at unit modal mass.
         slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
-        wall_s: time of the static path to the state and of the modes [s].
     """
 
-    rotation: float
+    analysis = "modes"
+    series = "mode"
+
+    turned: float
     held: bool
-    frequency: Array
-    body_shapes: Array
-    slide_frequency: Array
-    wall_s: float = 0.0
+    frequency = own("frequency")
+    mode_shape = own("shapes")
+    slide_frequency = own("slide_frequency")
 
     @property
-    def resolution(self) -> str:
-        """Return that the accuracy is missed, which the control points or elements were chosen for, or ""."""
-        accuracy = (self.estimate or {}).get("accuracy", math.inf)
-        missed = self.largest_error > accuracy
-        return f"the accuracy of {accuracy:g} is not reached by all frequencies" if missed else ""
+    def mode(self) -> Array:
+        """(F,) numbers of the modes [1]."""
+        return np.arange(1.0, len(self.frequency) + 1.0)
+
+    @property
+    def mode_bodies(self) -> Array:
+        """(F, B, 3) displacement x, y and rotation of the bodies at unit modal mass."""
+        count, names = len(self.frequency), [body.name for body in self.design.bodies]
+        if hasattr(self.solution, "bodies"):
+            shapes = np.array([self.solution.bodies[name] for name in names])
+            return np.asarray(shapes.reshape(-1, count, 3).swapaxes(0, 1))
+        shapes = np.asarray(getattr(self.solution, "body_shapes", ()), dtype=float)
+        return shapes.reshape(count, len(names), 3)
+
+    @property
+    def body_shapes(self) -> Array:
+        """(F, 3) those of the body that is driven or may be; zero without one."""
+        if self.body is None:
+            return np.zeros((len(self.frequency), 3))
+        return self.mode_bodies[:, [each.name for each in self.design.bodies].index(self.body)]
+
+    @classmethod
+    def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
+        """Return the neutral form of a model's modes, None where statics does not reach the state; it says
+        where an accuracy is missed that the control points or elements were chosen for."""
+        status = "not_converged" if result is None else "converged"
+        found = cls(asked=asked, solution=result, status=status, **given)
+        accuracy = (found.estimate or {}).get("accuracy", math.inf)
+        if not found.largest_error > accuracy:
+            return found
+        return replace(found, resolution=f"the accuracy of {accuracy:g} is not reached by all frequencies")
 
     @property
     def falls_in(self) -> float | None:
@@ -242,22 +273,14 @@ class Spectrum(Answered):
         least = float(self.frequency.min(initial=0.0))
         return -1.0 / (2.0 * math.pi * least) if least < 0.0 else None
 
-    @classmethod
-    def of(cls, asked: Asked, modes: Any, *, message: str = "", **state: Any) -> "Spectrum":
-        """Return the neutral form of a model's modes, of which only a spline has some that slide.
+    @property
+    def _states(self) -> Array:
+        """The static state that the motion is about."""
+        return np.asarray(self.solution.state)[None]
 
-        Args:
-            asked: what was asked. modes: None where statics does not reach the state, as `message` says.
-            state: what they are about, and their time.
-        """
-        names, body = [body.name for body in asked.design.bodies], asked.design.body
-        shapes = np.zeros((0, len(names), 3)) if modes is None else mode_bodies(modes, names)
-        return cls(
-            status="not_converged" if modes is None else "converged",
-            message=message,
-            frequency=np.asarray(getattr(modes, "frequency", ()), dtype=float),
-            body_shapes=shapes[:, names.index(body)] if body else np.zeros((len(shapes), 3)),
-            slide_frequency=np.asarray(getattr(modes, "slide_frequency", ()), dtype=float),
-            **cls.about(asked, modes),
-            **state,
-        )
+    def _in_full(self, along: Any) -> Any:
+        """Return the fields of the state as often as there are modes."""
+        count, rest = len(self.frequency), ("arc_length", "rest_shape", "rest_bodies")
+        arrays = {each.name: np.asarray(getattr(along, each.name)) for each in fields(along)}
+        moved = {name: array for name, array in arrays.items() if name not in rest}
+        return replace(along, **{name: np.repeat(array, count, axis=0) for name, array in moved.items()})

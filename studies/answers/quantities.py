@@ -1,4 +1,4 @@
-"""The numbers that every state of a static path has, each declared once.
+"""The numbers that every state of an answer has, each declared once.
 
 Tables, JSON, CSV, VTK, pictures, the columns of a sweep, `compare` and docs/data.md follow from these
 entries: a new quantity is one more of them.
@@ -7,6 +7,7 @@ entries: a new quantity is one more of them.
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -15,28 +16,15 @@ from studies.cases.design import Design, flexural_scale
 from studies.cases.section import Sectioned
 from studies.kinds import Array
 
-#: What solvers do not resolve: forces and energies in EI/L of the strips, stress in E.
+#: Analyses.
+PATH, MOTION, MODES = "static", "release", "modes"
+#: What solvers do not resolve: moments and energies in EI/L of the strips, stress in E.
 FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
 #: Which state stands for a path, by what is said of it, of values (..., S).
 STANDING: dict[str, Callable[[Array], Array]] = {
     "end": lambda values: np.asarray(values[..., -1]),
     "largest": lambda values: np.asarray(np.abs(values).max(axis=-1)),
 }
-
-
-def moment_floor(design: Design) -> float:
-    """Return the moment, or stiffness of a turn, that is round-off [N m]."""
-    return FORCE_FLOOR * flexural_scale(design)
-
-
-def energy_floor(design: Design) -> float:
-    """Return the energy that is round-off [J]."""
-    return ENERGY_FLOOR * flexural_scale(design)
-
-
-def stress_floor(design: Design) -> float:
-    """Return the stress that is round-off [Pa]."""
-    return STRAIN_FLOOR * max(float(strip.youngs_modulus) for strip in design.strips)
 
 
 #: What stands for a number that there is none of.
@@ -102,24 +90,27 @@ class Scale:
 
 @dataclass(frozen=True, kw_only=True)
 class Quantity(Scale):
-    """One number of every state of a path.
+    """One number of every state of an answer.
 
     Attributes:
         key: its name in files, with its unit.
         meaning: what it is.
-        of: its values (S,) in a neutral answer, or in fields along the strips; None where they have none.
-        floor: of a design, the value that is round-off.
+        of: its values (S,) in an answer.
+        analyses: that have it, of PATH, MOTION and MODES.
+        floor: value that is round-off, in EI/L of the stiffest strip, or in E of a stress.
         digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
         column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
         chart: whether a picture of a path has a curve of it over the states.
+        drive: whether it is of a drive, which only a driven rotation has.
     """
 
     key: str
     meaning: str
-    of: Callable[[Any], Array | None]
-    floor: Callable[[Design], float]
+    of: Callable[[Any], Array]
+    floor: float
+    analyses: tuple[str, ...] = (PATH,)
     highest: int = 0
     digits: int = 7
     standing: str = "end"
@@ -127,11 +118,34 @@ class Quantity(Scale):
     column: bool = True
     mechanisms: bool = False
     chart: bool = True
+    drive: bool = False
 
     @property
     def name_in_sweep(self) -> str:
         """Name of its column in a sweep."""
         return self.swept or self.key
+
+    def least(self, design: Design) -> float:
+        """Return the value of a design that is round-off, in its unit."""
+        if self.unit == "Pa":
+            return self.floor * max(float(strip.youngs_modulus) for strip in design.strips)
+        return self.floor * flexural_scale(design)
+
+
+def _of_motion(key: str, name: str, meaning: str, *, mechanisms: bool = False) -> Quantity:
+    """Return an energy of a motion by the attribute of its answer."""
+    return Quantity(
+        analyses=(MOTION,),
+        key=key,
+        heading=key.removesuffix("_J"),
+        unit="J",
+        meaning=meaning,
+        of=attrgetter(name),
+        floor=ENERGY_FLOOR,
+        standing="",
+        column=not mechanisms,
+        mechanisms=mechanisms,
+    )
 
 
 QUANTITIES = (
@@ -140,25 +154,27 @@ QUANTITIES = (
         heading="torque",
         unit="N m",
         meaning="torque of the drive",
-        of=lambda path: path.torque,
-        floor=moment_floor,
+        of=attrgetter("torque"),
+        floor=FORCE_FLOOR,
+        drive=True,
     ),
     Quantity(
         key="stiffness_Nm_per_rad",
         heading="stiffness",
         unit="N m/rad",
         meaning="stiffness of the driven rotation at fixed loads",
-        of=lambda path: path.stiffness,
-        floor=moment_floor,
+        of=attrgetter("stiffness"),
+        floor=FORCE_FLOOR,
         standing="",
+        drive=True,
     ),
     Quantity(
         key="strain_energy_J",
         heading="energy",
         unit="J",
         meaning="energy stored in all strips",
-        of=lambda path: path.strain_energy,
-        floor=energy_floor,
+        of=attrgetter("strain_energy"),
+        floor=ENERGY_FLOOR,
         swept="energy_J",
         chart=False,  # its parts are drawn
     ),
@@ -167,8 +183,8 @@ QUANTITIES = (
         heading="gravity",
         unit="J",
         meaning="energy of the weight against rest",
-        of=lambda path: path.gravity_energy,
-        floor=energy_floor,
+        of=attrgetter("gravity_energy"),
+        floor=ENERGY_FLOOR,
         standing="",
         column=False,
         mechanisms=True,
@@ -179,8 +195,9 @@ QUANTITIES = (
         heading="work",
         unit="J",
         meaning="work of drives and loads since the first state",
-        of=lambda path: getattr(path, "work", None),
-        floor=energy_floor,
+        of=attrgetter("work"),
+        floor=ENERGY_FLOOR,
+        analyses=(PATH, MOTION),
         standing="",
         column=False,
         mechanisms=True,
@@ -191,26 +208,34 @@ QUANTITIES = (
         heading="stress",
         unit="Pa",
         meaning="largest extreme-fibre stress of all strips",
-        of=lambda path: path.max_stress,
-        floor=stress_floor,
+        of=attrgetter("max_stress"),
+        floor=STRAIN_FLOOR,
+        analyses=(PATH, MOTION),
         highest=6,
         digits=6,
         standing="largest",
         swept="stress_max_Pa",
         chart=False,  # drawn with the yield strength
     ),
+    _of_motion("kinetic_J", "kinetic_energy", "of a motion"),
+    _of_motion("strain_J", "strain_energy", "of a motion, of all strips"),
+    _of_motion("gravity_J", "gravity_energy", "of a motion against rest", mechanisms=True),
+    _of_motion("dissipated_J", "dissipated", "of a motion since its start", mechanisms=True),
+    Quantity(
+        analyses=(MODES,),
+        key="frequency_Hz",
+        heading="frequency",
+        unit="Hz",
+        meaning="of the mode; negative where the state is unstable",
+        of=attrgetter("frequency"),
+        floor=0.0,
+        standing="",
+    ),
 )
 
 
-#: Energies of a motion, by their key: the attribute of an answer, and what they are; the first two of any.
-ENERGIES = {
-    "kinetic_J": ("kinetic_energy", "of a motion [J]"),
-    "strain_J": ("strain_energy", "of a motion, of all strips [J]"),
-    "gravity_J": ("gravity_energy", "of a motion against rest [J]"),
-    "work_J": ("work", "work of drives and loads since the first state [J]"),
-    "dissipated_J": ("dissipated", "of a motion since its start [J]"),
-}
-#: Numbers along the strips, by their key: the attribute of fields, and what they are.
+#: Numbers along the strips, by their key: the attribute of an answer, or of its fields along them, and what
+#: they are.
 ALONG = {
     "curvature_per_m": ("curvature", "of the deformed strip, by its length at rest [1/m]"),
     "stretch": ("stretch", "length over length at rest [1]"),
@@ -230,9 +255,21 @@ ALONG = {
 }
 
 
-def quantities_of(path: Any) -> Iterator[tuple[Quantity, Array]]:
-    """Yield the quantities that a path has, an answer or fields, with their values (S,)."""
+def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
+    """Yield the quantities of an answer with their values (S,)."""
     for quantity in QUANTITIES:
-        values = quantity.of(path)
-        if values is not None:
-            yield quantity, np.asarray(values)
+        if answer.analysis in quantity.analyses:
+            yield quantity, np.asarray(quantity.of(answer))
+
+
+def numbers_of(answer: Any) -> dict[str, Array]:
+    """Return the quantities of an answer by their keys, but for those of a drive where nothing is driven."""
+    return {each.key: values for each, values in quantities_of(answer) if answer.driven or not each.drive}
+
+
+def along_of(answer: Any) -> dict[str, Array]:
+    """Return the numbers along the strips (S, G, P) by their key."""
+    names = {key: name for key, (name, _) in ALONG.items()}
+    return {
+        key: answer.stress if name == "stress" else getattr(answer.along, name) for key, name in names.items()
+    }

@@ -1,6 +1,6 @@
 """What an answer bears: its largest stress, and from which load factor and rotation on a strip yields."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -8,8 +8,6 @@ import numpy as np
 
 from studies.answers.models import put
 from studies.answers.response import Response
-from studies.answers.settings import Settings, settings_of_model
-from studies.cases.design import Design
 from studies.errors import Unanswered
 from studies.kinds import Array
 
@@ -31,7 +29,7 @@ PRECISION = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True)
-class Yield:
+class _Yield:
     """Where a strip begins to yield.
 
     Attributes:
@@ -46,7 +44,7 @@ class Yield:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Strength:
+class _Strength:
     """The largest stress on a path, and how far it is from yield.
 
     Attributes:
@@ -64,7 +62,7 @@ class Strength:
     rotation: float
     yield_strength: float | None
     safety: float | None
-    yields: Yield | None
+    yields: _Yield | None
 
     @property
     def place(self) -> str:
@@ -75,16 +73,16 @@ class Strength:
         return f"at {self.station:.2f} of its length"
 
 
-def strength(answer: Response) -> Strength:
+def strength(answer: Response) -> _Strength:
     """Return the largest stress of an answer, and what of its path the material bears."""
     stress, strips = answer.strip_stress, answer.design.strips
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip = map(int, np.unravel_index(first, stress.shape))
-    along = answer.extreme_fibre_stress[state, strip]
+    along = answer.stress[state, strip]
     station = int(np.argmax(along >= (1.0 - SAME) * along.max()))
     load_factor, rotation = map(float, answer.places[state])
     share = answer.yield_share
-    return Strength(
+    return _Strength(
         stress=float(stress.max()),
         strip=strips[strip].name,
         station=float(answer.stations[station]),
@@ -96,7 +94,7 @@ def strength(answer: Response) -> Strength:
     )
 
 
-def _first_yield(answer: Response, share: Array) -> Yield | None:
+def _first_yield(answer: Response, share: Array) -> _Yield | None:
     """Return where the share (S,) of the yield strength is first 1 on the path of an answer; None if nowhere.
 
     The states between two increments are solved for, with the discretisation of the answer.
@@ -106,7 +104,7 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
         return None
     places, after = answer.places, int(beyond[0])
     if after == 0:
-        return Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
+        return _Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
     known: dict[float, tuple[float, Array]] = {
         float(k): (share[k] - 1.0, places[k]) for k in (after - 1, after)
     }
@@ -119,7 +117,7 @@ def _first_yield(answer: Response, share: Array) -> Yield | None:
     found, step = known[at][1], places[after] - places[after - 1]
     turned = bool(abs(step[1]) > 0.0 and found[1] != 0.0)
     part = abs(step[1] / found[1]) if turned else abs(step[0] / found[0])
-    return Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
+    return _Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
 
 
 def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
@@ -150,14 +148,15 @@ def _between(places: Array, at: float) -> Array:
 
 def _solved(answer: Response, place: Array) -> Response:
     """Return the answer to a path that ends at a load factor and rotation on that of an answer."""
-    design: Design = answer.design
-    effects = design.effects
+    design, effects = answer.design, answer.design.effects
     if set(effects.names) & SCALED.keys():
         effects = replace(effects, tables=_scaled(effects.parameters(), float(place[0])))
     changes: dict[str, Any] = {"effects": effects}
     if design.rotation is not None:
         changes["rotation"] = float(place[1])
-    asked = put(replace(design, **changes), _settings(answer))
+    given = answer.asked.settings
+    known = {each.name: answer.settings[each.name] for each in fields(given) if each.name in answer.settings}
+    asked = put(replace(design, **changes), replace(given, **known))
     path = asked.static_path(raise_on_failure=False)
     if str(path.status.value) != "converged":
         raise Unanswered(path.message)
@@ -174,10 +173,3 @@ def _scaled(parameters: Mapping[str, Mapping[str, Any]], factor: float) -> dict[
             value = np.multiply(found[name][key], factor)
             found[name][key] = float(value) if value.ndim == 0 else tuple(map(float, value))
     return found
-
-
-def _settings(answer: Response) -> Settings:
-    """Return the settings that an answer was reached with."""
-    make: Callable[..., Settings] = settings_of_model
-    names = {each.name for each in fields(make(answer.model))} - {"element"}
-    return make(answer.model, **{name: value for name, value in answer.settings.items() if name in names})

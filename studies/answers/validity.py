@@ -204,7 +204,7 @@ RULES = (*DATA, *MODEL)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validity:
+class _Validity:
     """The largest ratios of all strips [1], as of `Strip`, and what is outside, a sentence each."""
 
     width_ratio: float
@@ -214,16 +214,16 @@ class Validity:
     outside: tuple[str, ...]
 
 
-def validity(answer: "Response") -> Validity:
+def validity(answer: "Response") -> _Validity:
     """Return what an answer is worth."""
     strips = strips_of(answer.design, answer)
     ratios = ("width_ratio", "curvature_ratio", "thickness_ratio", "strain")
     most = {name: max(float(getattr(strip, name)) for strip in strips) for name in ratios}
-    outside = (*assumed(answer.design), *told(RULES, strips, answer.effects))
-    return Validity(**most, outside=outside)
+    outside = (*_assumed(answer.design), *told(RULES, strips, answer.effects))
+    return _Validity(**most, outside=outside)
 
 
-def assumed(design: Design) -> Iterator[str]:
+def _assumed(design: Design) -> Iterator[str]:
     """Yield the sentence that stresses are of rectangles that no one named, if any are."""
     depths = {strip.name: 1e3 * strip.depth for strip in design.strips if strip.depth_is_assumed}
     if depths:

@@ -6,24 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from studies.cases.rules import (
-    FREE,
-    HISTORY,
-    INTERVAL,
-    Key,
-    Rule,
-    choice,
-    finite,
-    finite_pair,
-    free_pair,
-    keys_of,
-    not_negative,
-    number,
-    number_or,
-    positive,
-    text,
-    whole,
-)
+from studies.cases import rules
+from studies.cases.rules import FREE, Key, Rule, choice, finite_pair, keys_of, not_negative, positive, text
 
 _FILE = Path(__file__).parent / "tables" / "materials.toml"
 #: Linear elastic materials at room temperature by name: values by attribute in SI, title, source, and what
@@ -35,11 +19,11 @@ GROUND = "ground"
 LOADS_FIRST, TOGETHER = "loads first", "together"
 
 
-ROTATION = number("a number from -360 to 360 [deg]", -360.0, 360.0, closed="low and high", degrees=True)
-INCLINATION = number("a number between 0 and 90, both excluded [deg]", 0.0, 90.0, degrees=True)
-INCREMENTS = whole(1, 100_000)
-POISSON = number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
-RATIO = number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
+ROTATION = rules.number("a number from -360 to 360 [deg]", -360.0, 360.0, closed="low and high", degrees=True)
+INCLINATION = rules.number("a number between 0 and 90, both excluded [deg]", 0.0, 90.0, degrees=True)
+INCREMENTS = rules.whole(1, 100_000)
+POISSON = rules.number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
+RATIO = rules.number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
 NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
 TIP = text(f"{PLACE.expected}, or {FREE}")
 
@@ -88,9 +72,9 @@ _PATH = keys_of(
     ("increments", "increments", INCREMENTS, "", "20", "equal increments of the path"),
     ("order", "order", choice(LOADS_FIRST, TOGETHER), f'"{LOADS_FIRST}"',
      f'"{TOGETHER}"', "loads come on before the rotation and stay, or both grow together"),
-    ("history", "history", HISTORY, "a motion lets go",
+    ("history", "history", rules.HISTORY, "a motion lets go",
      "[[0, 1], [0.01, 0.5]]", "of a motion that drives the rotation on: its factor over time"),
-    ("held_s", "held", INTERVAL, "a motion lets go at once",
+    ("held_s", "held", rules.INTERVAL, "a motion lets go at once",
      "[0, 0.01]", "of a motion: from when until when it holds the rotation"),
 )
 
@@ -136,7 +120,7 @@ STRIP = keys_of(
     ("end_m", "end", finite_pair("m"), "", "[0.1, 0]", "where it ends at rest"),
     ("root", "root", PLACE, f'"{GROUND}"', f'"{GROUND}"', "what its beginning is clamped to"),
     ("tip", "tip", TIP, "", '"body"', "what its end is clamped to"),
-    ("rise_m", "rise", finite("m"), "0, straight",
+    ("rise_m", "rise", rules.finite("m"), "0, straight",
      "0.002", "sagitta of the circular arc that it is at rest, to the left of start to end"),
 )
 BODY = keys_of(
@@ -198,12 +182,12 @@ _BODY: _Row = (
     '"body"', "on which body, of a mechanism",
 )
 _HISTORY: _Row = (
-    "history", "history", HISTORY, "the whole load at all times",
+    "history", "history", rules.HISTORY, "the whole load at all times",
     "[[0, 0], [0.01, 1]]", "in motion: factor of the load over time, constant behind the last instant",
 )
 _FORCE: _Row = ("force_N", "force", finite_pair("N"), "", "[0, -1]", "the force [x, y]")
 _FREE_TIP = text("the name of a strip with a free end")
-_LED, _ROOT = free_pair("m"), number_or("monolithic", not_negative("1"))
+_LED, _ROOT = rules.free_pair("m"), rules.number_or("monolithic", not_negative("1"))
 #: Effect -> its keys.
 _PARAMETERS: dict[str, tuple[_Row, ...]] = {
     "gravity": (
@@ -227,7 +211,7 @@ _PARAMETERS: dict[str, tuple[_Row, ...]] = {
     ),
     "applied_force": (_FORCE, _BODY, _HISTORY),
     "applied_moment": (
-        ("moment_Nm", "moment", finite("N m"), "", "0.01", "the moment, counter-clockwise"),
+        ("moment_Nm", "moment", rules.finite("N m"), "", "0.01", "the moment, counter-clockwise"),
         _BODY,
         _HISTORY,
     ),
@@ -242,9 +226,9 @@ _PARAMETERS: dict[str, tuple[_Row, ...]] = {
          "length of strip that turns as much as a root does, over the thickness; monolithic: 0.416"),
     ),
     "pre_strain": (
-        ("curvature_per_m", "curvature", finite("1/m"), "0",
+        ("curvature_per_m", "curvature", rules.finite("1/m"), "0",
          "0.1", "natural curvature, counter-clockwise from root to tip"),
-        ("strain", "strain", finite("1"), "0", "1e-5", "natural axial strain"),
+        ("strain", "strain", rules.finite("1"), "0", "1e-5", "natural axial strain"),
     ),
 }
 # fmt: on

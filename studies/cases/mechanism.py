@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from studies.cases import document, keys
 from studies.cases.document import CaseError
@@ -20,10 +20,10 @@ from studies.cases.section import (
     without,
 )
 
-if TYPE_CHECKING:  # a template of a case waits for no arrays
-    pass
-
 Values = Mapping[str, Any]
+
+#: Sine of the angle between strips below which they do not cross.
+PARALLEL = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,12 +92,31 @@ class Mechanism:
     history: tuple[tuple[float, float], ...] | None = None
     held: tuple[float, float] | None = None
 
-    def mechanism_parameters(self) -> dict[str, list[dict[str, Any]]]:
-        """Return strips and bodies as the keyword arguments of the designs of either model."""
-        return {
-            "strips": [_keywords(strip) for strip in self.strips],
-            "bodies": [_keywords(body) for body in self.bodies],
-        }
+    @property
+    def crossing_point(self) -> None:
+        """Return none: a mechanism is not described by the crossing of its strips, as a pivot is."""
+
+    @property
+    def crossing_of_chords(self) -> tuple[float, float] | None:
+        """Where two strips cross at rest that alone carry the only body on the ground [m]; None of others."""
+        carried = [{strip.root, strip.tip} for strip in self.strips]
+        if len(self.bodies) != 1 or carried != 2 * [{GROUND, self.bodies[0].name}]:
+            return None
+        (a, b), (c, d) = ((complex(*each.start), complex(*each.end)) for each in self.strips)
+        one, other = b - a, d - c
+        across = (one.conjugate() * other).imag
+        if abs(across) < PARALLEL * abs(one) * abs(other):
+            return None
+        along = ((c - a).conjugate() * other).imag / across, ((c - a).conjugate() * one).imag / across
+        if not 0.0 < min(along) <= max(along) < 1.0:
+            return None
+        return (a + along[0] * one).real, (a + along[0] * one).imag
+
+    def modelled(self, model: Any, **how: Any) -> Any:
+        """Return the mechanism as a model has it, with its effects and discretisation."""
+        strips = [model.StripDesign(**_keywords(strip)) for strip in self.strips]
+        bodies = [model.BodyDesign(**_keywords(body)) for body in self.bodies]
+        return model.compliant_mechanism(strips=strips, bodies=bodies, **how)
 
 
 def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = None) -> Mechanism:

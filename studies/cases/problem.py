@@ -124,6 +124,11 @@ class Problem(Sectioned):
         return distance * math.cos(angle), distance * math.sin(angle)
 
     @property
+    def crossing_of_chords(self) -> tuple[float, float]:
+        """That point, as of a mechanism."""
+        return self.crossing_point
+
+    @property
     def body(self) -> str:
         """Name of the body, as of a mechanism."""
         return BODY
@@ -147,6 +152,10 @@ class Problem(Sectioned):
         centre = middle + complex(*self.centre_offset) * cmath.rect(1.0, self.orientation)
         mass = {"mass": self.body_mass, "moment_of_inertia": self.body_moment_of_inertia}
         return (Body(name=BODY, centre=(centre.real, centre.imag), **mass),)
+
+    def modelled(self, model: Any, **how: Any) -> Any:
+        """Return the pivot as a model has it, with its effects and discretisation."""
+        return model.cross_axis_pivot(**self.pivot_parameters(), **how)
 
     def pivot_parameters(self) -> dict[str, Any]:
         """Return the keyword arguments that `cross_axis_pivot` of either model takes."""

@@ -5,19 +5,24 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from studies.answers.motion import Spectrum
-from studies.answers.response import PLACES, Answered, Response, Solved
-from studies.answers.strength import Strength
+from studies.answers.answer import Answer
+from studies.answers.quantities import QUANTITIES
+from studies.answers.response import PLACES, Response
+from studies.answers.settings import Settings
+from studies.answers.strength import strength
+from studies.commands.arguments import chosen_settings
 from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.record.files import write_whole
+from studies.record.progress import Bar
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,6 +30,8 @@ if TYPE_CHECKING:
     from studies.pictures.shown import Shown
 
 NOT_CONVERGED = 3
+#: Analyses whose errors are estimated, or told not to be.
+ESTIMATED = ("static", "modes")
 #: What a static answer prints, and the names by which models estimate its error.
 PRINTED = {
     "places": PLACES,
@@ -39,35 +46,64 @@ PRINTED = {
 
 def deliver(
     arguments: argparse.Namespace,
-    document: Mapping[str, Any],
+    document: Mapping[str, Any] | list[dict[str, Any]],
     table: Iterable[str],
     *,
     failure: str | None,
-    answers: Sequence[Answered] = (),
-    frame: "Callable[[], pd.DataFrame] | None" = None,
+    answers: Sequence[Any] = (),
+    beside: Callable[[Any], dict[str, Any]] = lambda answers: {},
+    frame: "Callable[[Any], pd.DataFrame] | None" = None,
 ) -> int:
     """Draw what there is of `answers` where `--plot` says, print `table`, and write `document` where `--json`
     says and `frame` where `--csv` does; return the exit code. What goes to the output stream stands alone.
 
     Args:
         arguments: of the command.
-        document: the answer as a JSON object; its arrays and tuples are lists there, and null is what is no
-            finite number.
+        document: the answer as a JSON object, or that of each; its arrays and tuples are lists there, and
+            null is what is no finite number. beside: what that of several answers has as well.
         table: the answer in lines to read.
         failure: why the answer is not complete; None, or nothing, when it is.
-        frame: makes the answer as a table of numbers, of a command that has `--csv`.
+        frame: makes the answers a table of numbers, of a command that has `--csv`.
     """
-    if answers and arguments.plot is not None:
+    if answers and getattr(arguments, "plot", None) is not None:
         shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
         draw(arguments, shown, arguments.plot)
-    csv = getattr(arguments, "csv", None)
-    if STREAM not in (arguments.json, csv):
-        print("\n".join(table))
-    if arguments.json is not None:
-        _put(arguments.json, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
+    csv, stream = getattr(arguments, "csv", None), getattr(arguments, "json", None)
+    if isinstance(document, list):
+        document = document[0] if len(document) == 1 else {"answers": document, **beside(answers)}
+    if STREAM not in (stream, csv) and (lines := list(table)):
+        print("\n".join(lines))
+    if stream is not None:
+        _put(stream, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
-        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
+        _put(csv, frame(answers).to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     return not_converged(failure) if failure else 0
+
+
+def asked(
+    arguments: argparse.Namespace,
+    ask: Callable[[Settings, Bar], Any],
+    document: Callable[[Any], dict[str, Any]],
+    table: Callable[[list[Any]], Iterable[str]],
+    *,
+    stopped: Callable[[Any], str] = attrgetter("message"),
+    **how: Any,
+) -> int:
+    """Ask every chosen model, one after another, and deliver the answers; return the exit code.
+
+    Args:
+        arguments: of the command.
+        ask: makes an answer of settings, and tells how far it is.
+        document: of an answer its JSON object. table: of all answers the lines to read.
+        stopped: why an answer is not complete. how: keywords of `deliver`.
+    """
+    answers = []
+    for settings in chosen_settings(arguments):
+        with Bar(f"{Path(arguments.case).stem}: {settings.model}") as bar:
+            answers.append(ask(settings, bar))
+    failure = "; ".join(stopped(each) for each in answers if not each.converged)
+    whole = [document(each) for each in answers]
+    return deliver(arguments, whole, table(answers), failure=failure, answers=answers, **how)
 
 
 def _put(target: Path, text: str, form: str) -> None:
@@ -87,9 +123,10 @@ def not_converged(why: object) -> int:
 
 def headed(answer: Any) -> dict[str, Any]:
     """Return how an answer ended and what it is of, as its JSON begins; modes pass nothing on their way."""
+    loads = ["resolution"] if answer.analysis == "critical load" else []
     names = ("status", "message", "resolution", "model", "settings", "effects")
-    found = {name: getattr(answer, name) for name in names if hasattr(answer, name)}
-    if isinstance(answer, Response | Spectrum):
+    found = keyed(answer, *(name for name in names if name not in loads))
+    if answer.analysis in ESTIMATED:
         found["not_estimated"] = not_estimated(answer)
     return found
 
@@ -99,19 +136,19 @@ def keyed(answer: Any, *keys: str) -> dict[str, Any]:
     return {key: getattr(answer, key if hasattr(answer, key) else key.rpartition("_")[0]) for key in keys}
 
 
-def pose(answer: Solved) -> dict[str, Array]:
+def pose(answer: Answer) -> dict[str, Array]:
     """Return how the only body moves, as files have it."""
     x, y = answer.centre.T
     return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
 
 
-def described(answer: Answered) -> str:
+def described(answer: Answer) -> str:
     """Return the model with its settings, and the effects that it was assembled of, in two lines."""
     given = (f"{name} {_short(value)}" for name, value in answer.settings.items() if value is not None)
     return f"{answer.model}: {', '.join(given)}\neffects: {', '.join(answer.effects)}"
 
 
-def estimated(answer: Answered) -> Iterator[str]:
+def estimated(answer: Answer) -> Iterator[str]:
     """Yield what an answer says of its errors, and of which of what it prints they are not estimated."""
     errors = {name: error for name, error in answer.errors.items() if math.isfinite(error)}
     if errors:
@@ -120,17 +157,17 @@ def estimated(answer: Answered) -> Iterator[str]:
         what = "elements" if "meshes" in estimate else "control points"
         tried = ", ".join(map(str, estimate.get("meshes") or estimate["trials"]))
         yield f"estimated error: {listed}; {what} tried: {tried}"
-    unknown = not_estimated(answer) if isinstance(answer, Response | Spectrum) else []
+    unknown = not_estimated(answer) if answer.analysis in ESTIMATED else []
     if not errors:
         yield "errors not estimated: --accuracy estimates them"
     elif unknown:
         yield f"error not estimated: {', '.join(unknown)}"
 
 
-def not_estimated(answer: Response | Spectrum) -> list[str]:
+def not_estimated(answer: Any) -> list[str]:
     """Return what a path or modes print whose error is not among those that are estimated."""
     errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
-    if isinstance(answer, Spectrum):
+    if answer.analysis == "modes":
         return [] if errors else ["frequency"]
     there = {
         "places": bool(answer.bodies),
@@ -144,17 +181,17 @@ def not_estimated(answer: Response | Spectrum) -> list[str]:
     return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
 
 
-def ending(answer: Solved | Spectrum) -> str:
+def ending(answer: Answer) -> str:
     """Return how the solve ended, its work and its time in a line."""
-    counters: dict[str, int] = getattr(answer, "counters", {})  # modes count nothing
-    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in counters.items())
+    work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in answer.counters.items())
     parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
     return "; ".join(filter(None, parts))
 
 
-def strength_told(found: Strength, *, floor: float) -> Iterator[str]:
-    """Yield where the stress is largest and what of it the material bears; below the floor there is none."""
-    if found.stress < floor:
+def strength_told(answer: Response) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
+    found = strength(answer)
+    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
         yield "no stress: nothing is turned, and no load acts"
         return
     at = _state(found.load_factor, found.rotation)
@@ -179,8 +216,9 @@ def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
     return f"at load factor {load_factor:.{digits}g}"
 
 
-def strength_document(found: Strength) -> dict[str, Any]:
+def strength_document(answer: Response) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
+    found = strength(answer)
     error = found.yields and {"relative_error": found.yields.error}
     return {
         "max_stress_Pa": found.stress,
@@ -210,14 +248,11 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def shown_of(case: str, answer: Answered) -> "Shown":
-    """Return an answer as pictures show it, with the least known yield strength of its strips."""
-    from studies.answers.fields import fields_of
+def shown_of(case: str, answer: Answer) -> "Shown":
+    """Return an answer as pictures show it."""
     from studies.pictures.shown import Shown
 
-    known = [strip.yield_strength for strip in answer.design.strips if strip.yield_strength is not None]
-    name, fields = called(case, answer), fields_of(answer)
-    return Shown(name=name, fields=fields, yield_strength=min(known, default=None))
+    return Shown(name=called(case, answer), answer=answer)
 
 
 def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:

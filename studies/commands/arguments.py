@@ -10,17 +10,8 @@ from studies.cases import keys
 from studies.cases.design import Design, read_design
 from studies.cases.document import nearest
 from studies.cases.problem import FOLDER
-from studies.commands.parser import (
-    STREAM,
-    Argument,
-    degrees,
-    names_of,
-    not_negative,
-    positive,
-    reads,
-    whole_number,
-    writable_file,
-)
+from studies.commands import parser
+from studies.commands.parser import STREAM, Argument, positive, whole_number, writable_file
 from studies.errors import BadInput
 from studies.record.files import PICTURES
 
@@ -92,7 +83,7 @@ SPLINE = (
     Argument(
         "--slide-stiffness S",
         "of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",
-        not_negative,
+        parser.not_negative,
     ),
 )
 ELEMENTS = Argument("--elements N", "elements a strip (fe, fe-shear; default 20)", int)
@@ -101,18 +92,20 @@ _ONE = Argument("--model", _WHAT, choices=MODELS, default="spline")
 _SEVERAL = Argument(
     "--model LIST",
     f"{_WHAT}: spline, fe, fe-shear, or several with commas",
-    names_of(MODELS),
+    parser.names_of(MODELS),
     default=("spline",),
 )
 #: A design, a model and its settings; the same of one model or several.
 MODEL = CASE, EFFECTS, _ONE, *SPLINE, ELEMENTS
 SEVERAL_MODELS = CASE, EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 
-ROTATION = Argument("--rotation-deg X", read=lambda text: keys.ROTATION.parse(degrees(text)), dest="rotation")
+ROTATION = Argument(
+    "--rotation-deg X", read=lambda text: keys.ROTATION.parse(parser.degrees(text)), dest="rotation"
+)
 INCREMENTS = Argument(
     "--increments K",
     "increments of the path (default: the case's)",
-    reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
+    parser.reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
 )
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)

@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
+from studies.answers.motion import Spectrum
 from studies.answers.quantities import NOTHING, QUANTITIES, STANDING, Scale, quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
@@ -34,7 +35,7 @@ from studies.commands.answer import called, deliver, draw, headed, not_estimated
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
-from studies.pictures.shown import LETTERS, Shown
+from studies.pictures.shown import LETTERS
 from studies.record.progress import Bar, watched
 
 #: Digits of a number; a variation below which a stiffness is constant but for round-off [1].
@@ -65,36 +66,46 @@ ROWS = {
 
 
 class _Compared(NamedTuple):
-    """One design by one model: its case, the answer, its path and its modes as pictures show them, None of
-    what has no state, its numbers by the keys of `ROWS`, NaN of those that it has not, and what has no
-    estimated error.
-    """
+    """One design by one model: its case, its path, and its modes at rest, None of what has no inertia."""
 
     case: str
-    answer: Response
-    shown: Shown | None
-    modes: Shown | None
-    values: dict[str, float]
-    not_estimated: list[str]
+    path: Response
+    modes: Spectrum | None
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return called(self.case, self.path)
+
+    @property
+    def not_estimated(self) -> list[str]:
+        """What has no estimated error."""
+        unknown = [name for name in not_estimated(self.path) if name not in NOT_SHOWN]
+        return unknown if self.modes is None else unknown + not_estimated(self.modes)
+
+    def values(self) -> dict[str, float]:
+        """Return its numbers by the keys of `ROWS`, NaN of those that it has not."""
+        found = _values(self.path) if len(self.path.load_factor) else {}
+        if self.modes is not None and len(self.modes.frequency):
+            found["first_frequency_Hz"] = self.modes.frequency[0]
+        known = {key: float(value) for key, value in found.items() if value is not None}
+        return dict.fromkeys(ROWS, math.nan) | known
 
 
-def _values(answer: Response, shown: Shown) -> dict[str, Any]:
+def _values(answer: Response) -> dict[str, Any]:
     """Return the numbers of a path by their keys."""
-    fields, limits = shown.fields, strength(answer)
+    limits, stiffness, shift = strength(answer), answer.stiffness, answer.shift
     found: dict[str, Any] = {
-        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(fields) if q.standing},
+        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(answer) if q.standing},
         "safety": limits.safety,
         "yield_rotation_rad": limits.yields and limits.yields.rotation,
+        "rotation_rad": None if answer.body is None else answer.rotation[-1],
+        "largest_centre_shift_m": None if shift is None else shift.max(),
     }
-    if shown.rotation is not None:
-        found["rotation_rad"] = shown.rotation[-1]
-    if fields.stiffness is not None:
-        found["stiffness_begin_Nm_per_rad"] = begin = fields.stiffness[0]
-        found["stiffness_end_Nm_per_rad"] = fields.stiffness[-1]
-        variation = np.ptp(fields.stiffness) / abs(begin)
+    if answer.driven:
+        found["stiffness_begin_Nm_per_rad"], *_, found["stiffness_end_Nm_per_rad"] = stiffness
+        variation = np.ptp(stiffness) / abs(stiffness[0])
         found["stiffness_variation"] = variation if variation > ROUND_OFF else 0.0
-    if shown.shift is not None:
-        found["largest_centre_shift_m"] = shown.shift.max()
     return found
 
 
@@ -121,60 +132,47 @@ def main(arguments: argparse.Namespace) -> int:
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
     with Bar("compare") as bar:
         found = [_solved(case, settings, arguments) for case, settings in watched(asked, bar)]
-    for target, what in ((arguments.plot, "shown"), (arguments.plot_modes, "modes")):
-        parts = [each for each in (getattr(design, what) for design in found) if each]
-        if target is not None and len(parts) == len(found):
-            draw(arguments, parts, target)
-    failed = (
-        f"{LETTERS[k]}: {each.answer.message}" for k, each in enumerate(found) if not each.answer.converged
-    )
-    return deliver(arguments, _document(found), _readable(found), failure="; ".join(failed))
+    for target, answers in (
+        (arguments.plot, [each.path for each in found if len(each.path.load_factor)]),
+        (arguments.plot_modes, [each.modes for each in found if each.modes and len(each.modes.frequency)]),
+    ):
+        if target is not None and len(answers) == len(found):
+            shown = [shown_of(each.case, answer) for each, answer in zip(found, answers, strict=True)]
+            draw(arguments, shown, target)
+    failed = (f"{LETTERS[k]}: {e.path.message}" for k, e in enumerate(found) if not e.path.converged)
+    document = {"designs": [_document(each) for each in found]}
+    return deliver(arguments, document, _readable(found), failure="; ".join(failed))
 
 
-def _document(found: Sequence[_Compared]) -> dict[str, Any]:
-    """Return the answer as the JSON object of the command."""
+def _document(found: _Compared) -> dict[str, Any]:
+    """Return a design as the JSON of the command has it."""
     return {
-        "designs": [
-            {
-                "name": called(each.case, each.answer),
-                "case": Path(each.case).name,
-                **headed(each.answer),
-                "not_estimated": each.not_estimated,
-                "estimate": each.answer.estimate,
-                **each.values,
-            }
-            for each in found
-        ]
+        "name": found.name,
+        "case": Path(found.case).name,
+        **headed(found.path),
+        "not_estimated": found.not_estimated,
+        "estimate": found.path.estimate,
+        **found.values(),
     }
 
 
 def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Compared:
     design = take.driven(read_design(case, changes=arguments.effects), arguments)
-    answer = answer_static(design, settings, accuracy=arguments.accuracy)
-    shown, modes, found = None, None, {}
-    unknown = [name for name in not_estimated(answer) if name not in NOT_SHOWN]
-    if len(answer.load_factor):
-        shown = shown_of(case, answer)
-        found = _values(answer, shown)
+    path, modes = answer_static(design, settings, accuracy=arguments.accuracy), None
     if set(INERTIA) & set(design.effects.names):
-        spectrum = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
-        unknown += not_estimated(spectrum)
-        if len(spectrum.frequency):
-            modes = shown_of(case, spectrum)
-            found["first_frequency_Hz"] = spectrum.frequency[0]
-    known = {key: float(value) for key, value in found.items() if value is not None}
-    return _Compared(case, answer, shown, modes, dict.fromkeys(ROWS, math.nan) | known, unknown)
+        modes = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
+    return _Compared(case, path, modes)
 
 
 def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     """Yield the lines of the table: the key, then a row a quantity, and what the others are over A."""
     letters = LETTERS[: len(found)]
     for letter, each in zip(letters, found, strict=True):
-        told = (each.answer.status.replace("_", " "), *_remarks(each))
-        yield f"{letter}: {called(each.case, each.answer)}, {'; '.join(told)}"
-    rows = []
+        told = (each.path.status.replace("_", " "), *_remarks(each))
+        yield f"{letter}: {each.name}, {'; '.join(told)}"
+    rows, every = [], [each.values() for each in found]
     for key, scale in ROWS.items():
-        values = np.array([each.values[key] for each in found])
+        values = np.array([each[key] for each in every])
         if np.isfinite(values).any():
             factor, unit = scale.fitting([values])
             cells = (significant(value, DIGITS) for value in factor * values)
@@ -187,7 +185,7 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
 
 def _remarks(found: _Compared) -> Iterator[str]:
     """Yield the largest estimated error of a path, what has none, what was passed and what is unresolved."""
-    answer, unknown = found.answer, found.not_estimated
+    answer, unknown = found.path, found.not_estimated
     error = answer.largest_error
     yield f"estimated error {error:.1e}" if math.isfinite(error) else "errors not estimated"
     if math.isfinite(error) and unknown:

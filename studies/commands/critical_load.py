@@ -22,8 +22,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from studies.answers.critical import AGREED, UNSTABLE, CriticalLoad, critical_load
+from studies.answers.settings import Settings
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import deliver, described, headed
 from studies.commands.columns import one
 from studies.commands.parser import Argument, command, degrees
 from studies.record.progress import Bar
@@ -47,22 +48,21 @@ DIGITS, NO_TURN = 6, 1e-6
 )
 def main(arguments: argparse.Namespace) -> int:
     """Raise the force and report; return the exit code."""
-    design, every = take.chosen_design(arguments), take.chosen_settings(arguments)
+    design = take.chosen_design(arguments)
     how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
-    found = []
-    for settings in every:
-        with Bar(f"critical-load {settings.model}"):
-            found.append(critical_load(design, settings, **how))
-    stopped = "; ".join(f"{each.model}: {each.message}" for each in found if not each.converged)
-    every_one = [_document(each) for each in found]
-    document = every_one[0] if len(found) == 1 else {"answers": every_one}
-    return deliver(arguments, document, _readable(found), failure=stopped)
+
+    def ask(settings: Settings, bar: Bar) -> CriticalLoad:
+        return critical_load(design, settings, **how)
+
+    return tell.asked(
+        arguments, ask, _document, _readable, stopped=lambda each: f"{each.model}: {each.message}"
+    )
 
 
 def _document(found: CriticalLoad) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
-        **headed(found),
+        **tell.headed(found),
         "force_direction_rad": found.direction,
         "held": found.held,
         "verdict": found.verdict,
@@ -81,7 +81,7 @@ def _document(found: CriticalLoad) -> dict[str, Any]:
 def _readable(found: list[CriticalLoad]) -> Iterator[str]:
     """Yield the verdict of every model, and how far they are apart."""
     for each in found:
-        yield described(each)
+        yield tell.described(each)
         way = f"force at {math.degrees(each.direction):g} deg, rotation {'held' if each.held else 'free'}"
         yield f"{way}: {_verdict(each)}"
         if each.converged and each.force is None:

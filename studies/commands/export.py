@@ -14,18 +14,17 @@ input; 3: not converged, and then the converged part of a path or a motion is wr
 
 import argparse
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.fields import Fields, fields_of
-from studies.answers.response import Answered
+from studies.answers.answer import Answer
 from studies.answers.settings import Settings
-from studies.cases.design import Design
+from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.answer import described, estimated, not_converged
 from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
 from studies.errors import BadInput
 from studies.exchange.formats import FORMATS, contents, require_own, write
@@ -79,20 +78,27 @@ def main(arguments: argparse.Namespace) -> int:
     design = take.driven(take.chosen_design(arguments), arguments)
     if arguments.analysis == "modes" and arguments.rotation is None:
         design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more
-    (settings,) = take.chosen_settings(arguments)
     own = _own_options(arguments)
     require_own(arguments.out)
-    answer = _solved(arguments.analysis, design, settings, own)
-    if answer.solution is None:
-        return not_converged(answer.message)
-    fields = fields_of(answer)
-    files = contents(fields, arguments.formats, _drawn(fields, arguments.draw_deg))
-    write(arguments.out, files, fields, Path(arguments.case).name)
-    print("\n".join((described(answer), *estimated(answer))))
-    if resolution := getattr(answer, "resolution", ""):
-        print(resolution)
-    print(f"{arguments.out}: {len(fields.values)} states of {fields.analysis} in {len(files)} files")
-    return 0 if answer.converged else not_converged(answer.message)
+
+    def ask(settings: Settings, bar: Bar) -> Answer:
+        if arguments.analysis == "static":
+            return answer_static(design, settings, progress=bar)
+        if arguments.analysis == "release":
+            return answer_release(design, settings, swings=False, **own)
+        return answer_modes(design, settings, rotation=design.rotation, **own)
+
+    def written(answers: list[Answer]) -> Iterator[str]:
+        (answer,) = answers
+        if answer.solution is None:
+            return
+        files = contents(answer, arguments.formats, _drawn(answer, arguments.draw_deg))
+        write(arguments.out, files, answer, Path(arguments.case).name)
+        yield from (tell.described(answer), *tell.estimated(answer))
+        yield from filter(None, [answer.resolution])
+        yield f"{arguments.out}: {len(answer.values)} states of {answer.analysis} in {len(files)} files"
+
+    return tell.asked(arguments, ask, lambda answer: {}, written)
 
 
 def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -110,23 +116,13 @@ def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
     return {name: own[name] if value is None else value for name, value in given.items()}
 
 
-def _solved(analysis: str, design: Design, settings: Settings, own: dict[str, Any]) -> Answered:
-    with Bar(f"export {settings.model}") as bar:
-        if analysis == "static":
-            return answer_static(design, settings, progress=bar)
-        if analysis == "release":
-            return answer_release(design, settings, swings=False, **own)
-        return answer_modes(design, settings, rotation=design.rotation, **own)
-
-
-def _drawn(fields: Fields, degrees: tuple[float, ...] | None) -> list[int]:
+def _drawn(answer: Answer, degrees: tuple[float, ...] | None) -> list[int]:
     """Return the numbers of the states that a drawing shows, each once, in order."""
-    last = len(fields.values) - 1
-    if fields.mode_shape is not None:
+    last = len(answer.values) - 1
+    if answer.analysis == "modes":
         return list(range(last + 1))
     if degrees is None:
         return sorted({round(part * last) for part in DRAWN})
-    if not fields.blocks:
+    if answer.body is None:
         raise BadInput("--draw-deg: got it for a design without bodies, expected none")
-    turns = np.degrees(fields.bodies[:, fields.driven, 2])
-    return sorted({int(np.abs(turns - angle).argmin()) for angle in degrees})
+    return sorted({int(np.abs(np.degrees(answer.rotation) - angle).argmin()) for angle in degrees})

@@ -22,11 +22,13 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes
 from studies.answers.motion import Spectrum
+from studies.answers.settings import Settings
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import command
 from studies.kinds import Array
+from studies.record.progress import Bar
 
 #: Of displacement and rotation at unit modal mass; and what is round-off of the largest of all modes.
 SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
@@ -47,19 +49,27 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.chosen_design(arguments)
-    settings = take.chosen_settings(arguments)[0]
     how = {"count": arguments.count, "held": arguments.held, "accuracy": arguments.accuracy}
-    answer = answer_modes(design, settings, rotation=arguments.rotation, **how)
-    reached = f"at {math.degrees(arguments.rotation or 0.0):g} deg: {answer.message}"
-    table, failure = _readable(answer, arguments.count), None if answer.converged else reached
-    return tell.deliver(arguments, _document(answer), table, failure=failure, answers=[answer])
+
+    def ask(settings: Settings, bar: Bar) -> Spectrum:
+        return answer_modes(design, settings, rotation=arguments.rotation, **how)
+
+    def table(answers: list[Spectrum]) -> Iterator[str]:
+        return _readable(answers[0], arguments.count)
+
+    return tell.asked(arguments, ask, _document, table, stopped=_stopped)
+
+
+def _stopped(answer: Spectrum) -> str:
+    return f"at {math.degrees(answer.turned):g} deg: {answer.message}"
 
 
 def _document(answer: Spectrum) -> dict[str, Any]:
     """Return the answer as the JSON object of the command."""
     return {
         **tell.headed(answer),
-        **tell.keyed(answer, "rotation_rad", "held", "frequency_Hz", "body_shapes", "slide_frequency_Hz"),
+        "rotation_rad": answer.turned,
+        **tell.keyed(answer, "held", "frequency_Hz", "body_shapes", "slide_frequency_Hz"),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         "wall_s": answer.wall_s,
     }

@@ -37,15 +37,15 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.motion import Motion
-from studies.answers.quantities import ENERGIES, energy_floor
+from studies.answers.quantities import ENERGY_FLOOR, MOTION, QUANTITIES
 from studies.answers.settings import Settings
 from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import DEFAULT
-from studies.cases.problem import Problem
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
 from studies.commands.parser import Argument, command, whole_number
+from studies.record.progress import Bar
 
 #: Options of the motion that only the finite elements have, and those of both models.
 FE_OPTIONS = ("most_steps",)
@@ -93,23 +93,18 @@ LINES = 20
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
-    design = take.chosen_design(arguments)
-    settings = take.chosen_settings(arguments)[0]
-    if settings.model == "spline":
-        take.refuse(arguments, FE_OPTIONS, OPTIONS)
-    options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
-    duration, options["step"] = _pace(arguments, design, settings)
-    answer = answer_release(
-        design,
-        settings,
-        start=design.rotation if arguments.rotation is None else arguments.rotation,
-        duration=duration,
-        repeat=arguments.repeat,
-        check=not arguments.no_check,
-        **options,
-    )
-    failure = None if answer.converged else answer.message
-    return tell.deliver(arguments, _document(answer), _readable(answer), failure=failure, answers=[answer])
+    design, start = take.chosen_design(arguments), arguments.rotation
+
+    def ask(settings: Settings, bar: Bar) -> Motion:
+        if settings.model == "spline":
+            take.refuse(arguments, FE_OPTIONS, OPTIONS)
+        options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS, "repeat")}
+        duration, options["step"] = _pace(arguments, design, settings)
+        return answer_release(
+            design, settings, start=start, duration=duration, check=not arguments.no_check, **options
+        )
+
+    return tell.asked(arguments, ask, _document, _readable)
 
 
 def _pace(arguments: argparse.Namespace, design: Design, settings: Settings) -> tuple[float, float | None]:
@@ -155,11 +150,13 @@ def _last_time(design: Design) -> float:
 
 def _document(answer: Motion) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
-    pivot, estimate = isinstance(answer.design, Problem), answer.estimate
+    pivot, estimate = answer.crossing is not None, answer.estimate
     if estimate is not None:
         estimate = {f"{name}_rad" if name in ANGLES else name: value for name, value in estimate.items()}
     few = pivot and set(answer.effects) <= {*DEFAULT, "inextensible"}
-    energies = list(ENERGIES.items())[: 2 if few else None]
+    energies = [
+        q for q in QUANTITIES if MOTION in q.analyses and q.unit == "J" and not (few and q.mechanisms)
+    ]
     return {
         **tell.headed(answer),
         **tell.keyed(answer, "rotation_error_rad", "displacement_error_m"),
@@ -168,15 +165,16 @@ def _document(answer: Motion) -> dict[str, Any]:
         "modes": [each._asdict() for each in answer.modes],
         "time_s": answer.time,
         **(tell.pose(answer) if pivot else {"bodies": tell.places(answer.bodies)}),
-        **{key: getattr(answer, name) for key, (name, _) in energies},
+        **{each.key: each.of(answer) for each in energies},
         "constraint_residual": answer.constraint_residual,
         **({} if estimate is None else {"estimate": estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
     }
 
 
-def _readable(answer: Motion) -> Iterator[str]:
+def _readable(answers: list[Motion]) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the body that was let go."""
+    (answer,) = answers
     yield tell.described(answer)
     last, scale = len(answer.time) - 1, flexural_scale(answer.design)
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())
@@ -186,7 +184,7 @@ def _readable(answer: Motion) -> Iterator[str]:
             *quantity("s", highest=-3, digits=6, time=answer.time[shown]),
             angle(answer.rotation[shown]),
             *quantity("m", highest=-3, x=answer.centre[shown, 0], y=answer.centre[shown, 1]),
-            *quantity("J", floor=energy_floor(answer.design), kinetic=kinetic, strain=strain),
+            *quantity("J", floor=ENERGY_FLOOR * scale, kinetic=kinetic, strain=strain),
             plain("clamp gap", (f"{gap:.1e}" for gap in answer.constraint_residual[shown]), "m"),
         ]
     )

@@ -29,16 +29,15 @@ import argparse
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
-from studies.answers.quantities import quantities_of, stress_floor
+from studies.answers.quantities import quantities_of
 from studies.answers.response import Response
-from studies.answers.strength import strength
+from studies.answers.settings import Settings
 from studies.answers.validity import validity
 from studies.commands import answer as tell
 from studies.commands import arguments as take
@@ -85,14 +84,17 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.driven(take.chosen_design(arguments), arguments)
-    every = take.chosen_settings(arguments)
-    how, answers = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}, []
-    for settings in every:
-        with Bar(f"solve {settings.model}") as bar:
-            answers.append(answer_static(design, settings, progress=bar, **how))
-    stopped = "; ".join(_stopped(answer) for answer in answers if not answer.converged)
-    table, frame = _table(answers), partial(_frame, answers)
-    return tell.deliver(arguments, _document(answers), table, failure=stopped, answers=answers, frame=frame)
+    how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
+
+    def ask(settings: Settings, bar: Bar) -> Response:
+        return answer_static(design, settings, progress=bar, **how)
+
+    return tell.asked(arguments, ask, _document, _table, stopped=_stopped, beside=_differences, frame=_frame)
+
+
+def _differences(answers: Sequence[Response]) -> dict[str, Any]:
+    """Return the differences of all answers from the first, as JSON has them."""
+    return {"differences": {each.model: differences(each, answers[0]) for each in answers[1:]}}
 
 
 def _stopped(answer: Response) -> str:
@@ -110,16 +112,6 @@ def _stopped(answer: Response) -> str:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
         reached = f"reached {fixed(last, 3)} of {math.degrees(asked):.3f} deg: "
     return f"{reached}{answer.message}{mend}"
-
-
-def _document(answers: Sequence[Response]) -> dict[str, Any]:
-    """Return the JSON object: of one answer, or of several with their differences."""
-    if len(answers) == 1:
-        return _document_of(answers[0])
-    return {
-        "answers": [_document_of(answer) for answer in answers],
-        "differences": {answer.model: differences(answer, answers[0]) for answer in answers[1:]},
-    }
 
 
 def _frame(answers: Sequence[Response]) -> "pd.DataFrame":
@@ -140,10 +132,9 @@ def _table(answers: Sequence[Response]) -> Iterator[str]:
     for answer in answers:
         yield from _readable(answer)
         yield from [""] * (len(answers) > 1)
-    for answer in answers[1:]:
-        apart = differences(answer, answers[0])
+    for model, apart in _differences(answers)["differences"].items():
         told = (f"{name.replace('_', ' ')} {value:.1e}" for name, value in apart.items() if value is not None)
-        yield f"{answer.model} differs from {answers[0].model} by: {', '.join(told)}"
+        yield f"{model} differs from {answers[0].model} by: {', '.join(told)}"
 
 
 def _arrays(answer: Response) -> dict[str, Array]:
@@ -177,14 +168,14 @@ def _length(answer: Response) -> float:
     return max(strip.length for strip in answer.design.strips)
 
 
-def _document_of(answer: Response) -> dict[str, Any]:
+def _document(answer: Response) -> dict[str, Any]:
     """Return the answer as the JSON object of the command: of a pivot the one body, of a mechanism all."""
     return {
         **tell.headed(answer),
         "critical_points": _critical(answer),
         **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         **_arrays(answer),
-        "strength": tell.strength_document(strength(answer)),
+        "strength": tell.strength_document(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
@@ -224,7 +215,7 @@ def _readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from tell.strength_told(strength(answer), floor=stress_floor(answer.design))
+    yield from tell.strength_told(answer)
     # of yield the strength has told
     yield from (f"beyond the model: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
@@ -253,7 +244,7 @@ def _columns(answer: Response) -> Iterator[Column]:
     for each, values in quantities_of(answer):
         if each.column and np.isfinite(values).any():
             named: dict[str, Any] = {each.heading: values}
-            floor = each.floor(answer.design)
+            floor = each.least(answer.design)
             yield from quantity(each.unit, floor=floor, highest=each.highest, digits=each.digits, **named)
     if answer.crossing is None:
         for name, place in answer.bodies.items():

@@ -12,9 +12,9 @@ from spline_model.confirmed import NOTHING, Grid
 from spline_model.discretisation import Discretisation
 from spline_model.sensitivity.solve import sensitivities
 from spline_model.solution import largest
+from studies.answers.answer import centre_shift
 from studies.answers.models import put
 from studies.answers.reference import reference
-from studies.answers.response import centre_shift
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY

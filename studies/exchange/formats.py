@@ -1,5 +1,5 @@
-"""Fields as tidy tables, one observation a row, units in the names of the columns; and the formats that they
-are written in, by name: each a function from fields to files by name."""
+"""Answers as tidy tables, one observation a row, units in the names of the columns; and the formats that they
+are written in, by name: each a function from an answer to files by name."""
 
 import json
 from collections.abc import Callable, Iterable, Mapping
@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from studies.answers.fields import Fields
-from studies.answers.quantities import ALONG, ENERGIES, QUANTITIES, quantities_of
+from studies.answers.answer import Answer
+from studies.answers.motion import Spectrum
+from studies.answers.quantities import ALONG, QUANTITIES, along_of, numbers_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
@@ -24,9 +25,7 @@ COLUMNS = {
     "mode": "number of the mode, the lowest 1",
     "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
     **dict.fromkeys(("com_x_m", "com_y_m"), "of the only body, as by `solve --csv` [m]"),
-    **{key: meaning for key, (_, meaning) in ENERGIES.items()},
     **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
-    "frequency_Hz": "of the mode; negative where the state is unstable [Hz]",
     "strip": "name of the strip",
     "body": "name of the body",
     "end": "root or tip of the strip",
@@ -47,45 +46,40 @@ COLUMNS = {
 }
 
 
-def tables(fields: Fields) -> dict[str, pd.DataFrame]:
+def tables(answer: Answer) -> dict[str, pd.DataFrame]:
     """Return `states`, `strips`, `bodies` and `reactions`; a design without bodies has no table of them."""
-    found = {"states": _states(fields), "strips": _strips(fields), "reactions": _reactions(fields)}
-    return found | ({"bodies": _bodies(fields)} if fields.blocks else {})
+    found = {"states": _states(answer), "strips": _strips(answer), "reactions": _reactions(answer)}
+    return found | ({"bodies": _bodies(answer)} if answer.design.bodies else {})
 
 
-def _table(fields: Fields, shape: tuple[int, ...], columns: Mapping[str, Any]) -> pd.DataFrame:
+def _table(answer: Answer, shape: tuple[int, ...], columns: Mapping[str, Any]) -> pd.DataFrame:
     """Return columns of arrays that go over the rows of a shape, states first, behind what runs over the
     states and their numbers, which modes have as it is.
 
     The load factor alone does not tell states apart: it stays 1 while a loaded pivot is turned.
     """
-    running = {fields.series: fields.values, "state": np.arange(len(fields.values))}
-    if fields.series == "mode":
-        running = {"mode": fields.values.astype(np.int64)}
+    running = {answer.series: answer.values, "state": np.arange(len(answer.values))}
+    if answer.series == "mode":
+        running = {"mode": answer.values.astype(np.int64)}
     first = {name: values.reshape(-1, *(1 for _ in shape[1:])) for name, values in running.items()}
     given = (first | dict(columns)).items()
     return pd.DataFrame({name: np.broadcast_to(array, shape).ravel() for name, array in given})
 
 
-def _parts(names: Iterable[str], arrays: np.ndarray | None) -> dict[str, np.ndarray]:
-    """Return the last axis of arrays by names, as many as it has; nothing of nothing."""
-    return {} if arrays is None else dict(zip(names, np.moveaxis(arrays, -1, 0), strict=False))
+def _parts(names: Iterable[str], arrays: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the last axis of arrays by names, as many as it has."""
+    return dict(zip(names, np.moveaxis(arrays, -1, 0), strict=False))
 
 
-def _states(fields: Fields) -> pd.DataFrame:
+def _states(answer: Answer) -> pd.DataFrame:
     """One row a state: what runs, and what the state has as a whole, by the names of `solve --csv`."""
     columns: dict[str, Any] = {}
-    if fields.frequency is not None:
-        columns["frequency_Hz"] = fields.frequency
-    else:
-        if len(fields.blocks) == 1:
-            columns |= _parts(("rotation_rad", "com_x_m", "com_y_m"), np.roll(fields.bodies[:, 0], 1, axis=1))
-        if fields.analysis == "static":
-            columns |= {each.key: values for each, values in quantities_of(fields)}
-        else:
-            columns |= {f"{name}_J": energy for name, energy in fields.energies.items()}
-            columns["max_stress_Pa"] = fields.max_stress
-    return _table(fields, fields.values.shape, columns)
+    if answer.analysis != "modes" and len(answer.design.bodies) == 1:
+        columns |= _parts(
+            ("rotation_rad", "com_x_m", "com_y_m"), np.roll(answer.along.bodies[:, 0], 1, axis=1)
+        )
+    columns |= numbers_of(answer)
+    return _table(answer, answer.values.shape, columns)
 
 
 def _placed(place: np.ndarray, rest: np.ndarray, turn: np.ndarray) -> dict[str, np.ndarray]:
@@ -93,39 +87,42 @@ def _placed(place: np.ndarray, rest: np.ndarray, turn: np.ndarray) -> dict[str, 
     return _parts(PLACES, np.concatenate((place, place - rest, turn[..., None]), axis=-1))
 
 
-def _strips(fields: Fields) -> pd.DataFrame:
+def _strips(answer: Answer) -> pd.DataFrame:
     """One row a state, strip and station."""
+    along = answer.along
     columns = {
-        "strip": np.array([part.name for part in fields.parts])[:, None],
-        "arc_length_m": fields.arc_length,
-        **_placed(fields.shape, fields.rest_shape, fields.rotation),
-        **{key: getattr(fields, name) for key, (name, _) in ALONG.items()},
-        **_parts(MODES, fields.mode_shape),
+        "strip": np.array([strip.name for strip in answer.design.strips])[:, None],
+        "arc_length_m": along.arc_length,
+        **_placed(along.shape, along.rest_shape, along.rotation),
+        **along_of(answer),
+        **(_parts(MODES, answer.mode_shape) if isinstance(answer, Spectrum) else {}),
     }
-    return _table(fields, fields.rotation.shape, columns)
+    return _table(answer, along.rotation.shape, columns)
 
 
-def _bodies(fields: Fields) -> pd.DataFrame:
+def _bodies(answer: Answer) -> pd.DataFrame:
     """One row a state and body."""
+    bodies, along = answer.design.bodies, answer.along
     columns = {
-        "body": np.array([block.name for block in fields.blocks]),
-        **_placed(fields.bodies[..., :2], fields.rest_bodies, fields.bodies[..., 2]),
-        **_parts(MODES, fields.mode_bodies),
-        "mass_kg": np.array([block.mass for block in fields.blocks]),
-        "moment_of_inertia_kg_m2": np.array([block.moment_of_inertia for block in fields.blocks]),
+        "body": np.array([body.name for body in bodies]),
+        **_placed(along.bodies[..., :2], along.rest_bodies, along.bodies[..., 2]),
+        **(_parts(MODES, answer.mode_bodies) if isinstance(answer, Spectrum) else {}),
+        "mass_kg": np.array([body.mass for body in bodies]),
+        "moment_of_inertia_kg_m2": np.array([body.moment_of_inertia for body in bodies]),
     }
-    return _table(fields, fields.bodies.shape[:2], columns)
+    return _table(answer, along.bodies.shape[:2], columns)
 
 
-def _reactions(fields: Fields) -> pd.DataFrame:
+def _reactions(answer: Answer) -> pd.DataFrame:
     """One row a state, strip and end."""
+    strips, reactions = answer.design.strips, answer.along.reactions
     columns = {
-        "strip": np.array([part.name for part in fields.parts])[:, None],
+        "strip": np.array([strip.name for strip in strips])[:, None],
         "end": np.array(["root", "tip"]),
-        "on": np.array([[part.root or "free", part.tip or "free"] for part in fields.parts]),
-        **_parts(("force_x_N", "force_y_N", "moment_Nm"), fields.reactions),
+        "on": np.array([[strip.root or "free", strip.tip or "free"] for strip in strips]),
+        **_parts(("force_x_N", "force_y_N", "moment_Nm"), reactions),
     }
-    return _table(fields, fields.reactions.shape[:3], columns)
+    return _table(answer, reactions.shape[:3], columns)
 
 
 Contents = dict[str, bytes]
@@ -133,28 +130,28 @@ Contents = dict[str, bytes]
 SIZE = 4.6
 
 
-def contents(fields: Fields, formats: tuple[str, ...], drawn: list[int]) -> Contents:
+def contents(answer: Answer, formats: tuple[str, ...], drawn: list[int]) -> Contents:
     """Return the files of the formats by name.
 
     Args:
-        fields: what is written.
+        answer: what is written.
         formats: names of `FORMATS`.
         drawn: numbers of the states that a drawing shows.
     """
     found: Contents = {}
     for name in formats:
-        found |= FORMATS[name](fields, drawn)
+        found |= FORMATS[name](answer, drawn)
     return found
 
 
-def _vtk(fields: Fields, drawn: list[int]) -> Contents:
+def _vtk(answer: Answer, drawn: list[int]) -> Contents:
     from studies.exchange.vtk import vtk  # imported by who asks for it, as all libraries here
 
-    return vtk(fields)
+    return vtk(answer)
 
 
-def _svg(fields: Fields, drawn: list[int]) -> Contents:
-    """Return `<analysis>.svg`, to scale in millimetres: the same bytes for the same fields.
+def _svg(answer: Answer, drawn: list[int]) -> Contents:
+    """Return `<analysis>.svg`, to scale in millimetres: the same bytes for the same answer.
 
     A path or a motion is one drawing of the chosen states over the shape at rest; modes are a drawing each,
     over the state that they are about.
@@ -163,49 +160,49 @@ def _svg(fields: Fields, drawn: list[int]) -> Contents:
     from studies.record import style
 
     with style.applied():
-        if fields.mode_shape is not None:
-            figure = shapes.modes([(fields, None)], drawn)
+        if isinstance(answer, Spectrum):
+            figure = shapes.modes([(answer, None)], drawn)
         else:
             figure = style.page(SIZE, SIZE + 0.9)
             panel = figure.subplots()
-            handles = shapes.states_over_rest(panel, fields, drawn)
+            handles = shapes.states_over_rest(panel, answer, drawn)
             shapes.to_scale(panel)
-            what = {"static": "static path", "release": "motion after the release"}[fields.analysis]
-            panel.set_title(f"{shapes.NAMES[fields.model]}: {what}")
+            what = {"static": "static path", "release": "motion after the release"}[answer.analysis]
+            panel.set_title(f"{shapes.NAMES[answer.model]}: {what}")
             figure.legend(handles=handles, loc="outside lower center", ncols=3)
-        return {f"{fields.analysis}.svg": style.rendered(figure, "svg")}
+        return {f"{answer.analysis}.svg": style.rendered(figure, "svg")}
 
 
-def _csv(fields: Fields, drawn: list[int]) -> Contents:
+def _csv(answer: Answer, drawn: list[int]) -> Contents:
     return {
-        f"{fields.analysis}_{name}.csv": table.to_csv(index=False, lineterminator="\n").encode()
-        for name, table in tables(fields).items()
+        f"{answer.analysis}_{name}.csv": table.to_csv(index=False, lineterminator="\n").encode()
+        for name, table in tables(answer).items()
     }
 
 
-def _parquet(fields: Fields, drawn: list[int]) -> Contents:
-    made = {name: table.to_parquet(None, index=False) for name, table in tables(fields).items()}
-    return {f"{fields.analysis}_{name}.parquet": bytes(content) for name, content in made.items()}
+def _parquet(answer: Answer, drawn: list[int]) -> Contents:
+    made = {name: table.to_parquet(None, index=False) for name, table in tables(answer).items()}
+    return {f"{answer.analysis}_{name}.parquet": bytes(content) for name, content in made.items()}
 
 
-def _json(fields: Fields, drawn: list[int]) -> Contents:
-    made = tables(fields)
+def _json(answer: Answer, drawn: list[int]) -> Contents:
+    made = tables(answer)
     plain = {name: table.astype(object).where(table.notna(), None) for name, table in made.items()}
-    document = _summary(fields) | {
+    document = _summary(answer) | {
         "columns": {name: COLUMNS[name] for table in made.values() for name in map(str, table)},
         "tables": {name: table.to_dict("list") for name, table in plain.items()},
     }
-    return {f"{fields.analysis}.json": (json.dumps(document, allow_nan=False) + "\n").encode()}
+    return {f"{answer.analysis}.json": (json.dumps(document, allow_nan=False) + "\n").encode()}
 
 
-def _summary(fields: Fields) -> dict[str, Any]:
+def _summary(answer: Answer) -> dict[str, Any]:
     """Return what was asked and how it ended, as JSON has it."""
     names = ("analysis", "model", "settings", "effects", "status", "message")
-    return {name: getattr(fields, name) for name in names}
+    return {name: getattr(answer, name) for name in names}
 
 
 #: Format -> what writes it.
-FORMATS: dict[str, Callable[[Fields, list[int]], Contents]] = {
+FORMATS: dict[str, Callable[[Answer, list[int]], Contents]] = {
     "vtk": _vtk,
     "svg": _svg,
     "csv": _csv,
@@ -235,15 +232,15 @@ def require_own(folder: Path) -> None:
         )
 
 
-def write(folder: Path, contents: Mapping[str, bytes], fields: Fields, case: str) -> None:
+def write(folder: Path, contents: Mapping[str, bytes], answer: Answer, case: str) -> None:
     """Write the files of an export and the manifest that says what they are, all of them or none.
 
     Args:
         folder: as `require_own` lets pass.
         contents: the files by name.
-        fields: that they hold. case: name of the file that these are of.
+        answer: that they hold. case: name of the file that these are of.
     """
-    about = {"case": case, **_summary(fields), "files": sorted(contents)}
+    about = {"case": case, **_summary(answer), "files": sorted(contents)}
     manifest = json.dumps(about, indent=1, allow_nan=False) + "\n"
     replace_folder(folder.resolve(), {**contents, MANIFEST: manifest.encode()})
 

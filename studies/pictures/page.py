@@ -10,13 +10,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.answers.fields import fields_of, own_fields
-from studies.answers.quantities import QUANTITIES, Scale
-from studies.answers.response import Answered
+from studies.answers.adapters import answer_of
+from studies.answers.answer import Answer
+from studies.answers.quantities import PATH, QUANTITIES, Quantity, Scale
+from studies.answers.response import TURNED
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.pictures import shapes
-from studies.pictures.shown import LETTERS, TURNED, Chart, Curve, Shown
+from studies.pictures.shown import LETTERS, Chart, Curve, Shown
 from studies.record import style
 from studies.record.files import PICTURES, write_whole
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Look
@@ -46,39 +47,41 @@ ENERGY = Scale(heading="energy", unit="J")
 STRESS = Scale(heading="largest stress", unit="Pa", highest=6)
 SHIFT = Scale(heading="centre shift", unit="m", highest=-3)
 
-Values = Callable[[Shown], Array | None]
+Values = Callable[[Any], Array | None]
 
 
 def _looks(shown: Sequence[Shown]) -> list[Look]:
     """Return name, colour and line of the answers that are shown: letters where they are many."""
     if len(shown) == 1:
-        return [Look(label="", colour=shapes.COLOURS[shown[0].fields.model])]
+        return [Look(label="", colour=shapes.COLOURS[shown[0].answer.model])]
     several = zip(LETTERS, SEVERAL, shown, strict=False)
     return [Look(label=letter, colour=colour, line=line) for letter, (colour, line), _ in several]
 
 
 def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     """Yield the charts of paths, or of motions, that there is something to draw in."""
-    path = shown[0].fields.analysis == "static"
-    turned = path and all(each.turns for each in shown)
+    answers: list[Any] = [each.answer for each in shown]
+    path = answers[0].analysis == "static"
+    turned = path and all(each.turns for each in answers)
     x = ROTATION if turned else LOAD if path else TIME
 
-    def over(each: Shown) -> Array:
-        return turning(np.asarray(each.rotation)) if turned else each.fields.values
+    def over(answer: Any) -> Array:
+        return turning(answer.rotation) if turned else np.asarray(answer.values)
 
+    chart = partial(_chart, _looks(shown), answers)
     if not turned:
-        yield from _chart(shown, x, ROTATION, over, lambda each: each.rotation)
-    for each in (own for own in QUANTITIES if path and own.chart):
-        yield from _chart(shown, x, replace(each, highest=3), over, partial(_of_path, each.of, turned))
+        yield from chart(x, ROTATION, over, lambda each: None if each.body is None else each.rotation)
+    for each in (own for own in QUANTITIES if path and own.chart and PATH in own.analyses):
+        yield from chart(x, replace(each, highest=3), over, partial(_of_path, each, turned))
     if not path:
-        yield from _energies(shown, x, over)
-    yield from _chart(shown, X, Y, partial(_travel, axis=0), partial(_travel, axis=1), equal=True)
-    yield from _chart(shown, x, SHIFT, over, lambda each: each.shift)
-    yields = [each.yield_strength for each in shown if each.yield_strength is not None]
+        yield from _energies(chart, answers, x, over)
+    yield from chart(X, Y, partial(_travel, axis=0), partial(_travel, axis=1), equal=True)
+    yield from chart(x, SHIFT, over, lambda each: each.shift)
+    yields = [each.limit for each in shown if each.limit is not None]
     level = (min(yields), "yield" if len(set(yields)) == 1 else "lowest yield") if yields else None
-    yield from _chart(shown, x, STRESS, over, lambda each: each.fields.max_stress, level=level)
+    yield from chart(x, STRESS, over, lambda each: each.max_stress, level=level)
     if path:
-        yield from _energies(shown, x, over)
+        yield from _energies(chart, answers, x, over)
 
 
 def turning(rotation: Array) -> Array:
@@ -88,11 +91,17 @@ def turning(rotation: Array) -> Array:
 
 
 def _chart(
-    shown: Sequence[Shown], x: Scale, y: Scale, across: Values, up: Values, **more: Any
+    looks: Sequence[Look],
+    answers: Sequence[Answer],
+    x: Scale,
+    y: Scale,
+    across: Values,
+    up: Values,
+    **more: Any,
 ) -> Iterator[Chart]:
     """Yield the chart of a quantity of all that have it; none where none has."""
     curves: list[Curve] = []
-    for look, each in zip(_looks(shown), shown, strict=True):
+    for look, each in zip(looks, answers, strict=True):
         along, values = across(each), up(each)
         if along is not None and values is not None:
             curves.append((look, along, values))
@@ -100,30 +109,32 @@ def _chart(
         yield Chart(x=x, y=y, curves=tuple(curves), **more)
 
 
-def _of_path(of: Callable[[Any], Array | None], turned: bool, shown: Shown) -> Array | None:
+def _of_path(quantity: Quantity, turned: bool, answer: Answer) -> Array | None:
     """Return the values of a quantity (S,); those of a drive are drawn where it turns."""
-    values, drive = of(shown.fields), (shown.fields.torque, shown.fields.stiffness)
-    return values if turned or not any(values is each for each in drive) else None
+    return quantity.of(answer) if turned or not quantity.drive else None
 
 
-def _travel(shown: Shown, axis: int) -> Array | None:
+def _travel(answer: Answer, axis: int) -> Array | None:
     """Return a coordinate of the driven body's centre from rest [m]; None without bodies."""
-    fields, body = shown.fields, shown.fields.driven
-    return fields.bodies[:, body, axis] - fields.rest_bodies[body, axis] if fields.blocks else None
+    if answer.body is None:
+        return None
+    rest = answer.along.rest_bodies[[each.name for each in answer.design.bodies].index(answer.body)]
+    return np.asarray(answer.centre[:, axis] - rest[axis])
 
 
-def _energies(shown: Sequence[Shown], x: Scale, over: Callable[[Shown], Array]) -> Iterator[Chart]:
+def _energies(
+    chart: Callable[..., Iterator[Chart]], answers: Sequence[Any], x: Scale, over: Values
+) -> Iterator[Chart]:
     """Yield the chart of the energy by its parts, or of several answers that of the strain alone."""
-    if len(shown) > 1:
+    if len(answers) > 1:
         strain = Scale(heading="strain energy", unit="J")
-        yield from _chart(shown, x, strain, over, lambda each: each.fields.strain_energy)
+        yield from chart(x, strain, over, lambda each: each.strain_energy)
         return
-    (only,) = shown
-    largest = max(float(np.abs(part).max()) for part in only.fields.energies.values())
-    parts = {
-        name: part for name, part in only.fields.energies.items() if np.abs(part).max() > SHARE * largest
-    }
-    curves = tuple((Look(label=name, colour=PARTS[name]), over(only), part) for name, part in parts.items())
+    (only,) = answers
+    largest = max(float(np.abs(part).max()) for part in only.energies.values())
+    parts = {name: part for name, part in only.energies.items() if np.abs(part).max() > SHARE * largest}
+    along: Any = over(only)
+    curves = tuple((Look(label=name, colour=PARTS[name]), along, part) for name, part in parts.items())
     if curves:
         yield Chart(x=x, y=ENERGY, curves=curves)
 
@@ -151,21 +162,21 @@ def picture(shown: Sequence[Shown]) -> Figure:
     """
     if not shown:
         raise BadInput("picture: got no state, expected a solution with one")
-    kinds = sorted({each.fields.analysis for each in shown})
+    kinds = sorted({each.answer.analysis for each in shown})
     if len(shown) > len(LETTERS) or len(kinds) > 1:
         raise BadInput(
             f"picture: got {len(shown)} of {', '.join(kinds)}, expected one, or 2 to 5 of one kind"
         )
     for each in shown:
-        if len(each.fields.values) < 1 + (each.fields.analysis != "modes"):
+        if len(each.answer.values) < 1 + (each.answer.analysis != "modes"):
             raise BadInput(f"picture: got too few states of {each.name}, expected at least two")
     with style.applied(**style.PRINTED):
         return _modes(shown) if kinds == ["modes"] else _page(shown)
 
 
 def _modes(shown: Sequence[Shown]) -> Figure:
-    drawn = [(each.fields, look) for each, look in zip(shown, _looks(shown), strict=True)]
-    figure = shapes.modes(drawn, range(max(len(each.fields.values) for each in shown)))
+    drawn: Any = [(each.answer, look) for each, look in zip(shown, _looks(shown), strict=True)]
+    figure = shapes.modes(drawn, range(max(len(each.answer.values) for each in shown)))
     _head(figure, shown)
     return figure
 
@@ -201,10 +212,10 @@ def _shapes(figure: Figure, place: Any, shown: Sequence[Shown]) -> None:
     panel = figure.add_subplot(place)
     several = len(shown) > 1
     for look, each in zip(_looks(shown), shown, strict=True):
-        last = len(each.fields.values) - 1
-        parts = (1.0,) if several else STATES[each.fields.analysis]
+        last = len(each.answer.values) - 1
+        parts = (1.0,) if several else STATES[each.answer.analysis]
         states = sorted({round(part * last) for part in parts})
-        handles = shapes.states_over_rest(panel, each.fields, states, look)
+        handles = shapes.states_over_rest(panel, each.answer, states, look)
     shapes.to_scale(panel)
     panel.margins(0.06)
     if several:
@@ -265,5 +276,5 @@ def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -
 
 
 def _shown_of(solution: Any, design: Any, name: str, yield_strength: float | None) -> Shown:
-    fields = fields_of(solution) if isinstance(solution, Answered) else own_fields(solution, design)
-    return Shown(name=name or shapes.NAMES[fields.model], fields=fields, yield_strength=yield_strength)
+    answer = solution if isinstance(solution, Answer) else answer_of(solution, design)
+    return Shown(name=name or shapes.NAMES[answer.model], answer=answer, yield_strength=yield_strength)

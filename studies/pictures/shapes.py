@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from studies.answers.fields import Fields
+from studies.answers.answer import Answer
+from studies.answers.motion import Spectrum
 from studies.cases.keys import GROUND
 from studies.exchange.vtk import mode_scale
 from studies.kinds import Array
@@ -27,30 +28,30 @@ ROW, MOST_MODES, ROW_HEIGHT, TITLE = 3, 12, 2.1, 28
 
 
 def states_over_rest(
-    panel: Axes, fields: Fields, states: Sequence[int], look: Look | None = None
+    panel: Axes, answer: Answer, states: Sequence[int], look: Look | None = None
 ) -> list[Line2D]:
     """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
-    _at_rest(panel, fields, fields.rest_shape, fields.rest_bodies)
+    _at_rest(panel, answer, answer.along.rest_shape, answer.along.rest_bodies)
     handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
     strengths = np.linspace(0.45, 1.0, len(states)) if len(states) > 1 else [1.0]  # later ones stand out
     for state, strength in zip(states, strengths, strict=True):
-        how = _line(fields, look) | {"alpha": strength}
-        _deformed(panel, fields, fields.shape[state], fields.bodies[state, :, :2], **how)
-        handles.append(Line2D([], [], label=_named(fields, state), **how))
+        how = _line(answer, look) | {"alpha": strength}
+        _deformed(panel, answer, answer.along.shape[state], answer.along.bodies[state, :, :2], **how)
+        handles.append(Line2D([], [], label=_named(answer, state), **how))
     return handles
 
 
-def _line(fields: Fields, look: Look | None) -> dict[str, Any]:
+def _line(answer: Answer, look: Look | None) -> dict[str, Any]:
     """Return colour and line as of `Axes.plot`, those of the model without a look."""
-    look = look or Look(label="", colour=COLOURS[fields.model])
+    look = look or Look(label="", colour=COLOURS[answer.model])
     return {"color": look.colour, "linestyle": look.line, "linewidth": 1.8}
 
 
-def modes(several: Sequence[tuple[Fields, Look | None]], states: Sequence[int]) -> Figure:
+def modes(several: Sequence[tuple[Spectrum, Look | None]], states: Sequence[int]) -> Figure:
     """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about.
 
     Args:
-        several: of each design its fields and look, None for that of its model; the modes of the same number
+        several: of each design its answer and look, None for that of its model; the modes of the same number
             stand over one another, with the sign that turns them the same way.
         states: the modes, by their place.
     """
@@ -63,30 +64,28 @@ def modes(several: Sequence[tuple[Fields, Look | None]], states: Sequence[int]) 
         panel.set_axis_off()
     for place, (panel, state) in enumerate(zip(panels, chosen, strict=False)):
         there = [each for each in several if state < len(each[0].values)]
-        for fields, look in there:
-            _mode(panel, fields, state, _turned_as(fields, there[0][0], state), look)
-        rates = ", ".join(f"{float(np.asarray(each[0].frequency)[state]):.5g}" for each in there)
+        for answer, look in there:
+            _mode(panel, answer, state, _turned_as(answer, there[0][0], state), look)
+        rates = ", ".join(f"{float(each[0].frequency[state]):.5g}" for each in there)
         panel.set_title(textwrap.fill(f"mode {state + 1}: {rates} Hz", TITLE))
         left, bottom = place % columns == 0, place + columns >= len(chosen)
         to_scale(panel, x="x [mm]" if bottom else "", y="y [mm]" if left else "")
     return figure
 
 
-def _mode(panel: Axes, fields: Fields, state: int, sign: float, look: Look | None) -> None:
+def _mode(panel: Axes, answer: Spectrum, state: int, sign: float, look: Look | None) -> None:
     """Draw a mode of a design over the state that it is about."""
-    scale = sign * mode_scale(fields, state)
-    shape = fields.shape[state] + scale * np.asarray(fields.mode_shape)[state]
-    moved = fields.bodies[state, :, :2] + scale * np.asarray(fields.mode_bodies)[state, :, :2]
-    _at_rest(panel, fields, fields.shape[state], fields.bodies[state, :, :2])
-    _deformed(panel, fields, shape, moved, **_line(fields, look))
+    scale = sign * mode_scale(answer, state)
+    shape = answer.along.shape[state] + scale * answer.mode_shape[state]
+    moved = answer.along.bodies[state, :, :2] + scale * answer.mode_bodies[state, :, :2]
+    _at_rest(panel, answer, answer.along.shape[state], answer.along.bodies[state, :, :2])
+    _deformed(panel, answer, shape, moved, **_line(answer, look))
 
 
-def _turned_as(fields: Fields, first: Fields, state: int) -> float:
+def _turned_as(answer: Spectrum, first: Spectrum, state: int) -> float:
     """Return the sign with which a mode moves the middles of the strips, on the whole, as that of another
     design does: 1 of designs with other strips."""
-    mine, theirs = (
-        np.asarray(each.mode_shape)[state, :, each.rotation.shape[2] // 2] for each in (fields, first)
-    )
+    mine, theirs = (each.mode_shape[state, :, each.mode_shape.shape[2] // 2] for each in (answer, first))
     return -1.0 if mine.shape == theirs.shape and float((mine * theirs).sum()) < 0.0 else 1.0
 
 
@@ -96,37 +95,37 @@ def to_scale(panel: Axes, x: str = "x [mm]", y: str = "y [mm]") -> None:
     panel.set_adjustable("datalim")
 
 
-def _at_rest(panel: Axes, fields: Fields, shape: Array, bodies: Array) -> None:
+def _at_rest(panel: Axes, answer: Answer, shape: Array, bodies: Array) -> None:
     """Draw ground and the shape that the others are held against: strips (G, P, 2), bodies (B, 2) [m]."""
-    _bodies(panel, fields, shape, bodies, color=REST, linewidth=2.0, linestyle="--")
+    _bodies(panel, answer, shape, bodies, color=REST, linewidth=2.0, linestyle="--")
     for strip in shape:
         panel.plot(*(1e3 * strip.T), color=REST, linestyle="--", linewidth=1.0)
     size = 0.03 * float(np.ptp(np.concatenate([*shape, bodies]), axis=0).max())
-    for on, strip in _ends(fields, shape):
+    for on, strip in _ends(answer, shape):
         if on == GROUND:
             _clamp(panel, strip[0], strip[0] - strip[1], size)
 
 
-def _deformed(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
+def _deformed(panel: Axes, answer: Answer, shape: Array, bodies: Array, **look: Any) -> None:
     """Draw strips (G, P, 2) and bodies (B, 2) of a state [m], the strips in the look of `Axes.plot`."""
-    _bodies(panel, fields, shape, bodies, color=BODY, linewidth=6.0, linestyle="-")
+    _bodies(panel, answer, shape, bodies, color=BODY, linewidth=6.0, linestyle="-")
     for strip in shape:
         panel.plot(*(1e3 * strip.T), **look)
     dots: dict[str, Any] = {"color": "#444444", "linestyle": "", "marker": "o", "markersize": 3.5}
     panel.plot(*(1e3 * bodies.T), alpha=look.get("alpha"), **dots)
 
 
-def _ends(fields: Fields, shape: Array) -> Iterator[tuple[str | None, Array]]:
+def _ends(answer: Answer, shape: Array) -> Iterator[tuple[str | None, Array]]:
     """Yield what every end of a strip is on, and the strip's points, that end first."""
-    for part, strip in zip(fields.parts, shape, strict=True):
+    for part, strip in zip(answer.design.strips, shape, strict=True):
         yield part.root, strip
         yield part.tip, strip[::-1]
 
 
-def _bodies(panel: Axes, fields: Fields, shape: Array, bodies: Array, **look: Any) -> None:
+def _bodies(panel: Axes, answer: Answer, shape: Array, bodies: Array, **look: Any) -> None:
     """Draw every body as the lines from its centre to the ends of strips it carries."""
-    names = [block.name for block in fields.blocks]
-    for on, strip in _ends(fields, shape):
+    names = [block.name for block in answer.design.bodies]
+    for on, strip in _ends(answer, shape):
         if on in names:
             line = np.array([bodies[names.index(on)], strip[0]])
             panel.plot(*(1e3 * line.T), solid_capstyle="round", zorder=1.0, **look)
@@ -144,12 +143,12 @@ def _clamp(panel: Axes, point: Array, outward: Array, size: float) -> None:
         panel.plot(*(1e3 * hatch.T), color="#444444", linewidth=0.8)
 
 
-def _named(fields: Fields, state: int) -> str:
+def _named(answer: Answer, state: int) -> str:
     """Return what a state is called: the rotation of the driven body, its time, or its load factor."""
-    value = fields.values[state]
-    if fields.series == "load_factor" and fields.torque is None:
+    value, path = answer.values[state], answer.analysis == "static"
+    if path and not answer.driven:
         return f"load factor {value:.3g}"
-    if not fields.blocks:
+    if answer.body is None:
         return f"{1e3 * value:.4g} ms"
-    turn = f"{math.degrees(fields.bodies[state, fields.driven, 2]):.4g}°".replace("-", "−")
-    return turn if fields.series == "load_factor" else f"{1e3 * value:.4g} ms, {turn}"
+    turn = f"{math.degrees(answer.rotation[state]):.4g}°".replace("-", "−")
+    return turn if path else f"{1e3 * value:.4g} ms, {turn}"

@@ -20,7 +20,7 @@ from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.record.marks import Level
-from studies.record.panels import ROTATION, Axis, Curves, Panel, key, sheet
+from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, RED, Look
 
 #: Rotations of the states [deg]; from the fourth one on beams are compared.
@@ -185,29 +185,11 @@ def _deviations(tables: Tables) -> Iterator[Row]:
 def _figure(tables: Tables) -> Figure:
     """Draw the deviations of torque and trajectory over the rotation."""
     rows = tables["deviations"].assign(percent=lambda table: 100.0 * table["error_torque"])
-    drawn = sheet(
-        7.5,
-        3.4,
-        [
-            [
-                Panel(
-                    ROTATION,
-                    Axis("percent", "deviation of the torque [%]"),
-                    (
-                        Curves(rows, LOOKS, by="model"),
-                        Level(0.0, words="solid, St. Venant-Kirchhoff", colour=BLACK),
-                    ),
-                ),
-                Panel(
-                    ROTATION,
-                    Axis("error_trajectory", "deviation of the trajectory [1]", log=True),
-                    (Curves(rows, LOOKS, by="model"),),
-                ),
-            ]
-        ],
-    )
-    key(drawn, drawn.axes, columns=3)
-    return drawn
+    curves = Curves(rows, LOOKS, by="model")
+    exact = Level(0.0, words="solid, St. Venant-Kirchhoff", colour=BLACK)
+    torque = Panel(ROTATION, Axis("percent", "deviation of the torque [%]"), (curves, exact))
+    trajectory = Axis("error_trajectory", "deviation of the trajectory [1]", log=True)
+    return sheet(7.5, 3.4, [[torque, Panel(ROTATION, trajectory, (curves,))]], legend=3)
 
 
 STUDY = Study(

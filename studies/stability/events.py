@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -115,10 +116,13 @@ def _jump(settings: Settings, degrees: float) -> Found:
     """Follow a target that jumps from rest in one increment; against the refined path of many."""
     design = replace(named_case(), rotation=math.radians(degrees), increments=1)
     many = answer_static(replace(design, increments=36), verdict.CHECK)
-    ends = {name: getattr(many, name)[[0, -1]] for name in ("load_factor", "torque")}
-    reference = replace(many, **ends, bodies={name: poses[[0, -1]] for name, poses in many.bodies.items()})
+    ends: Any = SimpleNamespace(
+        **{name: getattr(many, name)[[0, -1]] for name in ("load_factor", "torque")},
+        bodies=many.bodies,
+        centres={name: centre[[0, -1]] for name, centre in many.centres.items()},
+    )
     path = answer_static(design, settings)
-    return _bounded(Found.of(path, verdict.path_distance(path, reference)), 1)
+    return _bounded(Found.of(path, verdict.path_distance(path, ends)), 1)
 
 
 def _jumping(settings: Settings) -> Found:

@@ -8,9 +8,9 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from studies.answers.answer import centre_shift, shift_error
 from studies.answers.models import model_of
 from studies.answers.quantities import QUANTITIES
-from studies.answers.response import centre_shift, shift_error
 from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys

@@ -3,7 +3,6 @@
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import read_design
 from tests import gates
@@ -25,7 +24,7 @@ def left_over(folder, settings: Settings) -> tuple[float, float]:
     path = folder / "arc.toml"
     path.write_text(one_strip(SCENE, rise=0.01))
     design = read_design(path)
-    fields = fields_of(answer_static(design, settings))
+    fields = answer_static(design, settings).along
     turn = NATURAL_CURVATURE * fields.arc_length[0, -1]
     moment = np.abs(fields.bending_moment[-1]).max() / (RIGIDITY * NATURAL_CURVATURE)
     return float(moment), float(abs(fields.rotation[-1, 0, -1] / turn - 1.0))

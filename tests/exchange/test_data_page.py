@@ -14,10 +14,10 @@ from studies.exchange.formats import COLUMNS
 from studies.exchange.vtk import mesh
 from studies.record.source import ROOT
 from studies.record.store import RESULTS
-from tests.exchange.test_files import fields
+from tests.exchange.test_files import solved
 
 PAGE = (ROOT / "docs" / "data.md").read_text(encoding="utf-8")
-#: What a path has in every state, which has a table of its own.
+#: What every state has as a whole, which has a table of its own.
 KEYS = {each.key for each in QUANTITIES}
 #: Tables that are the same in all studies.
 COMMON = ("findings", "findings_of_time", "counts")
@@ -89,7 +89,7 @@ def test_keys_of_json_are_described(words, capsys):
     path = str(FOLDER / f"{case}.toml")
     assert main([command, path, "--model", "spline", "--control-points", "4", "--json", "-", *options]) == 0
     document = json.loads(capsys.readouterr().out)
-    known, quantities = described("## JSON of the commands"), described("## Quantities of a path")
+    known, quantities = described("## JSON of the commands"), described("## Quantities of a state")
     assert set(document) <= set(known) | set(quantities)
     for key in set(document) - (set(quantities) if command == "solve" else set()):
         places = known[key][2]
@@ -102,11 +102,11 @@ def test_arrays_of_vtk_are_described():
     known = described("**VTK.**")
     points, cells = set(), set()
     for kind in ("static", "modes", "release"):
-        made = mesh(fields(kind), 0)
+        made = mesh(solved(kind), 0)
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points
-    quantities = set(described("## Quantities of a path"))
+    quantities = set(described("## Quantities of a state"))
     assert {name for name, row in known.items() if row[1] == "cells"} == cells - quantities
 
 
@@ -114,4 +114,4 @@ def test_columns_of_exports_are_described():
     """The columns of exported tables are described in the words that the JSON has."""
     found = {name: row[0] for name, row in described("**Tables.**").items()}
     assert found == {name: said for name, said in COLUMNS.items() if name not in KEYS}
-    assert set(described("## Quantities of a path")) == KEYS
+    assert set(described("## Quantities of a state")) == KEYS

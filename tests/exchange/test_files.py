@@ -14,7 +14,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.fields import Fields, fields_of
+from studies.answers.answer import Answer
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.commands.solve import _frame
@@ -25,22 +25,22 @@ SMALL = ["--increments", "2"]
 
 
 @cache
-def fields(kind: str) -> Fields:
-    """Fields of each analysis, of a pivot and of mechanisms with and without bodies that are driven."""
+def solved(kind: str) -> Answer:
+    """The answer of each analysis, of a pivot and of mechanisms with and without bodies that are driven."""
     spline, elements = SplineSettings(control_points=5), FeSettings(elements=5)
     pivot, linkage = (replace(named_design(name), increments=3) for name in
                       ("cross_axis_pivot", "four_bar_of_flexures"))  # fmt: skip
     if kind == "static":
-        return fields_of(answer_static(pivot, spline))
+        return answer_static(pivot, spline)
     if kind == "mechanism":
-        return fields_of(answer_static(linkage, elements))
+        return answer_static(linkage, elements)
     if kind == "modes":
-        return fields_of(answer_modes(linkage, spline, rotation=linkage.rotation, count=3))
+        return answer_modes(linkage, spline, rotation=linkage.rotation, count=3)
     if kind == "loads":
         guide = replace(named_design("parallel_strip_guide"), increments=2)
-        return fields_of(answer_static(guide, spline))
+        return answer_static(guide, spline)
     step = {"step": 1e-4, "integrator": "generalised-alpha"}
-    return fields_of(answer_release(pivot, elements, duration=5e-4, records=5, **step))
+    return answer_release(pivot, elements, duration=5e-4, records=5, **step)
 
 
 KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes", "release"])
@@ -49,7 +49,7 @@ KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes"
 @KINDS
 def test_vtk_reads_back(kind, tmp_path):
     """Every .vtu holds its state, and the .pvd names them in order with their times."""
-    found = fields(kind)
+    found = solved(kind)
     files = contents(found, ("vtk",), [])
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
@@ -68,38 +68,41 @@ def test_vtk_reads_back(kind, tmp_path):
 
 @KINDS
 def test_mesh_holds_what_was_solved(kind):
-    """Points, displacements, forces and parts of the mesh are those of the fields."""
-    found = fields(kind)
+    """Points, displacements, forces and parts of the mesh are those of the answer."""
+    found = solved(kind)
     last, made = len(found.values) - 1, mesh(found, len(found.values) - 1)
-    strips, stations = found.rotation.shape[1:]
+    along, moves = found.along, found.analysis == "modes"
+    strips, stations = along.rotation.shape[1:]
     count = strips * stations
-    mode = 0.0 if found.mode_shape is None else mode_scale(found, last) * found.mode_shape[last]
-    assert made.points[:count, :2] == pytest.approx((found.shape[last] + mode).reshape(-1, 2))
+    mode = mode_scale(found, last) * found.mode_shape[last] if moves else 0.0
+    assert made.points[:count, :2] == pytest.approx((along.shape[last] + mode).reshape(-1, 2))
     assert not made.points[:, 2].any()
     rest = made.points[:count, :2] - made.point_data["displacement_m"][:count, :2]
-    if found.mode_shape is None:
-        assert rest == pytest.approx(found.rest_shape.reshape(-1, 2), abs=1e-15)
-    for name, array in (("axial_force_N", found.axial_force), ("bending_moment_Nm", found.bending_moment)):
+    if not moves:
+        assert rest == pytest.approx(along.rest_shape.reshape(-1, 2), abs=1e-15)
+    for name, array in (("axial_force_N", along.axial_force), ("bending_moment_Nm", along.bending_moment)):
         assert made.point_data[name][:count] == pytest.approx(array[last].ravel())
         assert np.isnan(made.point_data[name][count:]).all()
     kinds = np.concatenate(made.cell_data["part_kind"])
-    carried = [end for part in found.parts for end in (part.root, part.tip) if end not in ("ground", None)]
-    clamped = [end for part in found.parts for end in (part.root, part.tip) if end == "ground"]
+    carried = [
+        end for part in found.design.strips for end in (part.root, part.tip) if end not in ("ground", None)
+    ]
+    clamped = [end for part in found.design.strips for end in (part.root, part.tip) if end == "ground"]
     assert (kinds == STRIP).sum() == count - strips
-    assert (kinds == BODY_CENTRE).sum() == len(found.blocks)
+    assert (kinds == BODY_CENTRE).sum() == len(found.design.bodies)
     assert (kinds == BODY_ARM).sum() == len(carried)
     assert (kinds == CLAMP).sum() == len(clamped)
     assert np.concatenate(made.cell_data["mass_kg"])[kinds == BODY_CENTRE].sum() == pytest.approx(
-        sum(block.mass for block in found.blocks)
+        sum(body.mass for body in found.design.bodies)
     )
     total = made.point_data["reaction_force_N"].sum(axis=0)[:2]
-    assert total == pytest.approx(found.reactions[last, ..., :2].sum(axis=(0, 1)))
+    assert total == pytest.approx(along.reactions[last, ..., :2].sum(axis=(0, 1)))
 
 
 @KINDS
 def test_tables_agree_in_every_format(kind):
     """CSV, Parquet and JSON hold the same tables, whose columns are all described."""
-    found = fields(kind)
+    found = solved(kind)
     files, name = contents(found, ("csv", "parquet", "json"), []), found.analysis
     document = json.loads(files[f"{name}.json"])
     assert document["model"] == found.model
@@ -111,8 +114,8 @@ def test_tables_agree_in_every_format(kind):
         pd.testing.assert_frame_equal(read.astype(frame.dtypes), frame)
         assert {column: COLUMNS[column] for column in frame}.items() <= document["columns"].items()
     rows = tables(found)["strips"]
-    assert len(rows) == found.axial_force.size
-    assert rows["axial_force_N"].to_numpy() == pytest.approx(found.axial_force.ravel())
+    assert len(rows) == found.along.axial_force.size
+    assert rows["axial_force_N"].to_numpy() == pytest.approx(found.along.axial_force.ravel())
 
 
 @pytest.mark.parametrize("name", ["large_steel_pivot", "four_bar_of_flexures"])
@@ -121,7 +124,7 @@ def test_states_have_the_columns_of_the_solved_table(name):
     joined by the number of the state, as a load factor stays 1 while a loaded pivot is turned."""
     design = replace(named_design(name), increments=2)
     answer = answer_static(design, SplineSettings(control_points=6))
-    found = tables(fields_of(answer))
+    found = tables(answer)
     states, rows = found["states"], _frame([answer])
     both = [column for column in states if column in rows]
     assert {"load_factor", "torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa"} <= set(
@@ -137,10 +140,10 @@ def test_states_have_the_columns_of_the_solved_table(name):
 @KINDS
 def test_drawing_shows_every_strip_of_every_state(kind):
     """An SVG has a line in the model's colour for every strip of every state that is drawn."""
-    found, drawn = fields(kind), [0, 1]
+    found, drawn = solved(kind), [0, 1]
     picture = contents(found, ("svg",), drawn)[f"{found.analysis}.svg"]
     colour = {"spline": b"#0072b2", "fe": b"#000000"}[found.model]
-    assert picture.count(b"stroke: " + colour) >= len(drawn) * len(found.parts)
+    assert picture.count(b"stroke: " + colour) >= len(drawn) * len(found.design.strips)
 
 
 def export(folder: Path, *options: str) -> int:

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.fields import Fields, fields_of
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, named_design, read_design
 from tests import gates
@@ -24,15 +24,15 @@ def design_of(case: str) -> Design:
 
 
 @cache
-def solved(case: str, settings: Settings) -> Fields:
+def solved(case: str, settings: Settings) -> Any:
     return static_fields(design_of(case), settings)
 
 
-def static_fields(design: Design, settings: Settings) -> Fields:
-    return fields_of(answer_static(design, settings))
+def static_fields(design: Design, settings: Settings) -> Any:
+    return answer_static(design, settings).along
 
 
-def force(fields: Fields, state: int = -1) -> np.ndarray:
+def force(fields: Any, state: int = -1) -> np.ndarray:
     """Force of the part beyond on the part before (G, P, 2) [N], in the fixed frame."""
     rest = np.diff(fields.rest_shape, axis=1)
     angle = fields.rotation[state] + np.arctan2(rest[:, :1, 1], rest[:, :1, 0])  # straight strips
@@ -45,7 +45,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
-def imbalance(fields: Fields) -> float:
+def imbalance(fields: Any) -> float:
     """Largest defect of a strip cut anywhere, of its force and of its moment, over the largest of each."""
     pull, reaction = force(fields), fields.reactions[-1, :, 0]
     apart = np.abs(pull + reaction[:, None, :2]).max() / np.abs(pull).max()
@@ -71,7 +71,7 @@ def test_spline_balances_where_it_is_cut():
     )
 
 
-def difference(fine: Fields, other: Fields) -> float:
+def difference(fine: Any, other: Any) -> float:
     """Largest difference of N, V and M between elements and the spline, over the largest of each."""
     worst = 0.0
     for name in ("axial_force", "shear_force", "bending_moment"):
@@ -135,21 +135,22 @@ def test_clamps_carry_the_weight_of_the_strip(settings):
 @MODELS
 def test_fields_are_those_of_the_answer(settings):
     """Stress and section forces that are exported are those that `solve` reports."""
-    fields = solved("cross_axis_pivot", settings)
     answer = answer_static(design_of("cross_axis_pivot"), settings)
-    assert fields.axial_force == pytest.approx(answer.axial_force)
-    assert fields.stress == pytest.approx(answer.extreme_fibre_stress)
-    assert fields.torque == pytest.approx(answer.torque)
-    assert fields.bodies[:, 0, :2] == pytest.approx(answer.centre)
+    assert answer.along.axial_force == pytest.approx(answer.axial_force)
+    assert answer.along.bodies[:, 0, :2] == pytest.approx(answer.centre)
 
 
 @pytest.mark.parametrize("settings", [SPLINE, FeSettings(elements=20)], ids=lambda s: s.model)
 def test_a_release_begins_with_the_static_section_forces(settings):
-    """The first record of a motion has the fields of the static state that was let go."""
+    """The first record of a motion has the fields and the stress of the static state that was let go."""
     step = {"step": 1e-4} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
     pivot = design_of("cross_axis_pivot")
-    begin = fields_of(answer_release(pivot, settings, duration=2e-4, records=2, **step))
-    static = solved("cross_axis_pivot", settings)
+    motion, path = (
+        answer_release(pivot, settings, duration=2e-4, records=2, **step),
+        answer_static(pivot, settings),
+    )
+    assert motion.max_stress[0] == pytest.approx(path.max_stress[-1], rel=1e-3)
+    begin, static = motion.along, path.along
     assert begin.bending_moment[0] == pytest.approx(static.bending_moment[-1], rel=1e-3)
     # by the moments' balance the spline's shear force is a derivative, and its strips are stiffer in motion
     size = np.abs(static.shear_force[-1]).max()
@@ -163,8 +164,8 @@ def test_motion_keeps_the_bodies_and_strips_together(settings):
     """Ends of strips stay on their bodies in every record of a mechanism whose reference points differ."""
     design = design_of("four_bar_of_flexures")
     step = {} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
-    fields = fields_of(answer_release(design, settings, duration=1e-3, records=4, **step))
-    crank = [block.name for block in fields.blocks].index("crank")
+    fields = answer_release(design, settings, duration=1e-3, records=4, **step).along
+    crank = [body.name for body in design.bodies].index("crank")
     turn, centre = fields.bodies[:, crank, 2], fields.bodies[:, crank, :2]
     offset = np.exp(1j * turn) * complex(*(fields.rest_shape[0, -1] - fields.rest_bodies[crank]))
     turned = np.stack((offset.real, offset.imag), axis=-1)
@@ -177,11 +178,12 @@ def test_modes_move_strips_with_their_bodies():
     found = []
     for settings in (SPLINE, ELEMENTS):
         linkage = design_of("four_bar_of_flexures")
-        fields = fields_of(answer_modes(linkage, settings, rotation=linkage.rotation, count=2))
+        answer = answer_modes(linkage, settings, rotation=linkage.rotation, count=2)
+        fields = answer.along
         x, y = fields.shape[0, 0, -1] - fields.bodies[0, 0, :2]
-        body = fields.mode_bodies[:, 0]
+        body = answer.mode_bodies[:, 0]
         carried = body[:, :2] + body[:, 2:] * np.array([-y, x])
-        assert fields.mode_shape[:, 0, -1] == pytest.approx(carried, abs=1e-8 * np.abs(carried).max())
-        found.append((fields.frequency, np.abs(fields.mode_bodies)))
+        assert answer.mode_shape[:, 0, -1] == pytest.approx(carried, abs=1e-8 * np.abs(carried).max())
+        found.append((answer.frequency, np.abs(answer.mode_bodies)))
     assert found[0][0] == pytest.approx(found[1][0], rel=1e-4)
     assert found[0][1] == pytest.approx(found[1][1], abs=1e-3 * found[1][1].max())

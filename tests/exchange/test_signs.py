@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_static
-from studies.answers.fields import fields_of
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import read_design
 from studies.exchange.formats import tables
@@ -30,7 +29,7 @@ def test_signs_of_a_cantilever_that_is_pulled_and_lifted(settings, tmp_path):
     """Requirement: positive are tension, a force to the left and the moment that lifts the strip."""
     path = tmp_path / "cantilever.toml"
     path.write_text(one_strip(SCENE), encoding="utf-8")
-    table = tables(fields_of(answer_static(read_design(path), settings)))
+    table = tables(answer_static(read_design(path), settings))
     strips, reactions = (table[name][table[name]["load_factor"] == 1.0] for name in ("strips", "reactions"))
     x, y, at = (strips[name].to_numpy() for name in ("x_m", "y_m", "arc_length_m"))
     moment = LIFT * (x[-1] - x) - PULL * (y[-1] - y)  # about each section, of the force at the tip

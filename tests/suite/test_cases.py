@@ -4,6 +4,7 @@ import json
 import math
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -113,7 +114,10 @@ def test_a_strip_has_its_own_section_and_material(tmp_path):
     assert (own.area, own.width, own.youngs_modulus, own.density) == (1e-5, None, 4.0e9, 1300.0)
     assert (shared.width, shared.thickness, shared.area) == (0.01, 0.002, pytest.approx(2e-5))
     assert (shared.youngs_modulus, shared.density, shared.yield_strength) == (113.8e9, 1000.0, 880e6)
-    strips = found.mechanism_parameters()["strips"]
+    given = SimpleNamespace(
+        StripDesign=dict, BodyDesign=dict, compliant_mechanism=lambda strips, bodies: strips
+    )
+    strips = found.modelled(given)
     assert all("yield_strength" not in each for each in strips)
     assert [each.get("width") for each in strips] == [None, 0.01]
 

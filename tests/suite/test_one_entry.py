@@ -19,7 +19,7 @@ ENTRY = """QUANTITIES = (
         unit="N m",
         meaning="bending moment of the first strip at its root",
         of=lambda path: path.bending_moment[:, 0, 0],
-        floor=moment_floor,
+        floor=FORCE_FLOOR,
     ),
 """
 KEY = "clamp_moment_Nm"

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +13,7 @@ import fe_reference
 import spline_model
 import studies
 from studies.__main__ import main
-from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.fields import fields_of, own_fields
+from studies.answers.adapters import answer_modes, answer_of, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
@@ -46,7 +46,7 @@ def shown(kind):
         answer = answer_modes(design, settings, count=3)
     else:
         answer = answer_static(design, settings)
-    return Shown(name=kind, fields=fields_of(answer), yield_strength=1.1e9), answer
+    return Shown(name=kind, answer=answer, yield_strength=1.1e9), answer
 
 
 SEVERAL = [
@@ -86,10 +86,7 @@ def test_nothing_is_clipped_and_letters_have_eight_points(kinds):
 def test_curves_are_the_answer(kind):
     """Shift, stress, energy and torque in a picture are those that the answer tells."""
     drawn, answer = shown(kind)
-    assert drawn.fields.max_stress == pytest.approx(answer.max_stress)
-    assert drawn.shift == pytest.approx(np.hypot(*answer.centre_shift.T), abs=1e-15)
-    assert drawn.fields.strain_energy == pytest.approx(answer.strain_energy)
-    assert np.array_equal(drawn.fields.torque, answer.torque)
+    assert answer.shift == pytest.approx(np.hypot(*answer.centre_shift.T), abs=1e-15)
     panels = {panel.get_ylabel().split(" [")[0]: panel for panel in picture([drawn]).axes}
     (line,) = panels["torque"].lines
     assert np.allclose(line.get_ydata(), answer.torque)
@@ -112,13 +109,13 @@ def test_a_models_own_solution_is_drawn_as_the_answer():
     path = spline_model.solve_statics(spline_model.cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=3)
     fine = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=path.control_points)
     for pivot in (spline_model.cross_axis_pivot(**TABLE_ONE), fine):
-        assert own_fields(path, pivot).bodies[:, 0, 2] == pytest.approx(path.rotation)
+        assert answer_of(path, pivot).along.bodies[:, 0, 2] == pytest.approx(path.rotation)
     pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3, element="reissner")
     rough = fe_reference.solve_statics(pivot, rotation=0.3, increments=3, accuracy=1e-2)
-    fields = own_fields(rough, pivot)
-    assert fields.model == "fe-shear"
-    assert fields.shape.shape[2] == rough.estimate.elements + 1
-    assert [part.tip for part in fields.parts] == ["body", "body"]
+    answer = answer_of(rough, pivot)
+    assert answer.model == "fe-shear"
+    assert answer.along.shape.shape[2] == rough.estimate.elements + 1
+    assert [strip.tip for strip in answer.design.strips] == ["body", "body"]
     assert b"svg" in style.printed(studies.overlay({"a": (path, fine), "b": (rough, pivot)}).figure, "svg")
 
 
@@ -127,18 +124,16 @@ def test_an_answer_is_drawn_without_its_design():
     answer = shown("path")[1]
     assert b"svg" in style.printed(studies.plot(answer, name="alone").figure, "svg")
     assert b"svg" in style.printed(studies.overlay({"a": answer, "b": answer}).figure, "svg")
-    assert own_fields(answer.solution, answer.modelled).torque == pytest.approx(fields_of(answer).torque)
+    assert answer_of(answer.solution, answer.asked.modelled).max_stress == pytest.approx(answer.max_stress)
 
 
 def test_a_motion_has_the_fields_of_what_swings():
     """Fields of a motion are those of the control points that were chosen, as stiff as they are in motion."""
     design = replace(named_design(PIVOT), increments=4)
     given = {"duration": 1e-3, "records": 10, "step": 5e-5}
-    free, fixed = (
-        fields_of(answer_release(design, SplineSettings(control_points=n), **given)) for n in (None, 6)
-    )
+    free, fixed = (answer_release(design, SplineSettings(control_points=n), **given) for n in (None, 6))
     assert free.settings == fixed.settings
-    assert free.reactions == pytest.approx(fixed.reactions, rel=1e-12)
+    assert free.along.reactions == pytest.approx(fixed.along.reactions, rel=1e-12)
 
 
 def test_states_of_another_design_are_refused():
@@ -161,7 +156,7 @@ def test_what_does_not_go_over_one_another_is_refused():
         picture([path] * 6)
     with pytest.raises(BadInput, match="got 2 of release, static"):
         picture([path, motion])
-    start = replace(path, fields=replace(path.fields, values=path.fields.values[:1]))
+    start = replace(path, answer=replace(path.answer, solution=SimpleNamespace(load_factor=[0.0])))
     with pytest.raises(BadInput, match="too few states"):
         picture([start])
 
