@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .arrays import Array, Flags
-from .control import Control, equilibrate
+from .control import Control, State, equilibrate
 from .matrix import Symmetric
-from .response import State, respond
+from .response import respond
 from .solution import CriticalPoint
 
 #: Largest motion of a body over that of the nodes in a mode of the strips alone.
@@ -29,7 +29,7 @@ def critical_point(control: Control, before: State, after: State) -> CriticalPoi
     It is where the line through the eigenvalues nearest to zero has its zero.
     """
     (first, _), (last, mode) = (
-        _critical_mode(state.balance.at.tangent, control.is_held) for state in (before, after)
+        _critical_mode(state.at.tangent, control.is_held) for state in (before, after)
     )
     part = first / (first - last) if first * last < 0.0 else 0.5
     what = _moves(control, mode) if after.inertia > before.inertia else "the strips are stable again"
@@ -60,7 +60,7 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     """
     stiff, soft, least = before.stiffness, after.stiffness, ROUND_OFF * control.structure.moment_unit
     same = before.inertia == after.inertia  # else it may have gone through infinity
-    if control.watched not in control.held or not same or stiff * soft >= 0.0:
+    if control.watched is None or not same or stiff * soft >= 0.0:
         return []
     if min(abs(stiff), abs(soft)) <= least:
         return []
@@ -93,7 +93,7 @@ def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
     if abs(rest) > NEAR:
         return []
-    kind = "turning point" if control.watched in control.held else "limit point"
+    kind = "limit point" if control.watched is None else "turning point"
     what = f"{kind}: {_moves(control, last.rate)}"
     y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
     return [_point(control, kind, y, parameter, last.inertia + 1, what)]

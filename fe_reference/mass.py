@@ -84,12 +84,12 @@ def _own_inertia(structure: Structure) -> Array:
 
 def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
-    ends, own = structure.attachments, _own_inertia(structure)
-    nodes = lumped_nodes(structure)[ends.node]
+    (attached, carried, offsets), own = structure.carried, _own_inertia(structure)
+    nodes = lumped_nodes(structure)[attached]
     centres = structure.model.centres
-    carrier = np.append(ends.body, np.arange(len(own)))
+    carrier = np.append(carried, np.arange(len(own)))
     masses = np.append(nodes[:, 0], own[:, 0])
-    places = np.vstack([ends.offsets + structure.points[ends.body], centres])
+    places = np.vstack([offsets + structure.points[carried], centres])
     total = np.bincount(carrier, masses, len(own)).astype(np.float64)
     moments = np.stack([np.bincount(carrier, masses * part, len(own)) for part in places.T], axis=1)
     with_mass = total > 0.0

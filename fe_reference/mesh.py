@@ -21,7 +21,7 @@ from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
 from .arrays import Array, Indices, kernel
 from .effects import CURL, PreStrain, RootCompliance
-from .model import FREE, Model, Strip
+from .model import FREE, Model
 from .plate import left_by_clamps, shares
 
 #: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of
@@ -152,15 +152,14 @@ class Elements:
     @classmethod
     def of(cls, model: Model) -> "Elements":
         """Return those of all elements of a model, strip by strip."""
-        chord = np.hstack([np.diff(strip.nodes, axis=0).T for strip in model.strips])
-        many = [len(strip.nodes) - 1 for strip in model.strips]
+        chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
         rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
         return cls(
             chord=chord,
             length=np.hypot(*chord),
-            plate=np.vstack([_plate(model, strip) for strip in model.strips]),
-            roots=np.vstack([_roots(model, strip) for strip in model.strips]),
-            **{name: np.repeat([getattr(s.section, name) for s in model.strips], many) for name in rigid},
+            plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
+            roots=_roots(model),
+            **{name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid},
         )
 
     def table(self, natural: PreStrain) -> Array:
@@ -175,69 +174,43 @@ class Elements:
 
 def strip_basis(model: Model) -> Basis:
     """Return the scikit-fem basis of (u_x, u_y, phi) on all strips; nodes are numbered strip by strip."""
-    arcs, connections, first = [], [], 0
-    for strip in model.strips:
-        arcs.append(strip.arcs)
-        node = first + np.arange(len(strip.nodes) - 1)
-        connections.append(np.array([node, node + 1]))
-        first += len(strip.nodes)
-    mesh = MeshLine(np.concatenate(arcs)[None, :], np.hstack(connections))
+    nodes = np.arange(model.arcs.size).reshape(model.arcs.shape)
+    mesh = MeshLine(model.arcs.reshape(1, -1), np.array([nodes[:, :-1].ravel(), nodes[:, 1:].ravel()]))
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
 
 
 def nodal_shares(model: Model) -> Array:
     """Return the share of their curl that the clamps leave the sections at the nodes (G, P)."""
     if "clamped_width" not in model.effects:
-        return np.ones((len(model.strips), len(model.strips[0].nodes)))
-    return np.array(
-        [left_by_clamps(_ratio(strip), strip.section.poisson_ratio, strip.places) for strip in model.strips]
-    )
+        return np.ones_like(model.arcs)
+    return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
 
 
-def _ratio(strip: Strip) -> float:
-    """Return width over length, 0 of a strip without width."""
-    return (strip.section.width or 0.0) / strip.length
+def _clamped(model: Model, k: int) -> tuple[float, float, Array]:
+    """Return width over length and Poisson's ratio of a strip, and the parts of its length at the nodes."""
+    strip, length = model.strips[k], float(model.lengths[k])
+    return (strip.width or 0.0) / length, strip.poisson_ratio, model.arcs[k] / length
 
 
-def _plate(model: Model, strip: Strip) -> Array:
+def _plate(model: Model, k: int) -> Array:
     """Return what the sections of a strip curl in its elements (E, 4)."""
-    section, rows = strip.section, np.zeros((len(strip.nodes) - 1, 4))
-    if section.width is None or section.thickness is None or not set(CURL) & set(model.effects.names):
+    strip, rows = model.strips[k], np.zeros((model.elements, 4))
+    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects.names):
         return rows
-    nu, width = section.poisson_ratio, section.width
+    nu = strip.poisson_ratio
     rows[:, 0], rows[:, 1:3] = nu**2, 1.0
     if "clamped_width" in model.effects:
-        points = 1 if model.element == "reissner" else 2
-        rows[:, 1:3] = shares(_ratio(strip), nu, strip.places, points)
+        rows[:, 1:3] = shares(*_clamped(model, k), 1 if model.element == "reissner" else 2)
     if "anticlastic" in model.effects:
-        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * width**2 / section.thickness
+        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * strip.width**2 / strip.thickness
     return rows
 
 
-def _roots(model: Model, strip: Strip) -> Array:
-    """Return the compliances of the roots of a strip's elements (E, 2) [rad / (N m)]."""
-    rows, effect = np.zeros((len(strip.nodes) - 1, 2)), model.effects.find(RootCompliance)
-    if effect is not None and strip.section.thickness is not None:
-        compliance = float(effect.root) * strip.section.thickness / strip.section.flexural_rigidity
-        rows[0, 0], rows[-1, 1] = (0.0 if end == FREE else compliance for end in (strip.root, strip.tip))
-    return rows
-
-
-class Attachments:
-    """The K attached ends of a model whose bodies have the reference points (B, 2) [m].
-
-    Attributes:
-        body (K,): index of the carrying body. node (K,): the node it carries.
-        offsets (K, 2): from the reference point of the body at rest [m].
-        ends (E, 2): which of them the elements' ends are, -1 for none.
-    """
-
-    def __init__(self, model: Model, points: Array) -> None:
-        stations = len(model.strips[0].nodes)
-        first = [(g, 0, strip.root) for g, strip in enumerate(model.strips) if strip.root >= 0]
-        last = [(g, 1, strip.tip) for g, strip in enumerate(model.strips) if strip.tip >= 0]
-        strip, end, self.body = np.array([*first, *last], dtype=np.int64).reshape(-1, 3).T.copy()
-        self.node: Indices = strip * stations + end * (stations - 1)
-        self.ends: Indices = np.full((len(model.strips) * (stations - 1), 2), -1)
-        self.ends[strip * (stations - 1) + end * (stations - 2), end] = np.arange(len(self.node))
-        self.offsets: Array = model.rest.reshape(-1, 2)[self.node] - points[self.body]
+def _roots(model: Model) -> Array:
+    """Return the compliances of the roots that the elements' ends are (E, 2) [rad / (N m)]."""
+    rows, effect = np.zeros((len(model.strips), model.elements, 2)), model.effects.find(RootCompliance)
+    for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):
+        if effect is not None and strip.thickness is not None:
+            compliance = effect.root * strip.thickness / strip.flexural_rigidity
+            row[0, 0], row[-1, 1] = np.where(ends == FREE, 0.0, compliance)
+    return rows.reshape(-1, 2)

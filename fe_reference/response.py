@@ -1,11 +1,11 @@
 """States of equilibrium: rates, torque and stiffness along their path, and the stiffness of a body."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from .arrays import Array, kernel
-from .control import Control, Outcome
+from .control import Control, State
 from .effects import DrivenDisplacement
 from .law import Written
 from .matrix import Singular
@@ -16,71 +16,36 @@ from .structure import Evaluation, Structure, Tables, structure_of
 Rates = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class State(Outcome):
-    """An equilibrium, and how it changes along its path.
-
-    Attributes:
-        rate: d y / d p (size,).
-        conjugate, slope: first and second derivative of the total potential along the path [J].
-        torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
-            is not held being free; nan if no turn is watched.
-        inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
-        work: of loads and drives since the first state of the path [J].
-        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
-    """
-
-    rate: Array
-    conjugate: float
-    slope: float
-    torque: float
-    stiffness: float
-    inertia: int
-    work: float = 0.0
-    behind: tuple[tuple[float, Array, Array], ...] = ()
-
-
-def respond(control: Control, found: Outcome) -> State:
-    """Return the state at an equilibrium: one solve for each drive and for the load; raises Singular.
+def respond(control: Control, found: State) -> State:
+    """Return an equilibrium with its response: one solve for each drive and for the load; raises Singular.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
     """
-    y, parameter, balance, factors = found.y, found.parameter, found.balance, found.factors
+    factors, tangent, held = found.factors, found.at.tangent, control.held
     if factors is None:
         raise Singular(found.failure)
-    tangent, held = balance.at.tangent, control.held
     moves = np.zeros((len(held), control.structure.size))
     moves[np.arange(len(held)), held] = 1.0
     moves -= factors.solve(tangent.times(moves))
-    drive, rate = moves @ balance.residual, control.slope @ moves
-    change, first, second = control.rates(y, parameter, balance.load_work)
+    drive, rate = moves @ found.residual, control.slope @ moves
+    change, first, second = control.rates(found.y, found.parameter, found.load_work)
     if change is not None:
         rate -= factors.solve(change)
         second += 2.0 * float(change @ rate)
-    along = tangent.times(rate)
     torque, stiffness = np.nan, np.nan
     if control.watched is not None:
-        if control.is_held[control.watched]:
-            k = int(np.flatnonzero(held == control.watched)[0])
-            torque, move = float(drive[k]), moves[k]
-        else:
-            acts = 0.0 if control.load is None else control.share(parameter) * control.load[control.watched]
-            torque = float(balance.residual[control.watched] + acts)
-            unit = np.zeros(control.structure.size)
-            unit[control.watched] = 1.0
-            move = factors.solve(unit)
-            move /= move[control.watched]
-        left = factors.solve(balance.residual)
-        stiffness = _stiffness_between(control.structure, balance.at, y, move, move, left)
-    return State(
-        **vars(found),
+        k = control.held.tolist().index(control.watched)
+        left = factors.solve(found.residual)
+        torque = float(drive[k])
+        stiffness = _stiffness_between(control.structure, found.at, found.y, moves[k], moves[k], left)
+    return replace(
+        found,
         rate=rate,
         conjugate=first + float(drive @ control.slope),
-        slope=second + float(rate @ along),
+        slope=second + float(rate @ tangent.times(rate)),
         torque=torque,
         stiffness=stiffness,
-        inertia=factors.negative,
     )
 
 

@@ -54,8 +54,9 @@ class StripFields:
         is the mean across the width, to which the stress is equal where the section is held flat or wholly
         free.
         """
-        sections = [strip.section for strip in model.strips]
-        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in sections]).T[:, :, None]
+        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in model.strips]).T[
+            :, :, None
+        ]
         stress: Array = np.abs(self.axial_force) / area
         stress += np.abs(self.bending_moment) * np.sqrt(3.0 / (area * inertia))
         return stress
@@ -112,9 +113,8 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
 
 def _bent(model: Model, moment: Array) -> Array:
     """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
-    sections = [strip.section for strip in model.strips]
-    rigidity = np.array([section.flexural_rigidity for section in sections])[:, None]
-    plate = structure_of(model).elements.plate.reshape(len(sections), -1, 4)[:, :1]
+    rigidity = np.array([strip.flexural_rigidity for strip in model.strips])[:, None]
+    plate = structure_of(model).elements.plate.reshape(len(rigidity), -1, 4)[:, :1]
     if not plate[..., 0].any():
         free: Array = moment / rigidity
         return free

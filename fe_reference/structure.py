@@ -22,7 +22,6 @@ from .law import FORCES, TANGENT, Energies, Given, Written, elements
 from .matrix import Envelope, Symmetric
 from .mesh import (
     RESULTANTS,
-    Attachments,
     Carried,
     Elements,
     Weights,
@@ -32,7 +31,7 @@ from .mesh import (
     gravity_energy,
     strip_basis,
 )
-from .model import GROUND, Model
+from .model import FREE, Model
 
 #: What is known of a structure where all its elements are run through: elements, carried nodes, weights.
 Tables = tuple[Given, Carried, Weights]
@@ -74,19 +73,17 @@ class Structure:
         self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
-        self.strips, self.stations = len(model.strips), len(model.strips[0].nodes)
-        self.attachments = Attachments(model, self.points)
+        self.strips, self.stations = model.arcs.shape
+        self._attach()
         self._number()
-        self.length = max(strip.length for strip in model.strips)
-        rigidity = max(strip.section.flexural_rigidity for strip in model.strips)
+        self.length = float(model.lengths.max())
+        rigidity = max(strip.flexural_rigidity for strip in model.strips)
         self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
         self.scale = np.full(self.size, self.force_unit)
         self.scale[2::3] = self.moment_unit
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
         self.measure = np.full(self.size, 1.0 / self.length)
         self.measure[2::3] = 1.0
-        ends = self.attachments
-        self.carried = (ends.node, ends.body, ends.offsets)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
         self.given = (
             self.shear,
@@ -98,12 +95,22 @@ class Structure:
         nodes = self.strips * self.stations
         self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
 
+    def _attach(self) -> None:
+        """Find the attached nodes (K,), their bodies and their offsets (K, 2) from these bodies' points [m].
+
+        Also which of them the elements' ends are (E, 2), -1 for none.
+        """
+        shape, ends = (self.strips, self.stations - 1, 2), self.model.ends
+        end, strip = np.nonzero(ends.T >= 0)
+        node, body = strip * self.stations + end * (self.stations - 1), ends[strip, end]
+        self.carried = (node, body, self.model.rest.reshape(-1, 2)[node] - self.points[body])
+        self.attached = np.full(shape, -1)
+        self.attached[strip, end * (self.stations - 2), end] = np.arange(len(node))
+
     def _number(self) -> None:
         """Number the reduced coordinates; -1 marks what is clamped."""
-        free = np.ones((self.strips, self.stations), dtype=bool)
-        free[[strip.root == GROUND for strip in self.model.strips], 0] = False
-        free[[strip.tip == GROUND for strip in self.model.strips], -1] = False
-        free.ravel()[self.attachments.node] = False
+        free, (attached, carrier, _) = np.ones((self.strips, self.stations), dtype=bool), self.carried
+        free[:, [0, -1]] = self.model.ends == FREE
         self.free_nodes = np.flatnonzero(free)
         self.first_body = 3 * len(self.free_nodes)
         self.size = self.first_body + 3 * len(self.points)
@@ -111,7 +118,7 @@ class Structure:
         numbers = np.full((free.size, 3), -1, dtype=np.int64)
         numbers[self.free_nodes] = np.arange(self.first_body).reshape(-1, 3)
         bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        numbers[self.attachments.node] = bodies[self.attachments.body]
+        numbers[attached] = bodies[carrier]
         self.numbers = numbers.ravel()[self.basis.element_dofs].T
 
     @cached_property
@@ -129,13 +136,17 @@ class Structure:
         gravity = self.model.effects.find(Gravity)
         if gravity is None:
             return np.zeros((0, 3)), np.zeros((0, 4))
-        g, masses, ends = np.array(gravity.acceleration), self.nodal_masses(), self.attachments
+        g, masses, (attached, carrier, offsets) = (
+            np.array(gravity.acceleration),
+            self.nodal_masses(),
+            self.carried,
+        )
         nodes, bodies = np.zeros((len(masses), 3)), np.zeros((len(self.points), 4))
         nodes[self.free_nodes, :2] = masses[self.free_nodes, None] * g
         own = np.array([body.mass for body in self.model.bodies])
         total, moments = own.copy(), own[:, None] * (self.model.centres - self.points)
-        np.add.at(total, ends.body, masses[ends.node])
-        np.add.at(moments, ends.body, masses[ends.node][:, None] * ends.offsets)
+        np.add.at(total, carrier, masses[attached])
+        np.add.at(moments, carrier, masses[attached][:, None] * offsets)
         heavy = total > 0.0
         bodies[:, :2] = total[:, None] * g
         bodies[heavy, 2:] = moments[heavy] / total[heavy, None]
@@ -225,7 +236,7 @@ class Structure:
 
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
         """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
-        return self.pattern.assembled(matrices, self.attachments.ends, self.carried, y[self.turns])
+        return self.pattern.assembled(matrices, self.attached.reshape(-1, 2), self.carried, y[self.turns])
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""

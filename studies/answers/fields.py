@@ -10,7 +10,6 @@ from studies.answers.models import effects_of, fields_along, mode_bodies
 from studies.answers.quantities import peak, stress_of
 from studies.answers.response import Answered, assembled
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.keys import GROUND
 from studies.cases.mechanism import Strip
 from studies.cases.section import Sectioned
 from studies.errors import BadInput
@@ -228,13 +227,6 @@ def _modes(result: Any, along: dict[str, Array], names: list[str]) -> dict[str, 
 
 def _strips_of(asked: Any) -> tuple[_Part, ...]:
     """Return the strips of a pivot or mechanism of a model, their sections taken as rectangles."""
-    if hasattr(asked, "design"):
-        given = [(strip, strip.root, strip.tip, strip) for strip in asked.design.strips]
-    else:
-        names = {**dict(enumerate(asked.body_names)), -1: GROUND, -2: None}
-        given = [(strip, names[strip.root], names[strip.tip], strip.section) for strip in asked.strips]
-    taken = ("youngs_modulus", "area", "second_moment_of_area")
-    return tuple(
-        _Part(name=strip.name, root=root, tip=tip, **{each: getattr(section, each) for each in taken})
-        for strip, root, tip, section in given
-    )
+    given = getattr(asked, "design", asked).strips
+    taken = ("name", "root", "tip", "youngs_modulus", "area", "second_moment_of_area")
+    return tuple(_Part(**{each: getattr(strip, each) for each in taken}) for strip in given)
