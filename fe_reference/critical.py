@@ -1,5 +1,6 @@
 """Critical points between or beyond the states of a path, and what is said of them in words of design."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 
@@ -133,8 +134,9 @@ def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         return
     if control.load is not None:
         vector = control.share(parameter) * control.load
-        force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
-        yield from (_quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
+        x_force, y_force, turn = (float(vector[control.structure.axis == k].sum()) for k in range(3))
+        sizes = ((math.hypot(x_force, y_force), "N"), (abs(turn), "N m"))
+        yield from (_quantity(size, unit) for size, unit in sizes if size > 0.0)
     if control.watched in control.held[control.slope != 0.0]:
         yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
     yield f"load factor {control.share(parameter):.4g}"
@@ -149,5 +151,5 @@ def _quantity(size: float, unit: str) -> str:
 def _moves(control: Control, mode: Array) -> str:
     """Return what moves in a mode (size,): the strips alone, or the bodies as well."""
     size = np.abs(np.where(control.is_held, 0.0, mode) * control.structure.measure)
-    stand = size[control.structure.first_body :].max(initial=0.0) <= STANDS * size.max()
+    stand = control.structure.bodies(size).max(initial=0.0) <= STANDS * size.max()
     return "the strips buckle" if stand else "the strips give way with the body"

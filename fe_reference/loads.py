@@ -76,8 +76,9 @@ def full_load(structure: Structure, *, time: float | None = None) -> Array | Non
         return None
     vector = np.zeros(structure.size)
     for pull in pulls:
-        free = np.flatnonzero(structure.free_nodes == -1 - pull.target)
-        at = structure.first_body + 3 * pull.target if pull.target >= 0 else 3 * int(free[0])
+        at = structure.first_body + 3 * pull.target
+        if pull.target < 0:
+            at = structure.nodal.tolist().index(3 * (-1 - pull.target))
         vector[at : at + 3] += (1.0 if time is None else factor_of(pull.history, time)) * pull.row[:3]
     return vector
 

@@ -14,6 +14,8 @@ from .model import Model
 from .structure import Evaluation, Structure, Tables, structure_of
 
 Rates = tuple[float, float, float, float]
+#: Turns of the bodies (B,), and two rates of them.
+Turns = tuple[Array, ...]
 
 
 def respond(control: Control, found: State) -> State:
@@ -59,8 +61,10 @@ def _stiffness_between(
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
     written = (structure.work[0], at.ends, at.matrices, structure.work[1])
-    own = _between(structure.tables, u, v, w, rest, written)
-    return float(own) + float(at.curvature[:, 1] @ (one[structure.turns] * other[structure.turns]))
+    carried = tuple(each[structure.turns] for each in (y, one, other))
+    own = float(_between(structure.tables, u, v, w, rest, carried, written))
+    own += float(at.curvature[:, 1] @ (carried[1] * carried[2]))
+    return own + float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
 
 
 @kernel()
@@ -73,7 +77,9 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 
 @kernel()
-def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
+def _between(
+    tables: Tables, u: Array, one: Array, other: Array, left: Array, carried: Turns, written: Written
+) -> float:
     """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
 
     With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
@@ -81,7 +87,11 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    ((_, table, first, _), (attached, _, offsets), _), (force, ends, matrices, _) = tables, written
+    ((_, table, first, _), (attached, carrier, offsets, _), _, _), (force, ends, matrices, _) = (
+        tables,
+        written,
+    )
+    turns, one_turns, other_turns = carried
     total = 0.0
     force[:] = 0.0
     for e in range(len(first)):
@@ -101,9 +111,9 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
         force[i, 0], force[i, 1] = force[i, 0] - pull_x, force[i, 1] - pull_y
         force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
     for k in range(len(attached)):
-        i = attached[k]
-        x, y = turned(u[i, 2], offsets[k, 0], offsets[k, 1])
-        total -= one[i, 2] * other[i, 2] * (x * force[i, 0] + y * force[i, 1])
+        i, b = attached[k], carrier[k]
+        x, y = turned(turns[b], offsets[k, 0], offsets[k, 1])
+        total -= one_turns[b] * other_turns[b] * (x * force[i, 0] + y * force[i, 1])
     return total
 
 
