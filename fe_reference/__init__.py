@@ -21,22 +21,20 @@ from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
 from .loads import DrivenRotation
-from .mechanism import BodyDesign, StripDesign, compliant_mechanism, cross_axis_pivot
-from .model import ELEMENTS, FREE, Body, Model, Section, Strip
+from .mechanism import compliant_mechanism, cross_axis_pivot
+from .model import ELEMENTS, BodyDesign, Model, StripDesign
 from .modes import Modes, natural_frequencies
 from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
 from .solid import SolidStrip
 from .solid_path import SolidPath, solve_solids
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
-from .statics import solve_loads, solve_mechanism, solve_statics
+from .statics import solve_mechanism, solve_statics
 from .trajectory import Trajectory
 
 __all__ = [
     "DEFAULT_EFFECTS",
     "ELEMENTS",
-    "FREE",
-    "Body",
     "BodyDesign",
     "ConvergenceError",
     "CriticalPoint",
@@ -46,12 +44,10 @@ __all__ = [
     "Model",
     "Modes",
     "PlateFactors",
-    "Section",
     "SolidPath",
     "SolidStrip",
     "StaticSolution",
     "Status",
-    "Strip",
     "StripDesign",
     "StripFields",
     "Trajectory",
@@ -59,7 +55,6 @@ __all__ = [
     "cross_axis_pivot",
     "natural_frequencies",
     "plate_factors",
-    "solve_loads",
     "solve_mechanism",
     "solve_motion",
     "solve_release",

@@ -8,7 +8,7 @@ Every effect has its own table, of length zero where the scene does not name it:
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,29 +18,35 @@ from .law import FORCES, MATERIAL, Written, elements
 from .loads import Pull, applied
 from .mass import body_blocks
 from .matrix import Symmetric
-from .mesh import RESULTANTS, body_forces, carry, carry_velocity, gravity_energy, turned
+from .mesh import RESULTANTS, Pair, body_forces, carry, carry_velocity, gravity_energy, spring_forces, turned
 from .structure import Structure, Tables
 
 #: Loads while time passes, as `_load_tables` makes them.
 Histories = tuple[Indices, Array, Indices, Array, Array]
-Pair = tuple[Array, Array]
 #: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
 Acting = tuple[Tables, tuple[Array, Array, Array], Histories, Written, Pair]
 State = tuple[Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Resistance:
-    """What resists a motion at an instant: generalised force (size,) [N, N m], strain energy [J].
+class Instant:
+    """A motion at an instant, and what resists it there.
 
-    Also the energy of the weight [J], the power of the loads and the power lost [W].
+    Attributes:
+        time [s]. y, v, a (size,): coordinates, velocities, accelerations.
+        force (size,): what resists [N, N m]. strain, gravity: energies [J].
+        load_power, loss_power: of the loads, and lost in dampers [W].
     """
 
+    time: float
+    y: Array
+    v: Array
     force: Array
     strain: float
     gravity: float
     load_power: float
     loss_power: float
+    a: Array = field(default_factory=lambda: np.zeros(0))
 
 
 class Actions:
@@ -78,43 +84,48 @@ class Actions:
         rows = [[damping.translation, damping.rotation, *offset] for offset in offsets]
         return np.array(rows).reshape(-1, 4)
 
-    def resist(self, y: Array, v: Array, time: float) -> Resistance:
+    def resist(self, y: Array, v: Array, time: float) -> Instant:
         """Return what resists at coordinates y, velocities v and an instant [s]."""
         s, u = self.structure, self.structure.displacement(y)
-        bodies, rates = (part[s.first_body :].reshape(-1, 3) for part in (y, v))
-        strain, loads, loss = _act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
+        bodies, rates = s.bodies(y), s.bodies(v)
+        strain, power, loss = _act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
         force = s.gathered(self.written[0], self.resultants[0][:, :3])
         gravity = float(gravity_energy(s.tables[2], bodies, u))
-        return Resistance(force=force, strain=strain, gravity=gravity, load_power=loads, loss_power=loss)
+        return Instant(
+            time=time,
+            y=y,
+            v=v,
+            force=force,
+            strain=strain,
+            gravity=gravity,
+            load_power=power,
+            loss_power=loss,
+        )
 
     def damping_matrix(self, y: Array) -> Symmetric:
         """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""
         s, (relaxation, drag, grip) = self.structure, self.dissipative
-        local = np.zeros((len(s.numbers), 6, 6))
+        local = np.zeros((len(s.numbers), 8, 8))
         if len(relaxation):
-            local += relaxation[:, None, None] * s.element_matrices(y, MATERIAL)
+            local[:, :6, :6] += relaxation[:, None, None] * s.element_matrices(y, MATERIAL)
         if len(drag):
             half = 0.5 * self.drag_rate * s.elements.linear_density * s.elements.length
             local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]
         whole = s.reduced_matrix(local, y)
+        s.add_springs(whole, relaxation[0] if len(relaxation) else 0.0)
         if len(grip):
             body_blocks(s, y, grip[:, :2], whole)
         return whole
 
-    def fastest_decay(self, y: Array, lumped: Array, mass: Array, inertia: Array) -> float:
-        """Return a rate [1/s] that no ratio of damping to mass exceeds at y.
+    def fastest_decay(self, material: float, mass: Array, inertia: Array) -> float:
+        """Return a rate [1/s] that no ratio of damping to mass exceeds.
 
         Args:
-            y: coordinates. lumped (6, E): element masses. mass, inertia (B,): of the bodies.
+            material: squared frequency of the strips' strains alone [1/s^2]. mass, inertia (B,): of bodies.
         """
-        (relaxation, drag, grip), rate = self.dissipative, 0.0
+        (relaxation, _, grip), rate = self.dissipative, self.drag_rate
         if len(relaxation):
-            root = np.sqrt(lumped).T
-            material = self.structure.element_matrices(y, MATERIAL)
-            highest = np.linalg.eigvalsh(material / (root[:, :, None] * root[:, None, :]))[:, -1]
-            rate += float(np.max(relaxation * highest))
-        if len(drag):
-            rate += self.drag_rate
+            rate += float(relaxation[0]) * material
         if len(grip):
             turning = grip[:, 1] + grip[:, 0] * np.sum(grip[:, 2:] ** 2, axis=1)
             rate += float(np.max(grip[:, 0] / mass + turning / inertia))
@@ -217,17 +228,21 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
 @inlined()
 def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
-    (given, carried, weights), (relaxation, drag, grip), histories, written, (resultants, pulls) = acting
+    (given, carried, weights, springs), (relaxation, drag, grip), histories, written, (resultants, pulls) = (
+        acting
+    )
     u, v, bodies, bodies_v = state
     (_, _, first, _), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
     strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
     if len(relaxation) or len(drag):
         loss += _viscous_forces(relaxation, first, matrices, v, force) + _drag_forces(drag, v, force)
     body_forces(1.0, bodies, carried, weights, force, resultants)
-    loss += _grip_forces(grip, bodies, bodies_v, resultants)
+    time_of = relaxation[0] if len(relaxation) else 0.0
+    slip, lost = spring_forces(springs, time_of, (bodies, bodies_v), (u, v), force, resultants)
+    loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
     _load_forces(histories, time, bodies, pulls)
     _put_loads(targets, pulls, force, resultants)
-    return strain[0] + strain[1] + strain[2], _load_power(targets, pulls, v, bodies_v), loss
+    return strain[0] + strain[1] + strain[2] + slip, _load_power(targets, pulls, v, bodies_v), loss
 
 
 @kernel()
@@ -249,7 +264,7 @@ def advance(
     bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
     work of loads and drives, exactly that of the scheme, and what the dampers take [J].
     """
-    (_, carried, _), dissipative, histories, written, (resultants, pulls) = acting
+    (_, carried, _, _), dissipative, histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state
     viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
     for n in range(steps):

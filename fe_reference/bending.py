@@ -69,10 +69,8 @@ def _table() -> Array:
 
 #: Handed to the compiled functions, which reach all of an array by its one address.
 CURL = _table()
-#: At most so many Newton steps to the curvature of a moment, and to the turns of an element's roots.
+#: At most so many Newton steps to the curvature of a moment.
 STEPS = 50
-#: A change of a turn [rad] that no moment feels.
-ROUND_OFF = 1e-17
 #: Two Gauss points of an element, whose end turns a, b make the curvature ((6 xi - 4) a + (6 xi - 2) b) / l.
 ROOT_3 = math.sqrt(3.0)
 
@@ -136,44 +134,6 @@ def _slopes(rate: float, one: float, two: float) -> Shares:
     """Return the slopes 11, 12, 22 of the end moments for the tangent rigidities at the two points."""
     both, apart = rate * (two + one), ROOT_3 * rate * (two - one)
     return 2.0 * both - apart, both, 2.0 * both + apart
-
-
-@kernel()
-def rooted_element(
-    curl: Array, row: Array, rate: float, natural: float, first: float, second: float, least: float
-) -> tuple[Bent, float, float]:
-    """Return the same where roots hold the end sections, and how far these turn from the nodes [rad].
-
-    The turns are c M of the end moments M at these turns, and the slopes are condensed.
-
-    Args:
-        row, rate: as above. natural: moment of the natural curvature [N m].
-        first, second: turns of the nodes from the chord [rad].
-        least: Newton step [rad] that need not be made any more: ROUND_OFF for moments, 0 for slopes, which
-            are those before the last step.
-    """
-    c_1, c_2, last, turn_1, turn_2 = row[12], row[13], 0.0, first, second
-    energy, m_1, m_2 = 0.0, 0.0, 0.0  # from the straight element, whose sections curl freely
-    k_11, k_12, k_22 = _slopes(rate, row[8] * (1.0 - row[9]), row[8] * (1.0 - row[10]))
-    for n in range(STEPS):
-        if n > 0:
-            bent = bent_element(curl, row, rate, first - turn_1, second - turn_2)
-            energy, m_1, m_2, k_11, k_12, k_22 = bent
-        r_1, r_2 = c_1 * (m_1 + natural) - turn_1, c_2 * (m_2 - natural) - turn_2
-        a, b, c, d = 1.0 + c_1 * k_11, c_1 * k_12, c_2 * k_12, 1.0 + c_2 * k_22
-        over = 1.0 / (a * d - b * c)
-        step_1, step_2 = (d * r_1 - b * r_2) * over, (a * r_2 - c * r_1) * over
-        turn_1, turn_2, size = turn_1 + step_1, turn_2 + step_2, max(abs(step_1), abs(step_2))
-        # steps shrink with their square: the next one would be size^3 / last^2
-        if n > 0 and not least * last**2 < size**3 < last**3:
-            break
-        last = size
-    # what the last step changes is linear in it to the last digit
-    n_1, n_2 = m_1 - k_11 * step_1 - k_12 * step_2, m_2 - k_12 * step_1 - k_22 * step_2
-    energy -= 0.5 * ((m_1 + n_1) * step_1 + (m_2 + n_2) * step_2)
-    energy += 0.5 * (c_1 * (n_1 + natural) ** 2 + c_2 * (n_2 - natural) ** 2)
-    slopes = (k_11 * d - k_12 * c) * over, k_12 * over, (k_22 * a - k_12 * b) * over
-    return (energy, n_1, n_2, *slopes), turn_1, turn_2
 
 
 @kernel()

@@ -123,7 +123,7 @@ def _errors(found: list[Array], ratios: list[float]) -> Array:
 def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:
     """Return rotations of all bodies (T, B) [rad], and places of them and of free ends (T, P, 2) [m]."""
     poses = np.array([*motion.bodies.values()]).reshape(-1, len(motion.time), 3)[:, ::stride].swapaxes(0, 1)
-    free = [k for k, strip in enumerate(model.strips) if strip.tip == FREE]
+    free = np.flatnonzero(model.ends[:, 1] == FREE)
     return poses[..., 2], np.concatenate((poses[..., :2], motion.shape[::stride, free, -1]), axis=1)
 
 
@@ -132,20 +132,17 @@ def _coarse(model: Model, motion: Trajectory) -> list[_Level]:
 
     There are none of a mesh of few elements.
     """
-    elements = len(model.strips[0].nodes) - 1
+    elements = model.elements
     every = [k for k in range(2, COARSEST + 1) if elements % k == 0 and elements // k >= FEWEST]
     if len(every) < 2:
         return []
     first, second = every[0], next((k for k in every if k >= 2 * every[0]), every[1])
-    levels = [_level(model, _coarser(model, k), float(k), motion) for k in (first, second)]
+    levels = [
+        _level(model, replace(model, elements=elements // k), float(k), motion) for k in (first, second)
+    ]
     if "critical_step_s" not in motion.settings:
         levels.append(replace(levels[0], longest=levels[0].longest / first))
     return levels
-
-
-def _coarser(model: Model, every: int) -> Model:
-    """Return the model on every so many of its nodes."""
-    return replace(model, strips=tuple(replace(strip, nodes=strip.nodes[::every]) for strip in model.strips))
 
 
 def _level(model: Model, other: Model, ratio: float, motion: Trajectory) -> _Level:
@@ -169,7 +166,7 @@ def _remark(model: Model, motion: Trajectory, turns: Array, places: Array, strid
     They are held against the swing: half the range of the rotation, or of the nodes over the longest strip,
     whichever is more.
     """
-    length = max(strip.length for strip in model.strips)
+    length = float(model.lengths.max())
     travel = float(np.ptp(motion.shape, axis=0).max()) / length
     turned = np.ptp(moves(model, motion)[0], axis=0)
     swing = 0.5 * max(float(turned.max(initial=0.0)), travel)

@@ -41,7 +41,7 @@ def confirmed(
     others = [each for each in solved if len(each.states[0]) != len(answer.states[0])]
     other = others[-1] if others else solve(finer(model))
     apart = _apart(answer.critical_points, other.critical_points)
-    elements = [len(each.model.strips[0].nodes) - 1 for each in (answer, other)]
+    elements = [each.model.elements for each in (answer, other)]
     if apart <= SAME and answer.status is other.status and (_whole(answer) or _at_limit(answer)):
         told = f" ({elements[1]} elements have it within {max(apart, LEAST):.0e})"
         return replace(answer, message=answer.message + told if answer.message else "")

@@ -8,14 +8,14 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from .arrays import Array, Flags, Indices
 from .freedom import loose_coordinates
-from .matrix import GRAIN, Factors, Singular
+from .matrix import Factors, Singular
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -29,19 +29,44 @@ LAST = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Balance:
-    """Where the forces stand at coordinates and a parameter.
+class State:
+    """Where the forces stand at coordinates and a parameter, and how an equilibrium changes along its path.
 
     Attributes:
+        y (size,), parameter: coordinates and where.
         residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
             there, whose tangent is d r / d y: loads act at centres and free ends, where they have no
             stiffness. potential: whose gradient is r [J]. load_work: of the full load from rest [J].
+        norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
+        rate: d y / d p (size,).
+        conjugate, slope: first and second derivative of the total potential along the path [J].
+        torque, stiffness: generalised force on the driven turn [N m] and its derivative [N m/rad], all that
+            is not held being free; nan if no turn is driven.
+        work: of loads and drives since the first state of the path [J].
+        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
     """
 
+    y: Array
+    parameter: float
     residual: Array
     at: Evaluation
     potential: float
     load_work: float
+    norms: tuple[float, ...] = (0.0,)
+    failure: str = ""
+    factors: Factors | None = None
+    rate: Array = field(default_factory=lambda: np.zeros(0))
+    conjugate: float = 0.0
+    slope: float = 0.0
+    torque: float = np.nan
+    stiffness: float = np.nan
+    work: float = 0.0
+    behind: tuple[tuple[float, Array, Array], ...] = ()
+
+    @property
+    def inertia(self) -> int:
+        """Number of negative eigenvalues of the tangent on the free coordinates; 0: stable."""
+        return 0 if self.factors is None else self.factors.negative
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,7 +77,7 @@ class Control:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
         span: parameter at both. load (size,): F, or None. shares: of it at both, by default the parameters.
-        watched: coordinate of the turn whose torque and stiffness are reported, or None.
+        watched: coordinate of the driven turn, whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
         props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
     """
@@ -99,7 +124,7 @@ class Control:
         value: Array = (1.0 - part) * self.values[0] + part * self.values[1]
         return value
 
-    def balance(self, y: Array, parameter: float) -> Balance:
+    def balance(self, y: Array, parameter: float) -> State:
         """Return the forces at y and p, by one compiled call."""
         share = parameter if self.settling else 1.0
         here = self.structure.evaluate(y, share)
@@ -108,13 +133,11 @@ class Control:
             work = float(self.load @ y)
             acts = self.share(parameter)
             residual, potential = residual - acts * self.load, potential - acts * work
-        return Balance(residual=residual, at=here, potential=potential, load_work=work)
+        return State(
+            y=y, parameter=parameter, residual=residual, at=here, potential=potential, load_work=work
+        )
 
-    def unbalanced(self, residual: Array) -> float:
-        """Return the largest residual of the free coordinates, forces over EI/L^2, moments over EI/L."""
-        return float(np.abs(residual / self.structure.scale)[self.free].max(initial=0.0))
-
-    def is_round_off(self, balance: Balance) -> bool:
+    def is_round_off(self, balance: State) -> bool:
         """Return whether every residual is below `TOLERANCE`, or below the round-off of its own terms."""
         structure = self.structure
         least = TOLERANCE * structure.scale + structure.round_off(balance.at.tangent)
@@ -129,7 +152,7 @@ class Control:
             return None, 0.0, 0.0
         return -self.growth * self.load, -self.growth * load_work, 0.0
 
-    def factors(self, balance: Balance, grain: float = 0.0) -> Factors:
+    def factors(self, balance: State, grain: float = 0.0) -> Factors:
         """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
         return balance.at.tangent.factors(self.is_held, grain)
 
@@ -137,7 +160,7 @@ class Control:
         """Return what the parameter stands for, with its value."""
         if self.settling:
             return f"{100.0 * parameter:.6g} % of {self.structure.constant_words}"
-        turning = self.watched is not None and self.watched in self.held[self.slope != 0.0]
+        turning = self.watched in self.held[self.slope != 0.0]
         if turning and (self.load is None or self.growth == 0.0):
             at = self.held.tolist().index(self.watched)
             return f"rotation {np.degrees(self.prescribed(parameter)[at]):.6g} deg"
@@ -152,7 +175,6 @@ def spans(
     displacement: Sequence[float | None] | None = None,
     led: int | None = None,
     load: Array | None = None,
-    watched: int | None = None,
     first: bool = False,
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
@@ -179,7 +201,7 @@ def spans(
             values=values[leg : leg + 2],
             span=(parameters[leg], parameters[leg + 1]),
             load=load,
-            watched=watched,
+            watched=None if rotations is None else at + 2,
             shares=(shares[leg], shares[leg + 1]),
             props=props,
         )
@@ -187,66 +209,35 @@ def spans(
     ]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Outcome:
-    """What Newton's method left.
-
-    Attributes:
-        y, parameter: coordinates and where. norms: of the residuals. failure: "" or the reason.
-        balance, factors: at the last iterate; no factors after a failure.
-    """
-
-    y: Array
-    parameter: float
-    norms: tuple[float, ...]
-    failure: str
-    balance: Balance
-    factors: Factors | None = None
-
-
-def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> Outcome:
+def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> State:
     """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
 
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
+    After a failure there are none.
     """
-    y, norms, before = start.copy(), [], np.inf
-    while True:
+    y, norms, before, done = start.copy(), [], np.inf, False
+    while not done:
         y[control.held] = control.prescribed(parameter)
-        for counted in ("residual_evaluations", "tangent_evaluations"):
-            counters[counted] += 1
-        balance, factors = control.balance(y, parameter), None
-        norms.append(control.unbalanced(balance.residual))
+        counters.update(residual_evaluations=1, tangent_evaluations=1)
+        found, factors = control.balance(y, parameter), None
+        norms.append(float(np.abs(found.residual / control.structure.scale)[control.free].max(initial=0.0)))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
         if not failure:
             counters["factorisations"] += 1
             try:
-                factors = control.factors(balance)
+                factors = control.factors(found)
             except Singular as error:
                 failure = str(error)
-        done = factors is None
-        if factors is not None:
-            last = factors.solve(balance.residual)
-            size = float(np.abs(control.structure.measure * last).max(initial=0.0))
-            done = (size <= LAST or size > 0.5 * before) and control.is_round_off(balance)
-            if size <= LAST or not done:
-                y = y - last
-            before = size
-            if not done and len(norms) > ITERATIONS:
-                done, factors, failure = True, None, f"no equilibrium in {ITERATIONS} iterations"
-        if done:
-            return Outcome(
-                y=y,
-                parameter=parameter,
-                norms=tuple(norms),
-                failure=failure,
-                balance=balance,
-                factors=factors,
-            )
-        counters["newton_iterations"] += 1
-
-
-def taken(control: Control, y: Array, parameter: float) -> Outcome:
-    """Return coordinates that are in equilibrium as such; raises Singular."""
-    balance = control.balance(y, parameter)
-    factors = control.factors(balance, GRAIN)
-    return Outcome(y=y, parameter=parameter, norms=(0.0,), failure="", balance=balance, factors=factors)
+        if factors is None:
+            break
+        last = factors.solve(found.residual)
+        size = float(np.abs(control.structure.measure * last).max(initial=0.0))
+        done = (size <= LAST or size > 0.5 * before) and control.is_round_off(found)
+        if size <= LAST or not done:
+            y = y - last
+        before = size
+        if not done and len(norms) > ITERATIONS:
+            done, factors, failure = True, None, f"no equilibrium in {ITERATIONS} iterations"
+        if not done:
+            counters["newton_iterations"] += 1
+    return replace(found, y=y, norms=tuple(norms), failure=failure, factors=factors)

@@ -1,5 +1,6 @@
 """Critical points between or beyond the states of a path, and what is said of them in words of design."""
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 
@@ -7,9 +8,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .arrays import Array, Flags
-from .control import Control, equilibrate
+from .control import Control, State, equilibrate
 from .matrix import Symmetric
-from .response import State, respond
+from .response import respond
 from .solution import CriticalPoint
 
 #: Largest motion of a body over that of the nodes in a mode of the strips alone.
@@ -29,7 +30,7 @@ def critical_point(control: Control, before: State, after: State) -> CriticalPoi
     It is where the line through the eigenvalues nearest to zero has its zero.
     """
     (first, _), (last, mode) = (
-        _critical_mode(state.balance.at.tangent, control.is_held) for state in (before, after)
+        _critical_mode(state.at.tangent, control.is_held) for state in (before, after)
     )
     part = first / (first - last) if first * last < 0.0 else 0.5
     what = _moves(control, mode) if after.inertia > before.inertia else "the strips are stable again"
@@ -60,7 +61,7 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     """
     stiff, soft, least = before.stiffness, after.stiffness, ROUND_OFF * control.structure.moment_unit
     same = before.inertia == after.inertia  # else it may have gone through infinity
-    if control.watched not in control.held or not same or stiff * soft >= 0.0:
+    if control.watched is None or not same or stiff * soft >= 0.0:
         return []
     if min(abs(stiff), abs(soft)) <= least:
         return []
@@ -93,7 +94,7 @@ def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
     if abs(rest) > NEAR:
         return []
-    kind = "turning point" if control.watched in control.held else "limit point"
+    kind = "limit point" if control.watched is None else "turning point"
     what = f"{kind}: {_moves(control, last.rate)}"
     y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
     return [_point(control, kind, y, parameter, last.inertia + 1, what)]
@@ -133,8 +134,9 @@ def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         return
     if control.load is not None:
         vector = control.share(parameter) * control.load
-        force, moment = np.hypot(vector[0::3].sum(), vector[1::3].sum()), abs(vector[2::3].sum())
-        yield from (_quantity(size, unit) for size, unit in ((force, "N"), (moment, "N m")) if size > 0.0)
+        x_force, y_force, turn = (float(vector[control.structure.axis == k].sum()) for k in range(3))
+        sizes = ((math.hypot(x_force, y_force), "N"), (abs(turn), "N m"))
+        yield from (_quantity(size, unit) for size, unit in sizes if size > 0.0)
     if control.watched in control.held[control.slope != 0.0]:
         yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
     yield f"load factor {control.share(parameter):.4g}"
@@ -149,5 +151,5 @@ def _quantity(size: float, unit: str) -> str:
 def _moves(control: Control, mode: Array) -> str:
     """Return what moves in a mode (size,): the strips alone, or the bodies as well."""
     size = np.abs(np.where(control.is_held, 0.0, mode) * control.structure.measure)
-    stand = size[control.structure.first_body :].max(initial=0.0) <= STANDS * size.max()
+    stand = control.structure.bodies(size).max(initial=0.0) <= STANDS * size.max()
     return "the strips buckle" if stand else "the strips give way with the body"

@@ -232,7 +232,7 @@ def _first_frequency(model: Model) -> float:
     kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
     bare = replace(model, effects=Effects.read(kept, {}))
     rigid = len(loose_coordinates(structure_of(bare), ()))
-    clamped = any(GROUND in (strip.root, strip.tip) for strip in model.strips)
+    clamped = (model.ends == GROUND).any()
     found = np.zeros(0)  # of free strips without bodies
     if clamped or model.bodies:
         found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency

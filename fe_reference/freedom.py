@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .arrays import Array, Indices
 from .errors import InvalidParameter
-from .model import GROUND, Model
+from .model import FREE, GROUND, Model
 from .structure import Structure
 
 #: Largest part of a row of unit size that is round-off.
@@ -59,10 +59,8 @@ def require_balance(structure: Structure, props: Indices, residual: Array, load:
 def _parts(model: Model) -> list[Indices]:
     """Return the bodies of each part that hangs together by strips but not with the ground."""
     count = len(model.bodies)
-    ends = [(strip.root, strip.tip) for strip in model.strips]
-    joined = [[count if end == GROUND else end for end in pair] for pair in ends if min(pair) >= GROUND]
-    joined = [pair for pair in joined if min(pair) >= 0]
-    rows, columns = np.array(joined, dtype=np.int64).reshape(-1, 2).T
+    joined = np.where(model.ends == GROUND, count, model.ends)
+    rows, columns = joined[(joined != FREE).all(axis=1)].T
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
     label = connected_components(graph, directed=False)[1]
     loose = sorted(set(label[:count].tolist()) - {int(label[count])})

@@ -24,14 +24,9 @@ e0, k0: natural strain and curvature, of which a share may act. A test holds bot
 **Sections that do not curl freely** have the energy of `bending` in place of EI kappa^2 / 2: at the one point
 of the shear-deformable element, and at two Gauss points of the other, whose curvature is linear.
 
-**Roots that give way**: a rotational spring of compliance c between an end's section, turned by psi, and its
-node, turned by phi. The energy is the least over psi of that of the element plus (psi - phi)^2 / (2 c), so
-that the node keeps the one turn it shares with its body and the tangent is the condensed one. The springs'
-energy counts as that of bending, and dampers of the material's strains act in the roots as well.
-
 A row of the table of elements is
 
-    X, Y, l0, EA, EI, kGA, e0, k0, D (EI: it curls freely), nu^2 g at two points, reach [m], c at both ends
+    X, Y, l0, EA, EI, kGA, e0, k0, D (EI: it curls freely), nu^2 g at two points, reach [m]
 
 Sources: M. A. Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1 (1991), ch. 7;
 E. Reissner, J. Appl. Math. Phys. (ZAMP) 23 (1972) 795-804; J. C. Simo, L. Vu-Quoc, Comput. Methods Appl.
@@ -41,7 +36,7 @@ Mech. Eng. 58 (1986) 79-116.
 import math
 
 from .arrays import Array, Indices, inlined, kernel
-from .bending import ROUND_OFF, STEPS, bent_element, rooted_element, section
+from .bending import bent_element, section
 
 Energies = tuple[float, float, float]
 #: The step of the displacement over an element [m], and the turns of its end sections [rad].
@@ -51,8 +46,6 @@ Given = tuple[bool, Array, Indices, Array]
 Written = tuple[Array, Array, Array, Array]
 #: What is asked of the law: forces, with the tangent, or with the part of it by the change of strains alone.
 FORCES, TANGENT, MATERIAL = 0, 1, 2
-#: A Newton step for the turns of roots [rad] below which the next one is round-off.
-QUADRATIC = 1e-9
 
 
 @inlined()
@@ -84,12 +77,7 @@ def _moments(given: Given, share: float, asked: int, ends: Array, matrices: Arra
     for e in range(len(table)):
         row, f, bend = table[e], ends[e], share * table[e, 7]
         rate, natural, first, second, apart = 1.0 / row[2], row[4] * bend, f[2], f[3], f[4]
-        if row[12] != 0.0 or row[13] != 0.0:
-            least = ROUND_OFF if asked == FORCES else 0.0
-            bent, slip_1, slip_2 = rooted_element(curl, row, rate, natural, first, second, least)
-            bending, moment_1, moment_2, k_11, k_12, k_22 = bent
-            first, second, apart = first - slip_1, second - slip_2, apart - slip_2 + slip_1
-        elif row[8] == row[4]:
+        if row[8] == row[4]:
             stiff = rate * row[4]
             moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
             bending = 0.5 * (moment_1 * first + moment_2 * second)
@@ -188,46 +176,6 @@ def _reissner(
     return bent, unit * axial * strain, unit * shear * sliding
 
 
-@kernel()
-def _rooted(curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array) -> Energies:
-    """Write the same for a shear-deformable element whose end sections are held to its nodes by roots."""
-    x, y, turn_1, turn_2 = moved
-    c_1, c_2, last, psi_1, psi_2 = row[12], row[13], math.inf, turn_1, turn_2
-    # psi - phi + c M(psi) = 0
-    for _ in range(STEPS):
-        _reissner(curl, row, share, (x, y, psi_1, psi_2), TANGENT, f, h)
-        r_1, r_2 = psi_1 - turn_1 + c_1 * f[2], psi_2 - turn_2 + c_2 * f[3]
-        a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
-        whole = a * d - b * c
-        step_1, step_2 = (d * r_1 - b * r_2) / whole, (a * r_2 - c * r_1) / whole
-        psi_1, psi_2, size = psi_1 - step_1, psi_2 - step_2, max(abs(step_1), abs(step_2))
-        if not QUADRATIC < size < last:
-            break
-        last = size
-    parts = _reissner(curl, row, share, (x, y, psi_1, psi_2), asked, f, h)
-    if asked != FORCES:
-        _condense(c_1, c_2, h)
-    return parts[0] + 0.5 * (c_1 * f[2] * f[2] + c_2 * f[3] * f[3]), parts[1], parts[2]
-
-
-@kernel()
-def _condense(c_1: float, c_2: float, h: Array) -> None:
-    """Condense the turns of the sections out of the tangent (4, 4), those of the nodes take their place.
-
-    With the roots' compliances C and the parts H (turns) and B (step, turns) of the tangent, B goes to B S
-    and H to H S, and B S C B^T is taken from the rest, S = (1 + C H)^-1.
-    """
-    a, b, c, d = 1.0 + c_1 * h[2, 2], c_1 * h[2, 3], c_2 * h[2, 3], 1.0 + c_2 * h[3, 3]
-    whole = a * d - b * c
-    p_1, p_2, q_1, q_2, k = h[0, 2], h[0, 3], h[1, 2], h[1, 3], h[2, 3]
-    h[0, 2], h[0, 3] = (p_1 * d - p_2 * c) / whole, (p_2 * a - p_1 * b) / whole
-    h[1, 2], h[1, 3] = (q_1 * d - q_2 * c) / whole, (q_2 * a - q_1 * b) / whole
-    h[2, 2], h[2, 3], h[3, 3] = (h[2, 2] * d - k * c) / whole, k / whole, (h[3, 3] * a - k * b) / whole
-    h[0, 0] -= h[0, 2] * c_1 * p_1 + h[0, 3] * c_2 * p_2
-    h[0, 1] -= h[0, 2] * c_1 * q_1 + h[0, 3] * c_2 * q_2
-    h[1, 1] -= h[1, 2] * c_1 * q_1 + h[1, 3] * c_2 * q_2
-
-
 @inlined()
 def _sheared(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
     """Write ends and tangents of all shear-deformable elements; return their energies."""
@@ -237,10 +185,7 @@ def _sheared(given: Given, share: float, asked: int, u: Array, written: Written)
         i, f = first[e], ends[e]
         j = i + 1
         moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
-        if table[e, 12] != 0.0 or table[e, 13] != 0.0:
-            parts = _rooted(curl, table[e], share, moved, asked, f, h)
-        else:
-            parts = _reissner(curl, table[e], share, moved, asked, f, h)
+        parts = _reissner(curl, table[e], share, moved, asked, f, h)
         bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
         if asked != FORCES:
             _spread(h, matrices[e])
@@ -252,7 +197,7 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
     """Evaluate all elements at once.
 
     Args:
-        given: whether they are Reissner's, the table (E, 14), first nodes (E,); the second is the next one;
+        given: whether they are Reissner's, the table (E, 12), first nodes (E,); the second is the next one;
             CURL.
         share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
         u (nodes, 3): displacements and turns.

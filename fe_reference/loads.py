@@ -66,22 +66,19 @@ def _on_body(
     return Pull(target=k, row=np.array([*force, moment, *offset]), history=history)
 
 
-def full_load(
-    structure: Structure, *, more: tuple[Sequence[float], float] | None = None, time: float | None = None
-) -> Array | None:
+def full_load(structure: Structure, *, time: float | None = None) -> Array | None:
     """Return the generalised force of the named loads (size,), or None if there are none.
 
     It is that of a structure about the centres of its bodies and constant: the loads act at centres and free
-    ends, where they have no arm that turns. They act in full, or as their histories are at an instant [s].
-    more: a force (2,) [N] and a moment [N m] on the only body beside them.
-    """
-    pulls = [*applied(structure), *([] if more is None else [_on_body(structure, None, *more)])]
+    ends, where they have no arm that turns. They act in full, or as their histories are at an instant [s]."""
+    pulls = applied(structure)
     if not pulls:
         return None
     vector = np.zeros(structure.size)
     for pull in pulls:
-        free = np.flatnonzero(structure.free_nodes == -1 - pull.target)
-        at = structure.first_body + 3 * pull.target if pull.target >= 0 else 3 * int(free[0])
+        at = structure.first_body + 3 * pull.target
+        if pull.target < 0:
+            at = structure.nodal.tolist().index(3 * (-1 - pull.target))
         vector[at : at + 3] += (1.0 if time is None else factor_of(pull.history, time)) * pull.row[:3]
     return vector
 

@@ -13,8 +13,7 @@ rotary inertia of the sections has rho I l / 2 in its place, with either element
 
 Consistent element masses: cubic bending and linear stretching in the frame of the chord (corotational),
 linear fields with rotary inertia (Reissner). The rotary inertia of the sections, if it is named, is added to
-the first with the slopes of the same cubics. An end whose root gives way counts as turned like its body: an
-error of second order in the element length.
+the first with the slopes of the same cubics.
 
 Strips without inertia and bodies without inertia have none of this, and none of the attached masses.
 
@@ -84,19 +83,21 @@ def _own_inertia(structure: Structure) -> Array:
 
 def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
-    ends, own = structure.attachments, _own_inertia(structure)
-    nodes = lumped_nodes(structure)[ends.node]
+    (attached, carried, offsets, rigid), own = structure.carried, _own_inertia(structure)
+    nodes = lumped_nodes(structure)[attached]
     centres = structure.model.centres
-    carrier = np.append(ends.body, np.arange(len(own)))
+    carrier = np.append(carried, np.arange(len(own)))
     masses = np.append(nodes[:, 0], own[:, 0])
-    places = np.vstack([ends.offsets + structure.points[ends.body], centres])
+    places = np.vstack([offsets + structure.points[carried], centres])
     total = np.bincount(carrier, masses, len(own)).astype(np.float64)
     moments = np.stack([np.bincount(carrier, masses * part, len(own)) for part in places.T], axis=1)
     with_mass = total > 0.0
     centre = centres.copy()
     centre[with_mass] = moments[with_mass] / total[with_mass, None]
     spread = masses * np.sum((places - centre[carrier]) ** 2, axis=1)
-    inertia = own[:, 1] + np.bincount(carrier, spread + np.append(nodes[:, 2], 0.0 * own[:, 1]), len(own))
+    inertia = own[:, 1] + np.bincount(
+        carrier, spread + np.append(nodes[:, 2] * rigid, 0.0 * own[:, 1]), len(own)
+    )
     return RigidBodies(mass=total, centre=centre, moment_of_inertia=inertia)
 
 
@@ -137,7 +138,7 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
         masses = _linear_elements(structure)
     else:
         masses = _cubic_elements(structure, y)
-    whole = structure.reduced_matrix(masses.transpose(2, 0, 1), y)
+    whole = structure.reduced_matrix(np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1), y)
     body_blocks(structure, y, _own_inertia(structure), whole)
     return whole
 

@@ -33,25 +33,28 @@ class Singular(ArithmeticError):
 def _assemble(
     matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
 ) -> None:
-    """Add element matrices (E, 6, 6) to the entries of a matrix; the ends on bodies are reduced in place.
+    """Add element matrices (E, 8, 8) to the entries of a matrix.
+
+    What the turns of bodies at the ends carry comes into the last two rows and columns, which are zero.
 
     Args:
         ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies.
-        places (E, 6, 6): of the entries in data, or -1.
+        places (E, 8, 8): of the entries in data, or -1.
     """
-    _, carrier, offsets = carried
+    _, carrier, offsets, _ = carried
     for e in range(len(matrices)):
-        matrix = matrices[e]
+        matrix, many = matrices[e], 6
         for end in range(2):
-            k, row = ends[e, end], 3 * end
+            k, row, own = ends[e, end], 3 * end, 6 + end
             if k >= 0:
+                many = 8
                 x, y = turned(turns[carrier[k]], offsets[k, 0], offsets[k, 1])
-                for j in range(6):
-                    matrix[row + 2, j] += x * matrix[row + 1, j] - y * matrix[row, j]
-                for j in range(6):
-                    matrix[j, row + 2] += x * matrix[j, row + 1] - y * matrix[j, row]
-        for i in range(6):
-            for j in range(6):
+                for j in range(8):
+                    matrix[own, j] = x * matrix[row + 1, j] - y * matrix[row, j]
+                for j in range(8):
+                    matrix[j, own] = x * matrix[j, row + 1] - y * matrix[j, row]
+        for i in range(many):
+            for j in range(many):
                 if places[e, i, j] >= 0:
                     data[places[e, i, j]] += matrix[i, j]
 
@@ -126,19 +129,19 @@ class Envelope:
 
     Attributes:
         size: of the matrices.
-        places (E, 6, 6), blocks (B, 3, 3), diagonal (size,): of the entries, -1 for none.
+        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), diagonal (size,): of the entries, -1 for none.
     """
 
-    def __init__(self, numbers: Indices, bodies: Indices, size: int) -> None:
-        """Take the coordinates of elements (E, 6), -1 where they are clamped, and of bodies (B, 3)."""
-        every, pairs = np.arange(size), [_pairs(numbers), _pairs(bodies)]
+    def __init__(self, numbers: Indices, bodies: Indices, springs: Indices, size: int) -> None:
+        """Take the coordinates of elements (E, 8), -1 for none, of bodies (B, 3) and of roots (R, 2)."""
+        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs)]
         indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
         indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
         summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
         summed.sort_indices()
         self.size, self.starts, self.rows = size, summed.indptr, summed.indices
         keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
-        self.places, self.blocks = (
+        self.places, self.blocks, self.springs = (
             np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
         )
         self.diagonal = np.searchsorted(keys, every * (size + 1))
@@ -150,9 +153,9 @@ class Envelope:
         return Symmetric(self, np.zeros(len(self.rows)))
 
     def assembled(self, matrices: Array, ends: Indices, carried: Carried, turns: Array) -> "Symmetric":
-        """Return the sum of element matrices (E, 6, 6), the ends on bodies reduced: see `_assemble`."""
+        """Return the sum of element matrices (E, 8, 8), the ends on bodies reduced: see `_assemble`."""
         whole = self.zero()
-        _assemble(matrices.copy(), ends, carried, turns, self.places, whole.data)
+        _assemble(matrices, ends, carried, turns, self.places, whole.data)
         return whole
 
 

@@ -10,7 +10,8 @@ An end at the offset b from the reference point of its body follows without pena
 
 with displacement d of that point and turn theta of the body. Forces are reduced by the transpose of the
 derivative P of the map; the tangent is P^T K P plus the curvature of the map, -(R b).f on the diagonal entry
-of theta, with f the force of the element on the end.
+of theta, with f the force of the element on the end. An end whose root gives way has a turn phi of its own,
+and a spring between it and theta.
 """
 
 import math
@@ -19,20 +20,24 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .arrays import Array, Indices, kernel
+from .arrays import Array, Flags, Indices, kernel
 from .effects import CURL, PreStrain, RootCompliance
-from .model import FREE, Model, Strip
+from .model import FREE, Model
 from .plate import left_by_clamps, shares
 
 #: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of
 #: the weight adds to the stiffness of its turn [N m].
 RESULTANTS = 5
 
-#: Attached nodes (K,), the bodies that carry them, and their offsets (K, 2) from these bodies' points.
-Carried = tuple[Indices, Indices, Array]
+#: Attached nodes (K,), the bodies that carry them, their offsets (K, 2) from these bodies' points, and
+#: whether they turn with the bodies.
+Carried = tuple[Indices, Indices, Array, Flags]
+#: Nodes (R,) with roots that give way, their bodies, -1 for ground, and the stiffness of the roots [N m].
+Springs = tuple[Indices, Indices, Array]
 #: Weight of nodes (nodes, 3) and bodies (B, 4): force x, y [N], and the offset of its point from the body's
 #: [m].
 Weights = tuple[Array, Array]
+Pair = tuple[Array, Array]
 
 
 @kernel()
@@ -52,23 +57,26 @@ def swept(angle: float, x: float, y: float) -> tuple[float, float]:
 @kernel()
 def carry(bodies: Array, carried: Carried, u: Array) -> None:
     """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
-    attached, carrier, offsets = carried
+    attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
         x, y = swept(bodies[b, 2], offsets[k, 0], offsets[k, 1])
-        u[i, 0], u[i, 1], u[i, 2] = bodies[b, 0] + x, bodies[b, 1] + y, bodies[b, 2]
+        u[i, 0], u[i, 1] = bodies[b, 0] + x, bodies[b, 1] + y
+        if rigid[k]:
+            u[i, 2] = bodies[b, 2]
 
 
 @kernel()
 def carry_velocity(bodies: Array, bodies_v: Array, carried: Carried, v: Array) -> None:
     """Write the velocities of the attached nodes."""
-    attached, carrier, offsets = carried
+    attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
         x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
         v[i, 0] = bodies_v[b, 0] - bodies_v[b, 2] * y
         v[i, 1] = bodies_v[b, 1] + bodies_v[b, 2] * x
-        v[i, 2] = bodies_v[b, 2]
+        if rigid[k]:
+            v[i, 2] = bodies_v[b, 2]
 
 
 @kernel()
@@ -79,7 +87,7 @@ def body_forces(
 
     A share of the weight of nodes and bodies is taken from the forces that resist.
     """
-    attached, carrier, offsets = carried
+    attached, carrier, offsets, rigid = carried
     for b in range(len(out)):
         for k in range(RESULTANTS):
             out[b, k] = 0.0
@@ -88,7 +96,9 @@ def body_forces(
         x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
         out[b, 0] += force[i, 0]
         out[b, 1] += force[i, 1]
-        out[b, 2] += force[i, 2] + x * force[i, 1] - y * force[i, 0]
+        out[b, 2] += x * force[i, 1] - y * force[i, 0]
+        if rigid[k]:
+            out[b, 2] += force[i, 2]
         out[b, 3] -= x * force[i, 0] + y * force[i, 1]
     _put_weight(share, weights, bodies, force, out)
 
@@ -121,6 +131,31 @@ def gravity_energy(weights: Weights, bodies: Array, u: Array) -> float:
     return energy
 
 
+@kernel()
+def spring_forces(
+    springs: Springs, relaxation: float, bodies: Pair, nodes: Pair, force: Array, out: Array
+) -> tuple[float, float]:
+    """Add the moments of roots between nodes and bodies; return their energy [J] and the power lost [W].
+
+    Args:
+        relaxation: time of the material [s]. bodies (B, 3), nodes (N, 3): displacements, and their rates.
+    """
+    (node, body, stiffness), (d, d_rate), (u, v), energy, loss = springs, bodies, nodes, 0.0, 0.0
+    for k in range(len(node)):
+        i, b = node[k], body[k]
+        turn, rate = u[i, 2], relaxation * v[i, 2]
+        if b >= 0:
+            turn, rate = turn - d[b, 2], rate - relaxation * d_rate[b, 2]
+        moment = stiffness[k] * (turn + rate)
+        force[i, 2] += moment
+        if b >= 0:
+            out[b, 2] -= moment
+        energy += 0.5 * stiffness[k] * turn * turn
+        if relaxation > 0.0:
+            loss += stiffness[k] * rate * rate / relaxation
+    return energy, loss
+
+
 #: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
 
@@ -136,7 +171,6 @@ class Elements:
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,).
         plate (E, 4): nu^2 of sections that do not curl freely, else 0; the share of their curl that clamps
         leave at two points; the reach [m] of anticlastic bending, as in `bending`.
-        roots (E, 2): compliances of the roots that its ends are [rad / (N m)].
     """
 
     chord: Array
@@ -147,97 +181,67 @@ class Elements:
     linear_density: Array
     rotary_density: Array
     plate: Array
-    roots: Array
 
     @classmethod
     def of(cls, model: Model) -> "Elements":
         """Return those of all elements of a model, strip by strip."""
-        chord = np.hstack([np.diff(strip.nodes, axis=0).T for strip in model.strips])
-        many = [len(strip.nodes) - 1 for strip in model.strips]
+        chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
         rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
         return cls(
             chord=chord,
             length=np.hypot(*chord),
-            plate=np.vstack([_plate(model, strip) for strip in model.strips]),
-            roots=np.vstack([_roots(model, strip) for strip in model.strips]),
-            **{name: np.repeat([getattr(s.section, name) for s in model.strips], many) for name in rigid},
+            plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
+            **{name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid},
         )
 
     def table(self, natural: PreStrain) -> Array:
-        """Return the rows of `law`, (E, 14)."""
+        """Return the rows of `law`, (E, 12)."""
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
         known = np.transpose([*self.chord, self.length, *rigidities, *own])
         square, shares = self.plate[:, :1], self.plate[:, 1:3]
         flat = self.flexural_rigidity[:, None] / (1.0 - square)
-        return np.hstack([known, flat, square * shares, self.plate[:, 3:], self.roots])
+        return np.hstack([known, flat, square * shares, self.plate[:, 3:]])
 
 
 def strip_basis(model: Model) -> Basis:
     """Return the scikit-fem basis of (u_x, u_y, phi) on all strips; nodes are numbered strip by strip."""
-    arcs, connections, first = [], [], 0
-    for strip in model.strips:
-        arcs.append(strip.arcs)
-        node = first + np.arange(len(strip.nodes) - 1)
-        connections.append(np.array([node, node + 1]))
-        first += len(strip.nodes)
-    mesh = MeshLine(np.concatenate(arcs)[None, :], np.hstack(connections))
+    nodes = np.arange(model.arcs.size).reshape(model.arcs.shape)
+    mesh = MeshLine(model.arcs.reshape(1, -1), np.array([nodes[:, :-1].ravel(), nodes[:, 1:].ravel()]))
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
 
 
 def nodal_shares(model: Model) -> Array:
     """Return the share of their curl that the clamps leave the sections at the nodes (G, P)."""
     if "clamped_width" not in model.effects:
-        return np.ones((len(model.strips), len(model.strips[0].nodes)))
-    return np.array(
-        [left_by_clamps(_ratio(strip), strip.section.poisson_ratio, strip.places) for strip in model.strips]
-    )
+        return np.ones_like(model.arcs)
+    return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
 
 
-def _ratio(strip: Strip) -> float:
-    """Return width over length, 0 of a strip without width."""
-    return (strip.section.width or 0.0) / strip.length
+def _clamped(model: Model, k: int) -> tuple[float, float, Array]:
+    """Return width over length and Poisson's ratio of a strip, and the parts of its length at the nodes."""
+    strip, length = model.strips[k], float(model.lengths[k])
+    return (strip.width or 0.0) / length, strip.poisson_ratio, model.arcs[k] / length
 
 
-def _plate(model: Model, strip: Strip) -> Array:
+def _plate(model: Model, k: int) -> Array:
     """Return what the sections of a strip curl in its elements (E, 4)."""
-    section, rows = strip.section, np.zeros((len(strip.nodes) - 1, 4))
-    if section.width is None or section.thickness is None or not set(CURL) & set(model.effects.names):
+    strip, rows = model.strips[k], np.zeros((model.elements, 4))
+    if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects.names):
         return rows
-    nu, width = section.poisson_ratio, section.width
+    nu = strip.poisson_ratio
     rows[:, 0], rows[:, 1:3] = nu**2, 1.0
     if "clamped_width" in model.effects:
-        points = 1 if model.element == "reissner" else 2
-        rows[:, 1:3] = shares(_ratio(strip), nu, strip.places, points)
+        rows[:, 1:3] = shares(*_clamped(model, k), 1 if model.element == "reissner" else 2)
     if "anticlastic" in model.effects:
-        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * width**2 / section.thickness
+        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * strip.width**2 / strip.thickness
     return rows
 
 
-def _roots(model: Model, strip: Strip) -> Array:
-    """Return the compliances of the roots of a strip's elements (E, 2) [rad / (N m)]."""
-    rows, effect = np.zeros((len(strip.nodes) - 1, 2)), model.effects.find(RootCompliance)
-    if effect is not None and strip.section.thickness is not None:
-        compliance = float(effect.root) * strip.section.thickness / strip.section.flexural_rigidity
-        rows[0, 0], rows[-1, 1] = (0.0 if end == FREE else compliance for end in (strip.root, strip.tip))
+def root_stiffness(model: Model) -> Array:
+    """Return the stiffness of the roots of the strips (G, 2) [N m], inf where they do not give way."""
+    rows, effect = np.full((len(model.strips), 2), np.inf), model.effects.find(RootCompliance)
+    for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):
+        if effect is not None and effect.root and strip.thickness is not None:
+            row[ends != FREE] = strip.flexural_rigidity / (effect.root * strip.thickness)
     return rows
-
-
-class Attachments:
-    """The K attached ends of a model whose bodies have the reference points (B, 2) [m].
-
-    Attributes:
-        body (K,): index of the carrying body. node (K,): the node it carries.
-        offsets (K, 2): from the reference point of the body at rest [m].
-        ends (E, 2): which of them the elements' ends are, -1 for none.
-    """
-
-    def __init__(self, model: Model, points: Array) -> None:
-        stations = len(model.strips[0].nodes)
-        first = [(g, 0, strip.root) for g, strip in enumerate(model.strips) if strip.root >= 0]
-        last = [(g, 1, strip.tip) for g, strip in enumerate(model.strips) if strip.tip >= 0]
-        strip, end, self.body = np.array([*first, *last], dtype=np.int64).reshape(-1, 3).T.copy()
-        self.node: Indices = strip * stations + end * (stations - 1)
-        self.ends: Indices = np.full((len(model.strips) * (stations - 1), 2), -1)
-        self.ends[strip * (stations - 1) + end * (stations - 2), end] = np.arange(len(self.node))
-        self.offsets: Array = model.rest.reshape(-1, 2)[self.node] - points[self.body]

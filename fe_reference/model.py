@@ -1,16 +1,18 @@
-"""What a finite-element model is made of: sections, strips of two-node beam elements, and rigid bodies.
+"""What a finite-element model is made of: strips of two-node beam elements, rigid bodies, and effects.
 
 Each end of a strip is clamped to ground, carried by a body, or free. The parameters are plain SI numbers and
 radians.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, Indices
 from .effects import (
     CURL,
     SIDES,
@@ -21,9 +23,23 @@ from .effects import (
     PreStrain,
     TipForce,
 )
-from .errors import Checked, InvalidParameter, choice, not_negative, pair, positive, require_kind, within
+from .errors import (
+    Checked,
+    InvalidParameter,
+    Pair,
+    choice,
+    count,
+    finite,
+    not_negative,
+    pair,
+    positive,
+    require_kind,
+    within,
+)
 
 ELEMENTS = ("corotational", "reissner")
+#: Name of what does not move.
+FIXED = "ground"
 #: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
 GROUND, FREE = -1, -2
 #: Area and second moment of a section that is told by its sides.
@@ -39,8 +55,8 @@ def rotation_matrix(angle: float) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section(Checked):
-    """Cross-section and material of a strip: a linear elastic, homogeneous beam section.
+class StripDesign(Checked):
+    """A strip: its axis at rest, what its ends are on, and a linear elastic, homogeneous beam section.
 
     Symbols: A [m^2], I [m^4], E [Pa], nu [1], rho [kg/m^3], shear factor k [1].
     Rigidities: EA [N], EI [N m^2], k G A [N] with G = E / (2 (1 + nu)); linear density mu = rho A [kg/m].
@@ -49,8 +65,19 @@ class Section(Checked):
     A rectangle may be told by its sides, the width b [m] and the thickness t in the plane of bending [m],
     which effects of the curl across the width need: then A = b t and I = b t^3 / 12 where they are left out;
     where they are given they hold, and must be those of the sides to ROUNDING.
+
+    Attributes:
+        name: what it is called. start, end: of its axis at rest [m].
+        root, tip: "ground" or the name of the body that its start and its end are on; None if it is free.
+        rise: sagitta of the circular arc it is at rest [m], to the left of start to end; 0: straight.
     """
 
+    name: str
+    start: Annotated[Pair | Sequence[float], pair, "m"]
+    end: Annotated[Pair | Sequence[float], pair, "m"]
+    root: str | None = FIXED
+    tip: str | None
+    rise: Annotated[float, finite, "m"] = 0.0
     area: Annotated[float, positive, "m^2"] = NOT_GIVEN
     second_moment_of_area: Annotated[float, positive, "m^4"] = NOT_GIVEN
     youngs_modulus: Annotated[float, positive, "Pa"]
@@ -105,58 +132,30 @@ class Section(Checked):
         """Rotary inertia of the section per unit reference length, rho I [kg m]."""
         return self.density * self.second_moment_of_area
 
+    def axis(self, elements: int) -> Array:
+        """Return the nodes (P, 2) [m] on the chord or, at equal distances, on the arc over it.
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Strip:
-    """A strip as a chain of two-node elements from its root to its tip.
-
-    Args:
-        section: cross-section and material, the same along the strip.
-        nodes: reference positions (P, 2) [m], root first. The chain may turn from element to element:
-            every element keeps its own reference angle, so that a curved strip is stress-free as well.
-        root, tip: what the first and the last node are on: the index of a body, GROUND (clamped) or FREE.
-        name: what it is called.
-    """
-
-    section: Section
-    nodes: Array
-    root: int = GROUND
-    tip: int = 0
-    name: str = "strip"
-
-    def __post_init__(self) -> None:
-        nodes = np.array(self.nodes, dtype=float)
-        if nodes.ndim != 2 or nodes.shape[0] < 2 or nodes.shape[1] != 2 or not np.isfinite(nodes).all():
-            raise InvalidParameter(
-                "nodes", np.shape(self.nodes), "finite positions of shape (2 or more, 2) [m]"
-            )
-        if not np.all(np.linalg.norm(np.diff(nodes, axis=0), axis=1) > 0.0):
-            raise InvalidParameter("nodes", "coincident neighbours", "elements of a length above 0 [m]")
-        object.__setattr__(self, "nodes", nodes)
-
-    @property
-    def arcs(self) -> Array:
-        """Arc lengths at rest of the nodes (P,) [m]."""
-        return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)))
-
-    @property
-    def length(self) -> float:
-        """Reference length [m]."""
-        return float(np.linalg.norm(np.diff(self.nodes, axis=0), axis=1).sum())
-
-    @property
-    def places(self) -> Array:
-        """Parts of the length at which the nodes are (P,), from 0 to 1."""
-        return self.arcs / self.length
-
-    @property
-    def straight(self) -> bool:
-        """Whether it is straight at rest, to round-off."""
-        return self.length <= (1.0 + 1e-12) * float(np.linalg.norm(self.nodes[-1] - self.nodes[0]))
+        An arc of rise h over a chord c has the radius (c^2/4 + h^2) / (2 h) and the half angle
+        2 atan(2 h / c). Each element keeps its own reference angle, so that an arc is stress-free as well.
+        """
+        start, end = np.array(self.start), np.array(self.end)
+        chord, fraction = end - start, np.linspace(0.0, 1.0, elements + 1)
+        if self.rise == 0.0:
+            straight: Array = start + fraction[:, None] * chord
+            return straight
+        half = 2.0 * np.arctan2(2.0 * self.rise, float(np.hypot(*chord)))
+        angle = half * (2.0 * fraction - 1.0)
+        # along and across the chord as parts of it; a sine of half the angle keeps flat arcs free of
+        # cancellation
+        along = 0.5 * (1.0 + np.sin(angle) / np.sin(half))
+        across = (np.sin(0.5 * half) ** 2 - np.sin(0.5 * angle) ** 2) / np.sin(half)
+        left = np.array([-chord[1], chord[0]])
+        nodes: Array = start + along[:, None] * chord + across[:, None] * left
+        return nodes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
+class BodyDesign:
     """A rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2], name.
 
     A body without mass and inertia is legal: it is then the common end node of the strips.
@@ -175,36 +174,36 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
-    """Strips between ground and rigid bodies, the element they are made of, and the effects of the scene.
+    """Strips between ground and rigid bodies, the elements they are made of, and the effects of the scene.
 
     Args:
-        strips: one or more, all of the same number of elements, of different names if they are many.
+        strips: one or more, of different names if they are many.
         bodies: the rigid bodies, of different names; none is legal.
         element: "corotational" (Euler-Bernoulli) or "reissner" (with shear).
+        elements: number of elements of every strip.
         effects: the named effects.
     """
 
-    strips: tuple[Strip, ...]
-    bodies: tuple[Body, ...] = ()
+    strips: tuple[StripDesign, ...]
+    bodies: tuple[BodyDesign, ...] = ()
     element: str = "corotational"
+    elements: int = 20
     effects: Effects = field(default_factory=Effects)
 
     def __post_init__(self) -> None:
         choice("element", self.element, ELEMENTS)
         if "shear" in self.effects and self.element == ELEMENTS[0]:
             raise InvalidParameter("element", self.element, f"{ELEMENTS[1]} for shear [name]")
-        sizes = {len(strip.nodes) for strip in self.strips}
-        if len(sizes) != 1:
-            raise InvalidParameter(
-                "strips", sorted(sizes), "one or more strips with the same number of nodes [1]"
-            )
-        for strip in self.strips:
-            for end in (strip.root, strip.tip):
-                if end not in (GROUND, FREE) and not 0 <= end < len(self.bodies):
-                    raise InvalidParameter("strips", end, f"ends on {len(self.bodies)} bodies [index]")
+        count("elements", self.elements)
+        if FIXED in self.body_names:
+            raise InvalidParameter("bodies", FIXED, "another name for a body that moves [name]")
         for kind, names in (("strips", self.strip_names), ("bodies", self.body_names)):
             if len(set(names)) != len(names):
                 raise InvalidParameter(kind, names, "names that differ [name]")
+        if not self.ends.size:
+            raise InvalidParameter("strips", self.strips, "one or more strips")
+        if not (np.diff(self.arcs) > 0.0).all():
+            raise InvalidParameter("strips", "ends that coincide", "elements of a length above 0 [m]")
         self._check_places()
         self._check_sides()
 
@@ -214,7 +213,7 @@ class Model:
             if load is not None:
                 self.body_index(load.body)
         tip = self.effects.find(TipForce)
-        if tip is not None and self.strips[self.strip_index(tip.strip)].tip != FREE:
+        if tip is not None and self.ends[self.strip_index(tip.strip), 1] != FREE:
             raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
         led = self.effects.find(DrivenDisplacement)
         if led is not None and not self.bodies:
@@ -232,17 +231,38 @@ class Model:
                 curl[0], "natural curvature", "strips that are straight when free of stress"
             )
         for strip in self.strips if named else ():
-            if strip.section.width is None:
+            if strip.width is None:
                 raise InvalidParameter(named[0], strip.name, "strips with width and thickness [name]")
-            if curl and not strip.straight:
+            if curl and strip.rise:
                 raise InvalidParameter(curl[0], strip.name, "straight strips [name]")
-            if "clamped_width" in curl and FREE in (strip.root, strip.tip):
+            if "clamped_width" in curl and None in (strip.root, strip.tip):
                 raise InvalidParameter("clamped_width", strip.name, "strips clamped at both ends [name]")
 
-    @property
+    @cached_property
     def rest(self) -> Array:
-        """Positions of the nodes at rest (G, P, 2) [m]."""
-        return np.array([strip.nodes for strip in self.strips])
+        """Positions of the nodes at rest (G, P, 2) [m], from root to tip."""
+        return np.array([strip.axis(self.elements) for strip in self.strips])
+
+    @cached_property
+    def arcs(self) -> Array:
+        """Arc lengths of the nodes at rest (G, P) [m], along the elements."""
+        return np.pad(np.cumsum(np.linalg.norm(np.diff(self.rest, axis=1), axis=2), axis=1), ((0, 0), (1, 0)))
+
+    @property
+    def lengths(self) -> Array:
+        """Lengths of the strips at rest (G,) [m], along the elements."""
+        return self.arcs[:, -1]
+
+    @cached_property
+    def ends(self) -> Indices:
+        """What root and tip of the strips are on (G, 2): the index of a body, GROUND or FREE."""
+        known = {None: FREE, FIXED: GROUND} | {name: k for k, name in enumerate(self.body_names)}
+        for strip in self.strips:
+            for name, there in (("root", strip.root), ("tip", strip.tip)):
+                if there not in known:
+                    expected = f"one of {', '.join([FIXED, *self.body_names])} [name]"
+                    raise InvalidParameter(name, there, expected)
+        return np.array([(known[strip.root], known[strip.tip]) for strip in self.strips], dtype=np.int64)
 
     @property
     def centres(self) -> Array:
@@ -260,7 +280,7 @@ class Model:
         return tuple(body.name for body in self.bodies)
 
     @property
-    def body(self) -> Body:
+    def body(self) -> BodyDesign:
         """The one body of a model that has one."""
         return self.bodies[self.body_index(None)]
 

@@ -124,7 +124,7 @@ def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int) -
         mass=kind,
         frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
         shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
-        body_shapes=full[:, structure.first_body :],
+        body_shapes=structure.bodies(full).reshape(len(full), -1),
         state=y,
     )
 
@@ -163,7 +163,7 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
     elif wanted >= len(kept) - 1:
         values, vectors = eigh(stiffness.toarray(), mass.toarray(), subset_by_index=(0, wanted - 1))
     else:
-        shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[0::3]).sum())
+        shift = -0.01 * structure.force_unit / float(np.abs(mass.diagonal()[structure.axis[kept] == 0]).sum())
         start = np.ones(len(kept))
         values, vectors = eigsh(
             stiffness, wanted, mass, sigma=shift / structure.length, which="LM", v0=start, tol=0.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .actions import Actions, Resistance
+from .actions import Actions, Instant
 from .arrays import Array, Flags
 from .loads import Piece, Span
 from .mass import RigidBodies, carried_over
@@ -21,21 +21,7 @@ BALANCED = 1e-9
 FLOOR = 1e-12
 #: Energies of a state and what loads and dampers did until then [J], with their signs in what is conserved.
 ENERGIES = {"kinetic_energy": 1, "strain_energy": 1, "gravity_energy": 1, "work": -1, "dissipated": 1}
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Instant:
-    """The state at an instant of a motion.
-
-    Attributes:
-        time [s]. y, v, a (size,): coordinates, velocities, accelerations. acting: what resists there.
-    """
-
-    time: float
-    y: Array
-    v: Array
-    a: Array
-    acting: Resistance
+SIGNS = np.array([*ENERGIES.values()])
 
 
 class Scheme:
@@ -57,23 +43,18 @@ class Scheme:
         """Return an instant with its consistent acceleration, from which what is `held` is led at its v."""
         self.held, inert = held, (self.mass > 0.0) & ~held
         self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
-        acting = self.actions.resist(y, v, time)
-        return Instant(time=time, y=y, v=v, a=-self.inverse * acting.force, acting=acting)
+        now = self.actions.resist(y, v, time)
+        return replace(now, a=-self.inverse * now.force)
 
     def go(self, now: Instant, piece: Piece, samples: "Samples") -> Instant | None:
         """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
         raise NotImplementedError
 
-    def balanced(self, at: Instant) -> bool:
-        """Return whether the forces on what is not led are none but round-off."""
-        return bool(self.unloaded(at)[~self.held].all())
-
     def unloaded(self, at: Instant) -> Flags:
         """Return where the forces are none but round-off (size,)."""
-        least = BALANCED * self.structure.scale + self.structure.round_off(
-            self.structure.evaluate(at.y).tangent
-        )
-        return np.asarray(np.abs(at.acting.force) <= least)
+        tangent = self.structure.evaluate(at.y).tangent
+        least = BALANCED * self.structure.scale + self.structure.round_off(tangent)
+        return np.asarray(np.abs(at.force) <= least)
 
     def remarks(self, samples: "Samples", step: float) -> list[str]:
         """Return what the step [s] leaves unresolved: nothing where it is stable."""
@@ -128,13 +109,15 @@ class Samples:
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
         do the work of what is beside the scheme's energy as well, which was `begun` as the span began.
         """
-        acting, work = at.acting, float(self.books[0]) + self.beside(scheme, at) - begun
-        kinetic = self.kinetic(scheme, at.y, at.v)
-        energy = np.array([kinetic, acting.strain, acting.gravity, work, float(self.books[1])])
+        work, kinetic = (
+            float(self.books[0]) + self.beside(scheme, at) - begun,
+            self.kinetic(scheme, at.y, at.v),
+        )
+        energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
         self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
-        start, now = (_conserved(each) for each in (self.energy[0] if self.energy else energy, energy))
-        at_stake = max(self.stake, abs(work), abs(acting.gravity), self.floor)
+        start, now = (float(each @ SIGNS) for each in ((self.energy or [energy])[0], energy))
+        at_stake = max(self.stake, abs(work), abs(at.gravity), self.floor)
         if not np.isfinite(now) or now - start > self.home.blow_up * at_stake:
             self.unstable = True
             self.message = (
@@ -149,22 +132,11 @@ class Samples:
         self.energy.append(energy)
         return True
 
-    def drift(self) -> float:
-        """Return the largest error of the balance of energies, over the energy at stake at the end [1]."""
-        balance = np.array(self.energy) @ [*ENERGIES.values()]
-        at_stake = max(self.stake, self.floor)
-        return float(np.abs(balance - balance[0]).max()) / at_stake if at_stake > 0.0 else 0.0
-
-    def lost(self) -> float:
-        """Return the part of the energy at stake that is gone at the end, neither work nor dissipation."""
-        at_stake = max(self.stake, self.floor)
-        gone = _conserved(self.energy[0]) - _conserved(self.energy[-1])
-        return gone / at_stake if at_stake > 0.0 else 0.0
-
-
-def _conserved(energy: Array) -> float:
-    """Return what is conserved of energies (5,) [J]."""
-    return float(energy @ [*ENERGIES.values()])
+    def gained(self) -> Array:
+        """Return what the samples have gained in the balance of energies, over the energy at stake (T,)."""
+        balance, at_stake = np.array(self.energy) @ SIGNS, max(self.stake, self.floor)
+        gain: Array = (balance - balance[0]) / (at_stake or np.inf)
+        return gain
 
 
 def course(
@@ -196,7 +168,7 @@ def course(
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = samples.beside(scheme, now)
         if not samples.time:
-            samples.still = not caught.any() and scheme.balanced(now)
+            samples.still = not caught.any() and bool(scheme.unloaded(now)[~scheme.held].all())
             samples.take(scheme, now, begun)
         for piece in span.pieces(step, chunks):
             after = scheme.go(replace(now, time=piece.time), piece, samples)

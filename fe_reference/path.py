@@ -19,11 +19,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .arrays import Array
-from .control import LAST, Control, Outcome, equilibrate, taken
+from .control import LAST, Control, State, equilibrate
 from .critical import critical_point, limit_point, tipping
 from .errors import InvalidParameter
-from .matrix import Singular
-from .response import State, respond
+from .matrix import GRAIN, Singular
+from .response import respond
 from .solution import CriticalPoint
 
 Progress = Callable[[int, int], None]
@@ -81,46 +81,40 @@ class Path:
     message: str = ""
     last: State = field(init=False)
 
-    @classmethod
-    def settled(cls, control: Control, increments: int) -> "Path":
-        """Return a path at its first state: rest, or the equilibrium under gravity and natural strains.
+    def begin(self, control: Control, y: Array | None = None) -> None:
+        """Put down the state of equilibrium in which a span begins, in place of the last one.
 
-        If that cannot be reached, the path holds the shape at rest and says why.
+        Its coordinates (size,) are those of the last state, or rest, if they are not given.
         """
-        path = cls(control=control)
-        if not control.structure.constant_words:
-            path.begin()
-            return path
-        values = np.stack([control.values[0]] * 2)
-        held, watched = control.held, control.watched
-        settling = Control(
-            structure=control.structure, held=held, values=values, watched=watched, settling=True
-        )
-        before = cls(control=settling, counters=path.counters, failures=path.failures, critical=path.critical)
-        before.begin()
-        reached = all(before.advance(k / increments) for k in range(1, increments + 1))
-        path.counters["settling_increments"] = path.counters.pop("increments", 0)
-        path.begin(before.states[-1].y if reached else None)
-        path.message = before.message
-        return path
-
-    def begin(self, y: Array | None = None) -> None:
-        """Put down the first state: rest, or coordinates in equilibrium (size,)."""
-        y = np.zeros(self.control.structure.size) if y is None else y
+        last = self.states.pop() if self.states else None
+        if y is None:
+            y = np.zeros(control.structure.size) if last is None else last.y
+        found = control.balance(y, control.span[0])
         try:
-            self.states.append(self._state(taken(self.control, y, self.control.span[0]), None))
+            there = respond(control, replace(found, factors=control.factors(found, GRAIN)))
         except Singular as error:
             raise InvalidParameter(
                 "strips",
                 "a model that can move freely",
                 "clamps that hold it, or stiffnesses less far apart [1]",
             ) from error
+        self.control = control
+        self.states.append(there if last is None else replace(there, work=last.work, norms=last.norms))
 
-    def turn_to(self, control: Control) -> None:
-        """Go on from the last state in the next span."""
-        last, self.control = self.states[-1], control
-        there = self._state(taken(control, last.y, last.parameter), None)
-        self.states[-1] = replace(there, work=last.work, norms=last.norms)
+    def settle(self, increments: int) -> None:
+        """Go from rest to the equilibrium under gravity and natural strains, where its span begins.
+
+        If that cannot be reached, the path holds the shape at rest and says why.
+        """
+        control, y = self.control, None
+        if control.structure.constant_words:
+            still = replace(control, values=np.stack([control.values[0]] * 2), load=None)
+            self.begin(replace(still, span=(0.0, 1.0), shares=None, settling=True))
+            if all(self.advance(k / increments) for k in range(1, increments + 1)):
+                y = self.states[-1].y
+            self.counters["settling_increments"] = self.counters.pop("increments", 0)
+            self.states.clear()
+        self.begin(control, y)
 
     def advance(self, target: float) -> bool:
         """Go from the last state to `target` in one increment or in halved ones, and keep its end.
@@ -148,7 +142,7 @@ class Path:
         outcome = equilibrate(self.control, _ahead(state, target), target, self.counters)
         failure = outcome.failure
         if not failure:
-            reached = self._state(outcome, state)
+            reached = self._worked(state, respond(self.control, outcome))
             failure = self._doubt(state, reached) or self._judged(state, reached)
             if not failure:
                 self.critical += tipping(self.control, state, reached, self.counters)
@@ -185,28 +179,25 @@ class Path:
         """Return the largest component of a change of the coordinates, in strip lengths and rad."""
         return float(np.abs(self.control.structure.measure * change).max(initial=0.0))
 
-    def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: Outcome) -> str:
+    def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: State) -> str:
         return (
             f"{failure} between {self.control.describe(begin)} and {self.control.describe(target)}"
             f" after {depth} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
         )
 
-    def _state(self, outcome: Outcome, before: State | None) -> State:
-        """Complete a converged state by its response, potential and work."""
-        state, share = respond(self.control, outcome), self.control.share
-        if before is None:
-            return state
+    def _worked(self, before: State, after: State) -> State:
+        """Return a state with the work done until then, and those before it."""
         # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
-        done, former = (share(at.parameter) * at.balance.load_work for at in (state, before))
-        work = before.work + (done - former) + _integral(before, state)
-        return replace(state, factors=None, work=work, behind=_trail(before))
+        done, former = (self.control.share(at.parameter) * at.load_work for at in (after, before))
+        work = before.work + (done - former) + _integral(before, after)
+        return replace(after, work=work, behind=_trail(before))
 
     def _doubt(self, before: State, after: State) -> str:
         """Return why a converged state is not believed, or ""."""
         structure = self.control.structure
-        if after.balance.at.ends[:, 4].max() > DISTORTION:
+        if after.at.ends[:, 4].max() > DISTORTION:
             return "an element is folded"
-        step, gained = after.parameter - before.parameter, after.balance.potential - before.balance.potential
+        step, gained = after.parameter - before.parameter, after.potential - before.potential
         largest = abs(before.conjugate) + abs(after.conjugate)
         unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[2])
         scale = max(abs(gained), 0.5 * abs(step) * largest)
@@ -253,11 +244,12 @@ def _integral(before: State, after: State) -> float:
 
 def follow(controls: Sequence[Control], increments: int, progress: Progress | None = None) -> Path:
     """Settle under gravity and natural strains, then walk through the spans as far as they can be reached."""
-    path, total = Path.settled(controls[0], increments), increments * len(controls)
+    path, total = Path(control=controls[0]), increments * len(controls)
+    path.settle(increments)
     for done in range(0 if path.message else total):
         leg, k = divmod(done, increments)
         if leg and not k:
-            path.turn_to(controls[leg])
+            path.begin(controls[leg])
         if not path.advance((done + 1) / total):
             break
         if progress is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from .arrays import Array
 from .errors import positive
-from .model import Model, Strip
+from .model import Model
 from .solution import ErrorEstimate, StaticSolution, Status
 from .trajectory import Trajectory
 
@@ -28,21 +28,8 @@ NOTHING = 1e-9
 
 
 def finer(model: Model) -> Model:
-    """Return the model on twice as many elements; between nodes on an arc the new ones lie on the arc."""
-    return replace(model, strips=tuple(replace(strip, nodes=_halved(strip)) for strip in model.strips))
-
-
-def _halved(strip: Strip) -> Array:
-    """Return the nodes (2 P - 1, 2) with middles of the elements, off the chords by tan(turn / 4) / 2."""
-    chord = np.diff(strip.nodes, axis=0)
-    direction = np.unwrap(np.arctan2(chord[:, 1], chord[:, 0]))
-    turns = np.diff(direction)
-    turn = 0.5 * (np.append(turns[:1], turns) + np.append(turns, turns[-1:])) if len(turns) else np.zeros(1)
-    left = np.stack([-chord[:, 1], chord[:, 0]], axis=1)
-    nodes = np.empty((2 * len(chord) + 1, 2))
-    nodes[::2] = strip.nodes
-    nodes[1::2] = strip.nodes[:-1] + 0.5 * chord - 0.5 * np.tan(0.25 * turn)[:, None] * left
-    return nodes
+    """Return the model on twice as many elements."""
+    return replace(model, elements=2 * model.elements)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,7 +68,7 @@ def refine(
     best = _Refined(answer=solve(model), limits={}, estimate=None)
     answer = best.answer
     while here := quantities(answer):
-        meshes.append(len(model.strips[0].nodes) - 1)
+        meshes.append(model.elements)
         known.append([values for values, _ in here.values()])
         if len(known) > 1:
             limits, changes = _limit(known[-3:])
@@ -147,12 +134,11 @@ def limit_of(
         units: of the answer's attributes that are taken to their limits. derived: quantities of one, by what
             makes them from the places of the bodies (B, S, 3).
     """
-    stations = len(model.strips[0].nodes)
 
     def quantities(answer: Solved) -> Quantities:
         if answer.status is not Status.CONVERGED:
             return {}
-        every, found = (answer.shape.shape[2] - 1) // (stations - 1), {}
+        every, found = (answer.shape.shape[2] - 1) // model.elements, {}
         for name, unit in units.items():
             values = getattr(answer, name)
             if isinstance(values, Mapping):

@@ -1,11 +1,11 @@
 """States of equilibrium: rates, torque and stiffness along their path, and the stiffness of a body."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from .arrays import Array, kernel
-from .control import Control, Outcome
+from .control import Control, State
 from .effects import DrivenDisplacement
 from .law import Written
 from .matrix import Singular
@@ -14,73 +14,40 @@ from .model import Model
 from .structure import Evaluation, Structure, Tables, structure_of
 
 Rates = tuple[float, float, float, float]
+#: Turns of the bodies (B,), and two rates of them.
+Turns = tuple[Array, ...]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class State(Outcome):
-    """An equilibrium, and how it changes along its path.
-
-    Attributes:
-        rate: d y / d p (size,).
-        conjugate, slope: first and second derivative of the total potential along the path [J].
-        torque, stiffness: generalised force on the watched turn [N m] and its derivative [N m/rad], all that
-            is not held being free; nan if no turn is watched.
-        inertia: number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
-        work: of loads and drives since the first state of the path [J].
-        behind: parameter, coordinates and rate of the last states before on the same span, latest first.
-    """
-
-    rate: Array
-    conjugate: float
-    slope: float
-    torque: float
-    stiffness: float
-    inertia: int
-    work: float = 0.0
-    behind: tuple[tuple[float, Array, Array], ...] = ()
-
-
-def respond(control: Control, found: Outcome) -> State:
-    """Return the state at an equilibrium: one solve for each drive and for the load; raises Singular.
+def respond(control: Control, found: State) -> State:
+    """Return an equilibrium with its response: one solve for each drive and for the load; raises Singular.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
     """
-    y, parameter, balance, factors = found.y, found.parameter, found.balance, found.factors
+    factors, tangent, held = found.factors, found.at.tangent, control.held
     if factors is None:
         raise Singular(found.failure)
-    tangent, held = balance.at.tangent, control.held
     moves = np.zeros((len(held), control.structure.size))
     moves[np.arange(len(held)), held] = 1.0
     moves -= factors.solve(tangent.times(moves))
-    drive, rate = moves @ balance.residual, control.slope @ moves
-    change, first, second = control.rates(y, parameter, balance.load_work)
+    drive, rate = moves @ found.residual, control.slope @ moves
+    change, first, second = control.rates(found.y, found.parameter, found.load_work)
     if change is not None:
         rate -= factors.solve(change)
         second += 2.0 * float(change @ rate)
-    along = tangent.times(rate)
     torque, stiffness = np.nan, np.nan
     if control.watched is not None:
-        if control.is_held[control.watched]:
-            k = int(np.flatnonzero(held == control.watched)[0])
-            torque, move = float(drive[k]), moves[k]
-        else:
-            acts = 0.0 if control.load is None else control.share(parameter) * control.load[control.watched]
-            torque = float(balance.residual[control.watched] + acts)
-            unit = np.zeros(control.structure.size)
-            unit[control.watched] = 1.0
-            move = factors.solve(unit)
-            move /= move[control.watched]
-        left = factors.solve(balance.residual)
-        stiffness = _stiffness_between(control.structure, balance.at, y, move, move, left)
-    return State(
-        **vars(found),
+        k = control.held.tolist().index(control.watched)
+        left = factors.solve(found.residual)
+        torque = float(drive[k])
+        stiffness = _stiffness_between(control.structure, found.at, found.y, moves[k], moves[k], left)
+    return replace(
+        found,
         rate=rate,
         conjugate=first + float(drive @ control.slope),
-        slope=second + float(rate @ along),
+        slope=second + float(rate @ tangent.times(rate)),
         torque=torque,
         stiffness=stiffness,
-        inertia=factors.negative,
     )
 
 
@@ -94,8 +61,10 @@ def _stiffness_between(
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
     written = (structure.work[0], at.ends, at.matrices, structure.work[1])
-    own = _between(structure.tables, u, v, w, rest, written)
-    return float(own) + float(at.curvature[:, 1] @ (one[structure.turns] * other[structure.turns]))
+    carried = tuple(each[structure.turns] for each in (y, one, other))
+    own = float(_between(structure.tables, u, v, w, rest, carried, written))
+    own += float(at.curvature[:, 1] @ (carried[1] * carried[2]))
+    return own + float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
 
 
 @kernel()
@@ -108,7 +77,9 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 
 @kernel()
-def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
+def _between(
+    tables: Tables, u: Array, one: Array, other: Array, left: Array, carried: Turns, written: Written
+) -> float:
     """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
 
     With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
@@ -116,7 +87,11 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    ((_, table, first, _), (attached, _, offsets), _), (force, ends, matrices, _) = tables, written
+    ((_, table, first, _), (attached, carrier, offsets, _), _, _), (force, ends, matrices, _) = (
+        tables,
+        written,
+    )
+    turns, one_turns, other_turns = carried
     total = 0.0
     force[:] = 0.0
     for e in range(len(first)):
@@ -136,9 +111,9 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
         force[i, 0], force[i, 1] = force[i, 0] - pull_x, force[i, 1] - pull_y
         force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
     for k in range(len(attached)):
-        i = attached[k]
-        x, y = turned(u[i, 2], offsets[k, 0], offsets[k, 1])
-        total -= one[i, 2] * other[i, 2] * (x * force[i, 0] + y * force[i, 1])
+        i, b = attached[k], carrier[k]
+        x, y = turned(turns[b], offsets[k, 0], offsets[k, 1])
+        total -= one_turns[b] * other_turns[b] * (x * force[i, 0] + y * force[i, 1])
     return total
 
 

@@ -35,14 +35,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from .actions import Actions, advance
+from .actions import Actions, Instant, advance
 from .arrays import Array, Flags
 from .errors import InvalidParameter
-from .law import TANGENT
+from .law import MATERIAL, TANGENT
 from .loads import Piece
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
-from .motion import Instant, Samples, Scheme
+from .motion import Samples, Scheme
 from .structure import Structure
 
 
@@ -58,15 +58,32 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
     """
-    lumped = lumped_elements(structure)
-    root = np.sqrt(lumped).T
-    tangents = structure.element_matrices(y, TANGENT) / (root[:, :, None] * root[:, None, :])
-    highest = float(np.linalg.eigvalsh(tangents)[:, -1].max())
-    curvature = structure.evaluate(y).curvature[:, 0]
-    square = highest + float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
-    actions = Actions(structure)
-    decay = actions.fastest_decay(y, lumped, bodies.mass, bodies.moment_of_inertia) if actions.damped else 0.0
+    curvature, actions = structure.evaluate(y).curvature[:, 0], Actions(structure)
+    square = _highest(structure, bodies, y, TANGENT)
+    square += float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
+    material = _highest(structure, bodies, y, MATERIAL) if len(actions.dissipative[0]) else 0.0
+    decay = actions.fastest_decay(material, bodies.mass, bodies.moment_of_inertia)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
+
+
+def _highest(structure: Structure, bodies: RigidBodies, y: Array, asked: int) -> float:
+    """Return a squared frequency [1/s^2] above those of all elements, and of roots that give way.
+
+    A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out between
+    them, with 2 a b <= r a^2 + b^2 / r and r^2 = m / J: k (1 + r) to the node, k (1 + 1 / r) to the body.
+    """
+    lumped, local = lumped_elements(structure), structure.element_matrices(y, asked)
+    (node, body, stiffness), last = structure.springs, structure.stations - 1
+    (strip, place), inertia = np.divmod(node, last + 1), np.append(bodies.moment_of_inertia, np.inf)
+    end = np.sign(place)
+    element, turn = strip * last + end * (last - 1), 2 + 3 * end
+    ratio = np.sqrt(lumped[turn, element] / inertia[body])
+    local[element, turn, turn] += stiffness * (1.0 + ratio)
+    on_bodies = np.zeros(len(inertia))
+    np.add.at(on_bodies, body, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
+    root = np.sqrt(lumped).T
+    highest = np.linalg.eigvalsh(local / (root[:, :, None] * root[:, None, :]))[:, -1].max()
+    return float(highest + on_bodies.max())
 
 
 class Explicit(Scheme):
@@ -84,34 +101,35 @@ class Explicit(Scheme):
                 "central-difference",
                 "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
             )
-        self.compliance = np.zeros((structure.strips * structure.stations, 3))
-        self.compliance[structure.free_nodes] = 1.0 / self.mass[: structure.first_body].reshape(-1, 3)
+        self.compliance = structure.at_nodes(1.0 / self.mass)
 
     def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant:
         """Return the instant after a piece of steps."""
         s, actions, h, totals = self.structure, self.actions, piece.step, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
-        nodal_v, bodies = np.zeros((s.strips * s.stations, 3)), now.y[s.first_body :].reshape(-1, 3).copy()
-        nodal_v[s.free_nodes] = late[: s.first_body].reshape(-1, 3)
-        state = (s.displacement(now.y), nodal_v, bodies, late[s.first_body :].reshape(-1, 3).copy())
-        compliance = (self.compliance, self.inverse[s.first_body :].reshape(-1, 3))
+        state = (
+            s.displacement(now.y),
+            s.velocity(now.y, late),
+            s.bodies(now.y).copy(),
+            s.bodies(late).copy(),
+        )
+        compliance = (self.compliance, s.bodies(self.inverse))
         advance(actions.acting, compliance, state, totals, now.time, h, piece.steps)
         y, late = (s.gathered(*moved) for moved in (state[::2], state[1::2]))
-        time, first = now.time + piece.steps * h, now.acting
-        acting = actions.resist(y, late, time)
-        a = -self.inverse * acting.force
+        after = actions.resist(y, late, now.time + piece.steps * h)
+        a = -self.inverse * after.force
         v = late + 0.5 * h * a
         # what the loop gathered is brought from mid-step to the sample
-        led = float((acting.force - first.force)[self.held] @ v[self.held])
-        given = acting.load_power - first.load_power + led
+        led = float((after.force - now.force)[self.held] @ v[self.held])
+        given = after.load_power - now.load_power + led
         samples.books += totals
-        samples.books += 0.5 * h * given, h * (acting.loss_power - first.loss_power)
+        samples.books += 0.5 * h * given, h * (after.loss_power - now.loss_power)
         samples.counters.update(steps=piece.steps, force_evaluations=piece.steps + 1)
-        return Instant(time=time, y=y, v=v, a=a, acting=acting)
+        return replace(after, v=v, a=a)
 
     def remarks(self, samples: Samples, step: float) -> list[str]:
         """Return that the step [s], though stable, does not keep the energy."""
-        drift = samples.drift()
+        drift = float(np.abs(samples.gained()).max())
         if drift <= DRIFT:
             return []
         return [f"the energy drifts by {drift:.1%}: the step of {step:.3g} s is too long: take a shorter one"]
@@ -189,9 +207,9 @@ class Implicit(Scheme):
 
     def _gains(self, now: Instant, after: Instant, h: float, samples: Samples) -> bool:
         """Return whether a step of h [s] has gained energy, by more than stops a motion."""
-        before, since = (0.5 * float(self.mass @ at.v**2) + at.acting.strain for at in (now, after))
+        before, since = (0.5 * float(self.mass @ at.v**2) + at.strain for at in (now, after))
         work, lost = 0.5 * h * np.sum([self._powers(at) for at in (now, after)], axis=0)
-        gain = since - before + after.acting.gravity - now.acting.gravity - work + lost
+        gain = since - before + after.gravity - now.gravity - work + lost
         return not gain <= GAIN * max(samples.stake, samples.floor, before, abs(work))
 
     def _single(self, now: Instant, h: float, samples: Samples) -> Instant | None:
@@ -199,19 +217,19 @@ class Implicit(Scheme):
         mass, scale, time = self.mass, self.structure.scale, now.time + h
         coasting = now.y + h * now.v + h**2 * (0.5 - self.beta) * now.a
         drifting = now.v + h * (1.0 - self.gamma) * now.a
-        held = self.am * mass * now.a + self.af * now.acting.force
+        held = self.am * mass * now.a + self.af * now.force
         reach = self.beta * h**2
         # the unknown is the acceleration: taken from differences of positions it would drown in round-off
-        a, norms = now.a.copy(), [np.inf]
+        a, norms = now.a, [np.inf]
         for _ in range(ITERATIONS):
             y, v = coasting + reach * a, drifting + self.gamma * h * a
-            acting = self.actions.resist(y, v, time)
-            residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * acting.force + held
+            after = replace(self.actions.resist(y, v, time), a=a)
+            residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * after.force + held
             residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
             if norms[-1] <= TOLERANCE:
-                return Instant(time=time, y=y, v=v, a=a, acting=acting)
+                return after
             if not np.isfinite(norms[-1]):
                 break
             samples.counters["iterations"] += 1
@@ -222,8 +240,8 @@ class Implicit(Scheme):
                     break
             change = self._factor[1].solve(residual)
             if (np.abs(residual) <= self.least).all() and self._size(change) <= SMALL:
-                return Instant(time=time, y=y, v=v, a=a, acting=acting)
-            a -= change / reach
+                return after
+            a = a - change / reach
         samples.history.append(tuple(norms[1:]))
         self._factor = None
         return None
@@ -247,8 +265,8 @@ class Implicit(Scheme):
 
     def _powers(self, at: Instant) -> tuple[float, float]:
         """Return the power of loads and drives, and of the dampers [W]."""
-        led = float(at.acting.force[self.held] @ at.v[self.held])
-        return at.acting.load_power + led, at.acting.loss_power
+        led = float(at.force[self.held] @ at.v[self.held])
+        return at.load_power + led, at.loss_power
 
     def remarks(self, samples: Samples, step: float) -> list[str]:
         """Return what the step h [s] leaves unresolved.
@@ -256,7 +274,7 @@ class Implicit(Scheme):
         The ratio of a.M a and v.M v, summed over the steps, is the mean square of the circular frequencies by
         their kinetic energy.
         """
-        remarks, content, lost = [], samples.content, samples.lost()
+        remarks, content, lost = [], samples.content, -float(samples.gained()[-1])
         if content[0] * step**2 * COARSEST**2 > 4.0 * np.pi**2 * content[1]:
             each = 2.0 * np.pi * np.sqrt(content[1] / content[0]) / step
             remarks.append(f"only {each:.3g} steps in a mean period of what moves: take shorter steps")

@@ -54,8 +54,9 @@ class StripFields:
         is the mean across the width, to which the stress is equal where the section is held flat or wholly
         free.
         """
-        sections = [strip.section for strip in model.strips]
-        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in sections]).T[:, :, None]
+        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in model.strips]).T[
+            :, :, None
+        ]
         stress: Array = np.abs(self.axial_force) / area
         stress += np.abs(self.bending_moment) * np.sqrt(3.0 / (area * inertia))
         return stress
@@ -85,9 +86,6 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     grid, rows, many = (structure.strips, structure.stations), (structure.strips, -1), len(y)
     force_x, force_y, first, last = np.moveaxis(ends[..., :4], -1, 0).reshape(4, many, *rows)
     nodal = np.array([structure.displacement(each) for each in y]).reshape(many, *grid, 3)
-    roots = structure.elements.roots.reshape(*rows, 2)
-    nodal[:, :, 0, 2] -= roots[:, 0, 0] * first[..., 0]
-    nodal[:, :, -1, 2] -= roots[:, -1, 1] * last[..., -1]
     force_x, force_y, moment = _midpoints(force_x), _midpoints(force_y), _at_nodes(-first, last)
     angle = _nodal_angles(structure)
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
@@ -112,9 +110,8 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
 
 def _bent(model: Model, moment: Array) -> Array:
     """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
-    sections = [strip.section for strip in model.strips]
-    rigidity = np.array([section.flexural_rigidity for section in sections])[:, None]
-    plate = structure_of(model).elements.plate.reshape(len(sections), -1, 4)[:, :1]
+    rigidity = np.array([strip.flexural_rigidity for strip in model.strips])[:, None]
+    plate = structure_of(model).elements.plate.reshape(len(rigidity), -1, 4)[:, :1]
     if not plate[..., 0].any():
         free: Array = moment / rigidity
         return free

@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .confirmed import confirmed
@@ -86,37 +85,6 @@ def solve_mechanism(
     return _answered(mechanism, accuracy, solve, check).checked(raise_on_failure)
 
 
-def solve_loads(
-    model: Model,
-    *,
-    force: ArrayLike = (0.0, 0.0),
-    moment: float = 0.0,
-    increments: int = 20,
-    accuracy: float | None = None,
-    check: bool = True,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
-) -> StaticSolution:
-    """Raise a dead force at the centre of the one body and a moment on it in equal steps of the load factor.
-
-    Args:
-        model: the model; loads and the driven displacement that its scene names are added.
-        force: final force (2,) [N], fixed in space. moment: final moment [N m].
-        increments, accuracy, check, raise_on_failure, progress: as in `solve_mechanism`.
-    """
-    require_model(model)
-    pull = [finite("force", part, "N") for part in np.ravel(np.asarray(force)).tolist()]
-    if len(pull) != 2:
-        raise InvalidParameter("force", force, "two components [N]")
-    turn = finite("moment", moment, "N m")
-
-    def solve(each: Model) -> StaticSolution:
-        load = full_load(structure_of(each), more=(pull, turn))
-        return _solved(each, None, None, None, increments, progress, load=load, watch=True)
-
-    return _answered(model, accuracy, solve, check).checked(raise_on_failure)
-
-
 def _answered(
     model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], check: bool
 ) -> StaticSolution:
@@ -126,7 +94,7 @@ def _answered(
         return confirmed(model, answer, (), solve) if check else answer
     structure = structure_of(model)
     length, force, moment = structure.length, structure.force_unit, structure.moment_unit
-    section = model.strips[0].section
+    section = model.strips[0]
     units = dict.fromkeys((*ENERGIES, "strain_energy", "torque", "stiffness", "bending_moment"), moment)
     units |= dict.fromkeys(("clamp_reactions", "axial_force", "shear_force"), force)
     units |= dict.fromkeys(("bodies", "shape"), length)
@@ -191,15 +159,13 @@ def _solved(
     *,
     order: str = LOADS_FIRST,
     load: Array | None = None,
-    watch: bool = False,
     starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
     led, place = _displacement(model, displacement)
     driven = rotations is not None or (led is not None and place is None)
-    which = model.body_index(body) if driven or watch or body is not None else None
-    watched = which is not None and (watch or rotations is not None)
+    which = model.body_index(body) if driven or body is not None else None
     acting = full_load(structure) if load is None else load
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and led is None  # a body that is led goes where both lead it
@@ -211,13 +177,12 @@ def _solved(
         led=place,
         load=acting,
         first=first,
-        watched=int(structure.turns[which]) if watched else None,
     )
     clock.stop("compile")
     path = follow(controls, steps, progress)
     clock.stop("solve")
     for state in () if starts else reversed(path.states):  # the load in full is named
-        require_balance(structure, path.control.props, state.balance.residual, acting)
+        require_balance(structure, path.control.props, state.residual, acting)
     name = None if which is None else model.body_names[which]
     return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)
 
@@ -261,7 +226,7 @@ def _packed(
         gravity_energy=np.array([at.gravity for at in here]),
         clamp_reactions=fields.reactions,
         largest_stress=fields.outer_stress(model).max(axis=(1, 2)),
-        stations=structure.basis.mesh.p[0, : structure.stations] / model.strips[0].length,
+        stations=structure.basis.mesh.p[0, : structure.stations] / model.lengths[0],
         **{name: getattr(fields, name) for name in ("shape", "axial_force", "shear_force", "bending_moment")},
         states=y,
         model=model,

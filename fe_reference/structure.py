@@ -1,8 +1,8 @@
 """A model made ready for computation: mesh, numbering and exact master-slave reduction, in one compiled call.
 
 Reduced coordinates y: displacement and turn (u_x, u_y, phi) of every free node, strip by strip, then for
-every body the displacement d (2,) of its reference point and its turn theta. Attached ends of strips follow
-their bodies as in `mesh`.
+every body the displacement d (2,) of its reference point and its turn theta; between them the turns of nodes
+at roots that give way. Attached ends of strips follow their bodies as in `mesh`.
 
 Gravity and natural strains, where they are named, are part of the potential here. They can be applied in
 part: `share` goes from 0 to 1 on the way from the shape at rest to the state under both.
@@ -22,20 +22,22 @@ from .law import FORCES, TANGENT, Energies, Given, Written, elements
 from .matrix import Envelope, Symmetric
 from .mesh import (
     RESULTANTS,
-    Attachments,
     Carried,
     Elements,
+    Springs,
     Weights,
     body_forces,
     carry,
     carry_velocity,
     gravity_energy,
+    root_stiffness,
+    spring_forces,
     strip_basis,
 )
-from .model import GROUND, Model
+from .model import FREE, Model
 
-#: What is known of a structure where all its elements are run through: elements, carried nodes, weights.
-Tables = tuple[Given, Carried, Weights]
+#: What is known of a structure where all its elements are run through.
+Tables = tuple[Given, Carried, Weights, Springs]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,7 +49,7 @@ class Evaluation:
         strain (3,): bending, axial and shear energy [J]. gravity: energy of the full weight [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        matrices (E, 6, 6): tangents of the elements, none if they were not asked for. curvature (B, 2): what
+        matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (B, 2): what
             the carrying of nodes and of the weight adds to the stiffness of the turns [N m].
     """
 
@@ -74,19 +76,16 @@ class Structure:
         self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
-        self.strips, self.stations = len(model.strips), len(model.strips[0].nodes)
-        self.attachments = Attachments(model, self.points)
+        self.strips, self.stations = model.arcs.shape
         self._number()
-        self.length = max(strip.length for strip in model.strips)
-        rigidity = max(strip.section.flexural_rigidity for strip in model.strips)
+        self.length = float(model.lengths.max())
+        rigidity = max(strip.flexural_rigidity for strip in model.strips)
         self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
-        self.scale = np.full(self.size, self.force_unit)
-        self.scale[2::3] = self.moment_unit
+        #: which component each coordinate is: x, y or turn
+        self.axis = np.append(self.nodal, np.arange(self.size - self.first_body)) % 3
+        self.scale = np.where(self.axis == 2, self.moment_unit, self.force_unit)
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
-        self.measure = np.full(self.size, 1.0 / self.length)
-        self.measure[2::3] = 1.0
-        ends = self.attachments
-        self.carried = (ends.node, ends.body, ends.offsets)
+        self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
         first = np.ascontiguousarray(self.basis.mesh.t[0], dtype=np.int64)
         self.given = (
             self.shear,
@@ -94,31 +93,53 @@ class Structure:
             first,
             CURL,
         )
-        self.tables = (self.given, self.carried, self._weight())
+        self.tables = (self.given, self.carried, self._weight(), self.springs)
         nodes = self.strips * self.stations
         self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
 
     def _number(self) -> None:
-        """Number the reduced coordinates; -1 marks what is clamped."""
-        free = np.ones((self.strips, self.stations), dtype=bool)
-        free[[strip.root == GROUND for strip in self.model.strips], 0] = False
-        free[[strip.tip == GROUND for strip in self.model.strips], -1] = False
-        free.ravel()[self.attachments.node] = False
-        self.free_nodes = np.flatnonzero(free)
-        self.first_body = 3 * len(self.free_nodes)
+        """Number the reduced coordinates, of elements (E, 6) and of the bodies at their ends (E, 2).
+
+        -1 marks what is clamped, and an end on no body.
+        """
+        grid, ends = np.arange(self.strips * self.stations).reshape(self.strips, -1), self.model.ends
+        stiffness, at_ends = root_stiffness(self.model), grid[:, [0, -1]]
+        end, strip = np.nonzero(ends.T >= 0)
+        node, carrier = at_ends[strip, end], ends[strip, end]
+        offsets = self.model.rest.reshape(-1, 2)[node] - self.points[carrier]
+        self.carried = (node, carrier, offsets, np.isinf(stiffness[strip, end]))
+        soft = np.isfinite(stiffness)
+        self.springs = (at_ends[soft], np.maximum(ends[soft], -1), stiffness[soft])
+        free = np.setdiff1d(grid, at_ends[ends != FREE])
+        self.nodal = np.append(3 * free[:, None] + np.arange(3), 3 * self.springs[0] + 2)
+        self.first_body = len(self.nodal)
         self.size = self.first_body + 3 * len(self.points)
         self.turns = np.arange(self.first_body + 2, self.size, 3)
-        numbers = np.full((free.size, 3), -1, dtype=np.int64)
-        numbers[self.free_nodes] = np.arange(self.first_body).reshape(-1, 3)
-        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        numbers[self.attachments.node] = bodies[self.attachments.body]
-        self.numbers = numbers.ravel()[self.basis.element_dofs].T
+        numbers = np.full(3 * grid.size, -1, dtype=np.int64).reshape(-1, 3)
+        numbers[node] = self.turns[carrier, None] + np.arange(-2, 1)
+        numbers.reshape(-1)[self.nodal] = np.arange(self.first_body)
+        self.ends, turns = np.full((2, self.strips, self.stations - 1, 2), -1)
+        place = (strip, end * (self.stations - 2), end)
+        self.ends[place], turns[place] = np.arange(len(node)), self.turns[carrier]
+        self.ends = self.ends.reshape(-1, 2)
+        self.numbers = np.hstack([numbers.ravel()[self.basis.element_dofs].T, turns.reshape(-1, 2)])
 
     @cached_property
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
-        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
-        return Envelope(self.numbers, bodies, self.size)
+        every, first = np.arange(self.size), self.first_body
+        roots = every[first - len(self.springs[0]) : first]
+        springs = np.stack([roots, np.append(self.turns, -1)[self.springs[1]]], axis=1)
+        return Envelope(self.numbers, every[first:].reshape(-1, 3), springs, self.size)
+
+    def bodies(self, y: Array) -> Array:
+        """Return what coordinates or velocities (..., size) have of the bodies (..., B, 3)."""
+        return y[..., self.first_body :].reshape(*y.shape[:-1], -1, 3)
+
+    def slips(self, y: Array) -> Array:
+        """Return how far nodes or rates of them (size,) are turned from roots that give way (R,)."""
+        own = y[self.first_body - len(self.springs[0]) : self.first_body]
+        return np.asarray(own - np.append(y[self.turns], 0.0)[self.springs[1]])
 
     def _weight(self) -> tuple[Array, Array]:
         """Return the weight of nodes (nodes, 3) and bodies (B, 4) as in `rigid`, empty if not named.
@@ -129,13 +150,18 @@ class Structure:
         gravity = self.model.effects.find(Gravity)
         if gravity is None:
             return np.zeros((0, 3)), np.zeros((0, 4))
-        g, masses, ends = np.array(gravity.acceleration), self.nodal_masses(), self.attachments
+        g, masses, (attached, carrier, offsets, _) = (
+            np.array(gravity.acceleration),
+            self.nodal_masses(),
+            self.carried,
+        )
         nodes, bodies = np.zeros((len(masses), 3)), np.zeros((len(self.points), 4))
-        nodes[self.free_nodes, :2] = masses[self.free_nodes, None] * g
+        free = self.nodal[self.nodal % 3 == 0] // 3
+        nodes[free, :2] = masses[free, None] * g
         own = np.array([body.mass for body in self.model.bodies])
         total, moments = own.copy(), own[:, None] * (self.model.centres - self.points)
-        np.add.at(total, ends.body, masses[ends.node])
-        np.add.at(moments, ends.body, masses[ends.node][:, None] * ends.offsets)
+        np.add.at(total, carrier, masses[attached])
+        np.add.at(moments, carrier, masses[attached][:, None] * offsets)
         heavy = total > 0.0
         bodies[:, :2] = total[:, None] * g
         bodies[heavy, 2:] = moments[heavy] / total[heavy, None]
@@ -152,19 +178,9 @@ class Structure:
 
         Displacements of order L and turns of order 1 carry an error of one unit in the last place, and a
         residual what this is worth by the entries of its row of the tangent. The factor 4 covers the few
-        operations between them. Short elements have large entries, their neighbours have not. An element
-        with roots has small entries too, but the error of the stiff section that is inside.
+        operations between them. Short elements have large entries, their neighbours have not.
         """
         terms = Symmetric(tangent.pattern, np.abs(tangent.data)).times(1.0 / self.measure)
-        e = self.elements
-        rooted = e.roots.any(axis=1)
-        if rooted.any():
-            rigidity = np.maximum(e.axial_rigidity, e.shear_rigidity) if self.shear else e.axial_rigidity
-            inside = (rigidity * self.length / e.length)[rooted]
-            places = self.numbers[rooted]
-            known = places >= 0
-            forces = np.broadcast_to(inside[:, None], places.shape)[known]
-            np.add.at(terms, places[known], forces * self.scale[places[known]] / self.force_unit)
         return np.asarray(4.0 * np.finfo(float).eps * terms)
 
     def body_slice(self, body: int) -> slice:
@@ -177,7 +193,7 @@ class Structure:
 
     def gathered(self, nodes: Array, bodies: Array) -> Array:
         """Return in the order of the coordinates (size,) what nodes (nodes, 3) and bodies (B, 3) have."""
-        return np.concatenate([nodes[self.free_nodes].ravel(), bodies.ravel()])
+        return np.concatenate([nodes.ravel()[self.nodal], bodies.ravel()])
 
     def nodal_masses(self) -> Array:
         """Return the mass of the strips that falls to each node, half of every element (nodes,) [kg]."""
@@ -185,36 +201,40 @@ class Structure:
         masses: Array = np.bincount(self.basis.mesh.t.ravel(), np.tile(half, 2)).astype(float)
         return masses
 
+    def at_nodes(self, y: Array) -> Array:
+        """Return what coordinates or velocities (size,) have of the nodes (nodes, 3), 0 where they follow."""
+        full = np.zeros(3 * self.strips * self.stations)
+        full[self.nodal] = y[: self.first_body]
+        return full.reshape(-1, 3)
+
     def displacement(self, y: Array) -> Array:
         """Return displacement and turn of all nodes, (nodes, 3) [m, rad]."""
-        full = np.zeros((self.strips * self.stations, 3))
-        full[self.free_nodes] = y[: self.first_body].reshape(-1, 3)
-        carry(y[self.first_body :].reshape(-1, 3), self.carried, full)
+        full = self.at_nodes(y)
+        carry(self.bodies(y), self.carried, full)
         return full
 
     def velocity(self, y: Array, v: Array) -> Array:
         """Return the rates of displacement and turn of all nodes, (nodes, 3) [m/s, rad/s]."""
-        full = np.zeros((self.strips * self.stations, 3))
-        bodies, rates = (part[self.first_body :].reshape(-1, 3) for part in (y, v))
-        full[self.free_nodes] = v[: self.first_body].reshape(-1, 3)
-        carry_velocity(bodies, rates, self.carried, full)
+        full = self.at_nodes(v)
+        carry_velocity(self.bodies(y), self.bodies(v), self.carried, full)
         return full
 
     def evaluate(self, y: Array, share: float = 1.0, asked: int = TANGENT) -> Evaluation:
         """Return gradient, tangent and energies at y under a share of weight and natural strains."""
-        many = len(self.numbers)
-        matrices = np.empty((many if asked != FORCES else 0, 6, 6))
-        tangent, gradient, ends = self.pattern.zero(), np.empty(self.size), np.empty((many, 5))
-        u, bodies = self.displacement(y), y[self.first_body :].reshape(-1, 3)
+        many, tangent = len(self.numbers), self.pattern.zero()
+        matrices, ends = np.zeros((many if asked != FORCES else 0, 8, 8)), np.empty((many, 5))
+        u, bodies = self.displacement(y), self.bodies(y)
         resultants, (force, scratch) = np.empty((len(bodies), RESULTANTS)), self.work
-        written, out = (force, ends, matrices, scratch), (gradient, resultants)
-        strain, gravity = _evaluate(self.tables, share, asked, u, bodies, self.free_nodes, written, out)
+        written = (force, ends, matrices, scratch)
+        strain, gravity = _evaluate(self.tables, share, asked, u, bodies, written, resultants)
         if asked != FORCES:
             tangent = self.reduced_matrix(matrices, y)
         if asked == TANGENT:
             tangent.data[self.pattern.diagonal[self.turns]] += resultants[:, 3:].sum(axis=1)
+            if len(self.springs[0]):
+                self.add_springs(tangent)
         return Evaluation(
-            gradient=gradient,
+            gradient=self.gathered(force, resultants[:, :3]),
             tangent=tangent,
             strain=strain,
             gravity=gravity,
@@ -223,13 +243,19 @@ class Structure:
             curvature=resultants[:, 3:],
         )
 
+    def add_springs(self, matrix: Symmetric, part: float = 1.0) -> None:
+        """Add a part of the stiffness of the roots to a matrix."""
+        places, signs = self.pattern.springs, np.array([[part, -part], [-part, part]])
+        values = self.springs[2][:, None, None] * signs
+        np.add.at(matrix.data, places[places >= 0], values[places >= 0])
+
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
-        """Assemble element matrices (E, 6, 6) into the reduced coordinates as P^T K P."""
-        return self.pattern.assembled(matrices, self.attachments.ends, self.carried, y[self.turns])
+        """Assemble element matrices (E, 8, 8) into the reduced coordinates as P^T K P: see `_assemble`."""
+        return self.pattern.assembled(matrices, self.ends, self.carried, y[self.turns])
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
-        places = y[:, self.first_body :].reshape(len(y), -1, 3).copy()
+        places = self.bodies(y).copy()
         places[..., :2] += self.points
         return places
 
@@ -245,8 +271,7 @@ class Structure:
         """Return what the share changes at fixed y: the gradient (size,), and the potential, once and twice.
 
         The gradient is linear in the share and the potential a parabola, of which the derivative at the full
-        share is returned; its bend is that of the energy of natural strains. Nearly so only where roots of
-        shear-deformable elements give way.
+        share is returned; its bend is that of the energy of natural strains.
         """
         none, half, full = (self.evaluate(y, share, FORCES) for share in (0.0, 0.5, 1.0))
         u_0, u_1, u_2 = (
@@ -264,26 +289,11 @@ def structure_of(model: Model) -> Structure:
 
 @kernel()
 def _evaluate(
-    tables: Tables,
-    share: float,
-    asked: int,
-    u: Array,
-    bodies: Array,
-    free_nodes: Indices,
-    written: Written,
-    out: tuple[Array, Array],
+    tables: Tables, share: float, asked: int, u: Array, bodies: Array, written: Written, resultants: Array
 ) -> tuple[Energies, float]:
-    """Write gradient and resultants `out`; return energies of the strips and of the full weight."""
-    (given, carried, weights), (gradient, resultants), force = tables, out, written[0]
-    strain = elements(given, share, asked, u, written)
+    """Write forces and resultants; return energies of the strips and of the full weight."""
+    (given, carried, weights, springs), force = tables, written[0]
+    bending, axial, shear = elements(given, share, asked, u, written)
     body_forces(share, bodies, carried, weights, force, resultants)
-    at = 0
-    for i in free_nodes:
-        for k in range(3):
-            gradient[at] = force[i, k]
-            at += 1
-    for b in range(len(bodies)):
-        for k in range(3):
-            gradient[at] = resultants[b, k]
-            at += 1
-    return strain, gravity_energy(weights, bodies, u)
+    bending += spring_forces(springs, 0.0, (bodies, bodies), (u, u), force, resultants)[0]
+    return (bending, axial, shear), gravity_energy(weights, bodies, u)

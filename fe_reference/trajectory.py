@@ -104,7 +104,7 @@ def trajectory(
     # the motion is reduced about other points of the bodies than the model's own structure
     own = structure_of(model)
     states = np.array([carried_over(structure, each, own) for each in y])
-    rates = np.array([carried_over(structure, at, own, rate)[own.first_body :] for at, rate in pairs])
+    rates = np.array([own.bodies(carried_over(structure, at, own, rate)) for at, rate in pairs])
     places = own.body_places(states)
     energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
     status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
@@ -113,7 +113,7 @@ def trajectory(
         message=motion.message,
         time=np.array(motion.time),
         bodies={name: places[:, k] for k, name in enumerate(model.body_names)},
-        rates={name: rates[:, 3 * k : 3 * k + 3] for k, name in enumerate(model.body_names)},
+        rates={name: rates[:, k] for k, name in enumerate(model.body_names)},
         **energies,
         shape=model.rest + moved.reshape(-1, *model.rest.shape),
         states=states,

@@ -222,17 +222,10 @@ def _design_of(modelled: Any, body: str | None) -> Mechanism:
     """Return the design of a pivot or mechanism of a model."""
     given = getattr(modelled, "design", modelled)
     bodies = tuple(Body(**_taken(Body, each)) for each in given.bodies)
-    on = {-1: GROUND, -2: None} | dict(enumerate(each.name for each in bodies))
-    strips = []
-    for strip in given.strips:
-        found = _taken(Strip, getattr(strip, "section", strip)) | _taken(Strip, strip)
-        if hasattr(strip, "nodes"):  # of elements, on bodies by their number
-            found |= {"start": strip.nodes[0], "end": strip.nodes[-1]}
-            found |= {"root": on[strip.root], "tip": on[strip.tip]}
-        strips.append(Strip(**found))
+    strips = tuple(Strip(**_taken(Strip, each)) for each in given.strips)
     moved = body or next((each.name for each in bodies), None)
     how: dict[str, Any] = {"rotation": None, "increments": 1, "effects": Effects()}
-    return Mechanism(strips=tuple(strips), bodies=bodies, body=moved, **how)
+    return Mechanism(strips=strips, bodies=bodies, body=moved, **how)
 
 
 def _taken(kind: Any, part: Any) -> dict[str, Any]:

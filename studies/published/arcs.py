@@ -172,8 +172,8 @@ def _led_on(path: Path, load: Array) -> tuple[Path, Array]:
     at = int(np.abs(load).argmax())
     held, last = np.append(path.control.held, at), path.last
     ends = last.y[held] + np.outer((0.0, 1.0), np.where(held == at, STEPS * PART * last.y[at], 0.0))
-    on = Path(control=replace(path.control, held=held, values=ends, load=None))
-    on.begin(last.y)
+    on = Path(control=path.control)
+    on.begin(replace(path.control, held=held, values=ends, load=None), last.y)
     unit = load[at] * on.control.slope[-1]
     for k in range(1, STEPS + 1):
         if not on.advance(k / STEPS) or on.states[-1].conjugate >= unit:

@@ -121,13 +121,13 @@ def test_derived_data_agree():
         design = TABLE_ONE | change
         ours, theirs = spline_model.cross_axis_pivot(**design), fe_reference.cross_axis_pivot(**design)
         one, other = ours.design.strips[0], theirs.strips[0]
-        ends = np.array([np.diff(each.nodes, axis=0)[[0, -1]] for each in theirs.strips])
+        ends = np.diff(theirs.rest, axis=1)[:, [0, -1]]
         for mine, right in (
             (
                 derived(one, one.length, ours.design.bodies[0]),
-                derived(other.section, other.length, theirs.body),
+                derived(other, theirs.lengths[0], theirs.body),
             ),
-            (ours.clamp_points, [each.nodes[[0, -1]] for each in theirs.strips]),
+            (ours.clamp_points, theirs.rest[:, [0, -1]]),
             (ours.clamp_directions, ends / np.linalg.norm(ends, axis=2, keepdims=True)),
         ):
             assert mine == pytest.approx(np.array(right), rel=1e-14, abs=1e-14)

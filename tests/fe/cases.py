@@ -1,22 +1,31 @@
 """What the tests of the finite elements share: the paper's pivot, a cantilever, limits of refinement."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fe_reference import Body, Model, Section, Strip, cross_axis_pivot
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+)
 from tests import table_one
+from tests.refusals import scene
 
 QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
 """Both elements where the interpreted forms of the second take seconds."""
 
 TABLE_1: dict[str, Any] = table_one.TABLE_ONE
 LENGTH = TABLE_1["length"]
-SECTION = Section(**table_one.SECTION)
-EI = SECTION.flexural_rigidity
+STRIP = StripDesign(name="strip", start=(0.0, 0.0), end=(LENGTH, 0.0), tip="body", **table_one.SECTION)
+EI = STRIP.flexural_rigidity
 #: Unit of moment and rotational stiffness in which errors are given.
 MOMENT = EI / LENGTH
 
@@ -26,16 +35,15 @@ def pivot(**changes: Any) -> Model:
     return cross_axis_pivot(**{**TABLE_1, **changes})
 
 
-def flat_strip(elements: int, section: Section = SECTION) -> Strip:
-    """Return a horizontal strip from the origin to a body."""
-    nodes = np.outer(np.linspace(0.0, LENGTH, elements + 1), (1.0, 0.0))
-    return Strip(section=section, nodes=nodes)
-
-
-def cantilever(*, elements: int, element: str = "corotational", section: Section = SECTION) -> Model:
-    """Return a horizontal strip, clamped on the left, with a massless body as its tip."""
-    strip = flat_strip(elements, section)
-    return Model(strips=(strip,), bodies=(Body(centre=np.array([LENGTH, 0.0])),), element=element)
+def cantilever(*, moment: float = 0.0, elements: int, element: str = "corotational", **changes: Any) -> Model:
+    """Return a horizontal strip, clamped on the left, with a massless body as its tip and a moment on it."""
+    return compliant_mechanism(
+        strips=[replace(STRIP, **changes)],
+        bodies=[BodyDesign(centre=(LENGTH, 0.0))],
+        elements=elements,
+        element=element,
+        **scene(DEFAULT_EFFECTS, applied_moment={"moment": moment}),
+    )
 
 
 def rotation_matrix(angle: float) -> np.ndarray:

@@ -94,7 +94,7 @@ def fields(structure: Structure, basis: Basis, vector: np.ndarray) -> dict[str, 
 
 def bent(structure: Structure) -> np.ndarray:
     """Return displacements and turns of the nodes (nodes, 3): turned by 100 deg and scattered."""
-    rest = np.concatenate([strip.nodes for strip in structure.model.strips])
+    rest = structure.model.rest.reshape(-1, 2)
     noise = np.random.default_rng(3).standard_normal((len(rest), 3))
     moved = rest @ rotation_matrix(1.7).T - rest + 0.05 * LENGTH / structure.stations * noise[:, :2]
     return np.column_stack([moved, 1.7 + 0.2 * noise[:, 2]])

@@ -5,7 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference import DEFAULT_EFFECTS, ELEMENTS, cross_axis_pivot, solve_loads, solve_statics, strip_fields
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    ELEMENTS,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+    strip_fields,
+)
 from tests.fe.scenes import SIDED, WIDE, guide
 from tests.gates import hold
 from tests.table_one import BARE
@@ -37,10 +44,11 @@ def test_curvature_is_the_slope_of_the_rotation(element: str) -> None:
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_sides_without_a_curl_change_nothing(element: str) -> None:
     """Without a Poisson effect and with stiff roots a strip is a beam, to the last digit."""
+    pulled: dict[str, dict[str, Any]] = {"applied_force": {"force": (3.0, -2.0)}}
     nothing = {"clamped_width": {}, "anticlastic": {}, "root_compliance": {"root": 0.0}}
     strip = WIDE | {"poisson_ratio": 0.0}
-    bare, named = (guide(each, section=strip, element=element) for each in ({}, nothing))
-    one, other = (solve_loads(model, force=(3.0, -2.0), increments=2) for model in (bare, named))
+    bare, named = (guide(each, section=strip, element=element) for each in (pulled, pulled | nothing))
+    one, other = (solve_mechanism(model, increments=2) for model in (bare, named))
     for name in ("states", "curvature", "strain_energy", "largest_stress", "stiffness"):
         if hasattr(one, name):
             assert np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True)
