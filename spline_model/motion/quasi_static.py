@@ -155,8 +155,8 @@ def _run(
         moving = 1.0 if k >= begin else 0.0
         for i in range(poses.load.size * int(moving)):
             poses.load[i] = 0.0
-        for f in range(masses.load_body.size * int(moving)):
-            poses.load[masses.load_body[f]] += load_at(f, time + k * step + 0.5 * step, masses)
+        for f in range(masses.load_at.size * int(moving)):
+            poses.load[masses.load_at[f]] += load_at(f, time + k * step + 0.5 * step, masses)
         solved = solve(step, moving, poses, masses, arrays, tolerance, counters)
         if moving == 0.0:
             if not solved:
@@ -180,7 +180,7 @@ class _Stepper(Moves):
 
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:
         self.motion, self._model = start.motion, model
-        self._masses = Masses.of(self.motion, len(model.bodies.rest))
+        self._masses = Masses.of(self.motion, model)
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / model.system.scales.pose
         self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))

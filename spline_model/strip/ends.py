@@ -48,6 +48,39 @@ def to_ends(v, at, ends, tip, root, out, first, behind):
 
 
 @part()
+def to_coordinates(s, v, last, ends, strips, out):
+    """A covector v (2 n) of the control points in the coordinates of the element, its poses from last on."""
+    first = v.size - 8
+    for i in range(first):
+        out[i] = v[i]
+    to_ends(v, first, ends, strips.tips[s] >= 0, strips.roots[s] >= 0, out, first, last)
+
+
+@part()
+def rates_of_end(s, e, rate, strips):
+    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
+    body = strips.tips[s] if e else strips.roots[s]
+    x = y = turn = 0.0
+    if body >= 0:
+        x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
+    return x, y, turn
+
+
+@part()
+def move_points(s, at, rate, strips, local, along):
+    """Rates (2 n) of the control points of a placed strip by those of its w, from rate[at] on, and poses."""
+    ends, first = local.map[s], along.size - 8
+    for i in range(first):
+        along[i] = rate[at + i]
+    for e in range(2):
+        inner, outer, stick, lever, reach = first + 2 * e, first + 6 - 2 * e, 2 * e, 8 - 4 * e, at + first + e
+        x, y, turn = rates_of_end(s, e, rate, strips)
+        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach]
+        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach]
+        along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
+
+
+@part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
     points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], local.scratch[16], strips.numbers[s]

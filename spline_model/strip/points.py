@@ -142,7 +142,7 @@ def add_slopes(moving, d1, d2, slopes, gradient):
 
 
 @lane()
-def _couple(moving, d1, share, tangent, row):
+def couple(moving, d1, share, tangent, row):
     """Coupling of one axial force to the first ``moving`` places."""
     tx, ty = tangent
     for i in range(moving):
@@ -155,7 +155,7 @@ def _couple(moving, d1, share, tangent, row):
 
 
 @part()
-def _add_gaps(s, a, strips, local):
+def add_gaps(s, a, strips, local):
     """Gap of all axial forces; returns their own energy."""
     along, compliance, lanes, gap = strips.along[s], strips.compliance[s], local.lanes[s], local.gap[s]
     axial = 0.0
@@ -176,7 +176,7 @@ def _add_axial(s, count, moving, shape, strips, local):
     for k in range(count):
         for p in range(along.shape[0]):
             share[p] = along[p, MODES + k]
-        _couple(moving, d1, share, tangent, local.nodal[s, first + k])
+        couple(moving, d1, share, tangent, local.nodal[s, first + k])
 
 
 @part()
@@ -200,15 +200,36 @@ def _add_hessian(moving, products, pairs, lanes, hessian):
 
 
 @part()
-def evaluate_residual(s, a, moving, shape, strips, local, out):
+def take_strains(s, shape, strips, local):
+    """The curve of a placed strip and, times the weights, the strains that axial forces see, in its lanes."""
+    lanes, along, strain = local.lanes[s], strips.along[s], strips.numbers[s, STRAIN]
+    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(lanes, 0))
+    for p in range(along.shape[0]):
+        v = math.sqrt(lanes[0, p] * lanes[0, p] + lanes[1, p] * lanes[1, p])
+        lanes[SPEED_AT, p] = v
+        lanes[PULL_AT, p] = shape.rule[WEIGHT, p] * (v - (1.0 + strain) * along[p, SPEED])
+
+
+@part()
+def forces_of_strains(s, strips, local, a):
+    """Axial forces (K,) by the strains that were taken; none of those without compliance."""
+    along = strips.along[s]
+    for k in range(a.size):
+        total, compliance = 0.0, strips.compliance[s, k]
+        for p in range(along.shape[0]):
+            total += along[p, MODES + k] * local.lanes[s, PULL_AT, p]
+        a[k] = total / compliance if compliance > 0.0 else 0.0
+
+
+@part()
+def evaluate_curve(s, a, moving, shape, strips, local, out):
     """Fill the gradient of the first ``moving`` places of strip s, the gaps, and the rows of its lanes.
 
-    Adds bending, axial and the dead load's energy to the first three of out; out[3] becomes the least v / J0.
+    The curve is there already. Adds bending, axial and the dead load's energy to the first three of out;
+    out[3] becomes the least v / J0.
     """
     numbers, lanes = strips.numbers[s], local.lanes[s]
-    d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
-    curve_at(points, d1, d2, four(lanes, 0))
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
@@ -221,10 +242,17 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
-    add_slopes(moving, d1, d2, four(lanes, 4), gradient)
+    add_slopes(moving, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
     out[0] += bending
-    out[1] += axial + _add_gaps(s, a, strips, local)
+    out[1] += axial + add_gaps(s, a, strips, local)
     out[3] = min(out[3], slowest)
+
+
+@part()
+def evaluate_residual(s, a, moving, shape, strips, local, out):
+    """The same of control points whose curve is not known yet."""
+    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(local.lanes[s], 0))
+    evaluate_curve(s, a, moving, shape, strips, local, out)
 
 
 @part()
