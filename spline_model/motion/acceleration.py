@@ -20,83 +20,65 @@ CMAME 1 (1972) 1). Its rows come with the inner points eliminated, and times a r
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple
+import math
 
-import numpy as np
-
-from spline_model.motion.arrays import Array, Masses, Places, sizes_of, zeros
 from spline_model.reduced.assembly import place_of, scatter
-from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
-from spline_model.strip.element import GRADIENT, HESSIAN_AT, MODES, PULL_AT, SPEED_AT, WEIGHT
-from spline_model.strip.ends import move_points, place_points, to_ends
-from spline_model.strip.points import couple, curve_at, evaluate_curve, forces_of_strains, four, take_strains
+from spline_model.strip.element import (
+    CURL,
+    FORCE_AT,
+    GIVEN,
+    GRADIENT,
+    HESSIAN_AT,
+    MODES,
+    ON_POINTS,
+    POINTS,
+    PULL_AT,
+    SPEED_AT,
+    STRAIN,
+    STRETCHING,
+    WEIGHT,
+)
+from spline_model.strip.ends import move_points, place_in_frames, to_ends, turned_frame
+from spline_model.strip.points import (
+    add_mode,
+    add_slopes,
+    couple,
+    curve_at,
+    flatten_at,
+    four,
+    lengths_at,
+    slopes_at,
+)
 
 
-class Grid(NamedTuple):
-    """Constants of S strips with I inner points.
-
-    inverse (S, I, I) B_ii^-1, white its root C^T, C C^T = B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the
-    end points' mass; ties (S, n, G) d1 of the end points less W^T of the inner ones, and C^T of these;
-    tied (S,) leading axial forces that hold the length; outer: 1 with any, the first stays with the bodies.
-    """
-
-    inverse: Array
-    white: Array
-    follow: Array
-    ends: Array
-    ties: Array
-    tied: Places
-    outer: int
-
-    @classmethod
-    def of(cls, model: Reduced, masses: Masses) -> Grid:
-        """The constants of strips with mass."""
-        inner, mass, d1 = masses.points.shape[1] - 4, masses.points, model.shape.curve[0]
-        inverse = np.asarray(np.linalg.inv(mass[:, :inner, :inner]), dtype=float)
-        across = mass[:, :inner, inner:]
-        follow, white = inverse @ across, np.linalg.cholesky(inverse).transpose(0, 2, 1)
-        at_ends = d1[inner:] - follow.transpose(0, 2, 1) @ d1[:inner]
-        tied = np.cumprod(model.strips.compliance == 0.0, axis=1).sum(axis=1).astype(np.int64)
-        return cls(
-            inverse=inverse,
-            white=np.ascontiguousarray(white),
-            follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
-            ends=mass[:, inner:, inner:] - across.transpose(0, 2, 1) @ follow,
-            ties=np.concatenate((white @ d1[:inner], at_ends), axis=1),
-            tied=tied,
-            outer=int(tied.any()),
-        )
-
-
-class Room(NamedTuple):
-    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean of a
-    step; drift: accelerations of the end points by the rates; rows, rest: of what tied forces keep; g, h,
-    solved of a strip; tangent, load of the bodies.
-    """
-
-    x: Annotated[Array, "Y"]
-    u: Annotated[Array, "Y"]
-    push: Annotated[Array, "Y"]
-    mean: Annotated[Array, "Y"]
-    drift: Annotated[Array, "S 8"]
-    rows: Annotated[Array, "S K 2n"]
-    rest: Annotated[Array, "K"]
-    covector: Annotated[Array, "8"]
-    along: Annotated[Array, "2n"]
-    inner: Annotated[Array, "2n"]
-    g: Annotated[Array, "S E"]
-    h: Annotated[Array, "S E E"]
-    solved: Annotated[Array, "E"]
-    tangent: Annotated[Array, "Q' Q'"]
-    load: Annotated[Array, "Q'"]
-
-    @classmethod
-    def of(cls, model: Reduced, masses: Masses, grid: Grid) -> Room:
-        """Working arrays."""
-        sizes = sizes_of(model, masses)
-        return zeros(cls, sizes | {"E": 8 + sizes["K"], "Q'": sizes["Q"] + sizes["S"] * grid.outer})
+@part()
+def _push(s, a, grid, shape, strips, local):
+    """The gradient of a placed strip, with the axial forces that its strains give."""
+    numbers, lanes, along, weights = strips.numbers[s], local.lanes[s], strips.along[s], shape.rule[WEIGHT]
+    d1, d2, gradient, modes = shape.curve[0], shape.curve[1], local.nodal[s, GRADIENT], grid.modes[s]
+    curve_at(local.nodal[s, POINTS], d1, d2, four(lanes, 0))
+    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, numbers[STRAIN], lanes[SPEED_AT], lanes[PULL_AT])
+    force = lanes[FORCE_AT]
+    for p in range(force.size):
+        force[p] = 0.0
+    for k in range(a.size):
+        total = 0.0
+        for p in range(force.size):
+            total += modes[k, p] * lanes[PULL_AT, p]
+        a[k] = total * grid.stiffness[s, k]
+        add_mode(a[k], modes[k], force)
+    if along[0, CURL] > 0.0:
+        flatten_at(s, strips, lanes)
+    slopes_at(
+        strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, lanes[0], lanes[1], lanes[2], lanes[3],
+        lanes[4], lanes[5], lanes[6], lanes[7], lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1],
+        lanes[GIVEN + 2], lanes[GIVEN + 4], force,
+    )  # fmt: skip
+    for i in range(gradient.size):
+        gradient[i] = -numbers[ON_POINTS + i]
+    add_slopes(d1.shape[0], d1, d2, four(lanes, 4), gradient)
 
 
 @part()
@@ -131,33 +113,33 @@ def _add_ties(s, tied, sharpness, grid, shape, strips, local, room):
 
 
 @part()
-def _mass_of_ends(m, ends, tip, root, first, h):
-    """Upper mass matrix T^T m T of the end points, those of the bodies from the place ``first`` on."""
-    for e in range(2):
-        x, y, body, mine = ends[2 * e], ends[2 * e + 1], tip if e else root, first if e else first + 3 * tip
-        ax, ay, bx, by = ends[8 - 4 * e], ends[9 - 4 * e], ends[10 - 4 * e], ends[11 - 4 * e]
-        for f in range(2):
-            lever, other = 8 - 4 * f, first if f else first + 3 * tip
-            ii, io, oi, oo = m[e, f], m[e, 3 - f], m[3 - e, f], m[3 - e, 3 - f]
-            if f >= e:
-                h[e, f] = ii * (x * ends[2 * f] + y * ends[2 * f + 1])
-            if not (tip if f else root):
-                continue
-            px, py, qx, qy = ends[lever], ends[lever + 1], ends[lever + 2], ends[lever + 3]
-            inner_x, inner_y = ii * px + io * qx, ii * py + io * qy
-            outer_x, outer_y = oi * px + oo * qx, oi * py + oo * qy
-            h[e, other], h[e, other + 1] = (ii + io) * x, (ii + io) * y
-            h[e, other + 2] = x * inner_x + y * inner_y
-            if not body or mine > other:
-                continue
-            h[mine, other] = h[mine + 1, other + 1] = ii + io + oi + oo
-            h[mine, other + 1] = 0.0
-            h[mine, other + 2], h[mine + 1, other + 2] = inner_x + outer_x, inner_y + outer_y
-            h[mine + 2, other + 2] = ax * inner_x + ay * inner_y + bx * outer_x + by * outer_y
-            if mine < other:
-                h[mine + 1, other] = 0.0
-                h[mine + 2, other] = (ii + io) * ax + (oi + oo) * bx
-                h[mine + 2, other + 1] = (ii + io) * ay + (oi + oo) * by
+def _set_mass(e, f, m, ends, tip, root, first, h):
+    """Upper mass matrix T^T m T of the end points at an end e and at f, 0 the root and 1 the tip.
+
+    Bodies follow from the place ``first`` on, that of the tip first.
+    """
+    x, y, lever, far = ends[2 * e], ends[2 * e + 1], 8 - 4 * e, 8 - 4 * f
+    ii, io, oi, oo = m[e, f], m[e, 3 - f], m[3 - e, f], m[3 - e, 3 - f]
+    mine, other = first if e else first + 3 * tip, first if f else first + 3 * tip
+    if f >= e:
+        h[e, f] = ii * (x * ends[2 * f] + y * ends[2 * f + 1])
+    if not (tip if f else root):
+        return
+    px, py, qx, qy = ends[far], ends[far + 1], ends[far + 2], ends[far + 3]
+    inner_x, inner_y = ii * px + io * qx, ii * py + io * qy
+    outer_x, outer_y = oi * px + oo * qx, oi * py + oo * qy
+    h[e, other], h[e, other + 1], h[e, other + 2] = (ii + io) * x, (ii + io) * y, x * inner_x + y * inner_y
+    if mine > other or not (tip if e else root):
+        return
+    ax, ay, bx, by = ends[lever], ends[lever + 1], ends[lever + 2], ends[lever + 3]
+    h[mine, other] = h[mine + 1, other + 1] = ii + io + oi + oo
+    h[mine, other + 1] = 0.0
+    h[mine, other + 2], h[mine + 1, other + 2] = inner_x + outer_x, inner_y + outer_y
+    h[mine + 2, other + 2] = ax * inner_x + ay * inner_y + bx * outer_x + by * outer_y
+    if mine < other:
+        h[mine + 1, other] = 0.0
+        h[mine + 2, other] = (ii + io) * ax + (oi + oo) * bx
+        h[mine + 2, other + 1] = (ii + io) * ay + (oi + oo) * by
 
 
 @part()
@@ -185,7 +167,10 @@ def _strip_system(s, tied, grid, strips, local, room):
     count, tip, root = follow.shape[1], strips.tips[s] >= 0, strips.roots[s] >= 0
     first, g, h, c, ends = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector, local.map[s]
     size, inner = first + 3 * tip + 3 * root, room.inner
-    _mass_of_ends(m, ends, tip, root, first, h)
+    _set_mass(0, 0, m, ends, tip, root, first, h)
+    _set_mass(0, 1, m, ends, tip, root, first, h)
+    _set_mass(1, 0, m, ends, tip, root, first, h)
+    _set_mass(1, 1, m, ends, tip, root, first, h)
     for p in range(4):
         x, y = -force[2 * (count + p)], -force[2 * (count + p) + 1]
         for i in range(count):
@@ -286,6 +271,8 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
     own, tangent, load = 2 * n - 6, room.tangent, room.load
+    for b in range(poses // 3):
+        room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
     for i in range(load.size):
         load[i] = bodies.weight[i] if i < poses else 0.0
         for j in range(i, load.size):
@@ -294,10 +281,12 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]
-        place_points(s, y[at : at + own], y, strips, local)
-        take_strains(s, shape, strips, local)
-        forces_of_strains(s, strips, local, a)
-        evaluate_curve(s, a, n, shape, strips, local, arrays.space.out)
+        for e in range(2):
+            turned_frame(
+                strips.tips[s] if e else strips.roots[s], y, grid.frames[s, e], room.turns, room.ends[e]
+            )
+        place_in_frames(s, y[at : at + own], room.ends[0], room.ends[1], strips, local)
+        _push(s, a, grid, shape, strips, local)
         _set_drift(s, at + own - 2, w, strips, local.map[s], room.drift[s])
         if tied > 0:
             move_points(s, at, w, strips, local, room.along)

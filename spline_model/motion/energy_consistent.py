@@ -24,7 +24,7 @@ from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
-from spline_model.motion.strip import SLOPE, lost_between
+from spline_model.motion.strip import SLOPE, keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
@@ -87,15 +87,6 @@ def _count_work(time, h, active, state, masses, work):
 
 
 @part()
-def keep_curve(s, strips, local, state):
-    """Keep map and curve of a strip that was evaluated."""
-    copy(local.map[s], state.map[s])
-    for i in range(4):
-        copy(local.lanes[s, i], state.curve[s, i])
-    copy(local.lanes[s, SPEED_AT], state.curve[s, 4])
-
-
-@part()
 def _accept(time, h, active, state, arrays, masses, work):
     """Take the solved step: energy balance of work and losses, velocities, coordinates."""
     strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
@@ -120,19 +111,6 @@ def _accept(time, h, active, state, arrays, masses, work):
         keep_curve(s, strips, local, state)
         _hold(s, state, strips, work)
     copy(work.y, state.y)
-
-
-@part()
-def quadratic(matrix, v):
-    """v . M v of both components of v (2 n), M (n, n)."""
-    total = 0.0
-    for i in range(matrix.shape[0]):
-        x = y = 0.0
-        for j in range(matrix.shape[0]):
-            x += matrix[i, j] * v[2 * j]
-            y += matrix[i, j] * v[2 * j + 1]
-        total += x * v[2 * i] + y * v[2 * i + 1]
-    return total
 
 
 @kernel()

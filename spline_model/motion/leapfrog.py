@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 import sys
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +27,8 @@ from numpy.typing import NDArray
 from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent
-from spline_model.motion.acceleration import Grid, Room, accelerate
-from spline_model.motion.arrays import Masses, State
+from spline_model.motion.acceleration import accelerate
+from spline_model.motion.arrays import Masses, Places, State, sizes_of, zeros
 from spline_model.motion.energy_consistent import forward, store
 from spline_model.motion.start import Motion, Start
 from spline_model.reduced.model import Reduced
@@ -47,6 +48,85 @@ LARGEST_GAIN = 1e-2
 """Of energy over that at the start: it is kept in the limit of short steps only."""
 SHARPNESS = 0.1
 """O h of inextensible strips: what a step leaves of their strain dies out over a few steps."""
+
+
+class _Grid(NamedTuple):
+    """Constants of S strips with I inner points.
+
+    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; modes
+    (S, K, G) and stiffness (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T,
+    C C^T = B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end points' mass; ties (S, n, G) d1 of the end
+    points less W^T of the inner ones, and C^T of these; tied (S,) leading axial forces that hold the length;
+    outer: 1 with any, the first stays with the bodies.
+    """
+
+    frames: Array
+    modes: Array
+    stiffness: Array
+    inverse: Array
+    white: Array
+    follow: Array
+    ends: Array
+    ties: Array
+    tied: Places
+    outer: int
+
+    @classmethod
+    def of(cls, model: Reduced, masses: Masses) -> _Grid:
+        """The constants of strips with mass."""
+        c = model.strips.compliance
+        inner, mass, d1 = masses.points.shape[1] - 4, masses.points, model.shape.curve[0]
+        inverse = np.asarray(np.linalg.inv(mass[:, :inner, :inner]), dtype=float)
+        across = mass[:, :inner, inner:]
+        follow, white = inverse @ across, np.linalg.cholesky(inverse).transpose(0, 2, 1)
+        at_ends = d1[inner:] - follow.transpose(0, 2, 1) @ d1[:inner]
+        frames = np.stack((model.strips.root, model.strips.tip), axis=1)[:, :, [0, 1, 2, 2]]
+        frames[..., 2], frames[..., 3] = np.cos(frames[..., 2]), np.sin(frames[..., 3])
+        tied = np.cumprod(c == 0.0, axis=1).sum(axis=1).astype(np.int64)
+        return cls(
+            frames=frames,
+            modes=np.ascontiguousarray(model.strips.modes.transpose(0, 2, 1)),
+            stiffness=1.0 / np.where(c > 0.0, c, np.inf),
+            inverse=inverse,
+            white=np.ascontiguousarray(white),
+            follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
+            ends=mass[:, inner:, inner:] - across.transpose(0, 2, 1) @ follow,
+            ties=np.concatenate((white @ d1[:inner], at_ends), axis=1),
+            tied=tied,
+            outer=int(tied.any()),
+        )
+
+
+class _Room(NamedTuple):
+    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean of a
+    step; turns: cosine and sine of the bodies; ends: frames; drift: accelerations of the end points by the
+    rates; rows, rest: of what tied forces keep; g, h, solved of a strip; tangent, load of the bodies.
+    """
+
+    x: Annotated[Array, "Y"]
+    u: Annotated[Array, "Y"]
+    push: Annotated[Array, "Y"]
+    mean: Annotated[Array, "Y"]
+    turns: Annotated[Array, "B 2"]
+    ends: Annotated[Array, "2 6"]
+    drift: Annotated[Array, "S 8"]
+    rows: Annotated[Array, "S K 2n"]
+    rest: Annotated[Array, "K"]
+    covector: Annotated[Array, "8"]
+    along: Annotated[Array, "2n"]
+    inner: Annotated[Array, "2n"]
+    g: Annotated[Array, "S E"]
+    h: Annotated[Array, "S E E"]
+    solved: Annotated[Array, "E"]
+    tangent: Annotated[Array, "Q' Q'"]
+    load: Annotated[Array, "Q'"]
+
+    @classmethod
+    def of(cls, model: Reduced, masses: Masses, grid: _Grid) -> _Room:
+        """Working arrays."""
+        sizes = sizes_of(model, masses)
+        sizes |= {"B": sizes["Q"] // 3, "E": 8 + sizes["K"], "Q'": sizes["Q"] + sizes["S"] * grid.outer}
+        return zeros(cls, sizes)
 
 
 @part()
@@ -130,9 +210,10 @@ class Stepper(energy_consistent.Stepper):
         require_explicit(start.motion)
         super().__init__(start)
         model, masses, state = self.model, self._masses, self._state
-        grid = Grid.of(model, masses)
+        grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
-        w, room = _rates_of(model, masses, state), Room.of(model, masses, grid)
+        w, room = _rates_of(model, masses, state), _Room.of(model, masses, grid)
+        self.record()  # fills what is given along the strips
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:

@@ -242,3 +242,25 @@ def lost_between(s, h, old, strips, shape, relaxation, local):
                 change += weights[p] * along[p, MODES + k] * (lanes[SPEED_AT, p] - old[4, p])
             lost += rate * change * change / strips.compliance[s, k]
     return lost
+
+
+@part()
+def keep_curve(s, strips, local, state):
+    """Keep map and curve of a strip that was evaluated."""
+    copy(local.map[s], state.map[s])
+    for i in range(4):
+        copy(local.lanes[s, i], state.curve[s, i])
+    copy(local.lanes[s, SPEED_AT], state.curve[s, 4])
+
+
+@part()
+def quadratic(matrix, v):
+    """v . M v of both components of v (2 n), M (n, n)."""
+    total = 0.0
+    for i in range(matrix.shape[0]):
+        x = y = 0.0
+        for j in range(matrix.shape[0]):
+            x += matrix[i, j] * v[2 * j]
+            y += matrix[i, j] * v[2 * j + 1]
+        total += x * v[2 * i] + y * v[2 * i + 1]
+    return total

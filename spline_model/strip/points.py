@@ -36,6 +36,7 @@ from spline_model.strip.laws import (
     bending_law,
     by_curve,
     curl_law,
+    stretching_law,
 )
 
 
@@ -60,6 +61,14 @@ def curve_at(points, d1, d2, curve):
             y2[p] += d2[i, p] * y
 
 
+@lane()
+def lengths_at(x1, y1, speed, weights, strain, lengths, pulls):
+    """|C'| and, times the weights, the strains that axial forces see."""
+    for p in range(x1.size):
+        v = math.sqrt(x1[p] * x1[p] + y1[p] * y1[p])
+        lengths[p], pulls[p] = v, weights[p] * (v - (1.0 + strain) * speed[p])
+
+
 @part()
 def _given_at(s, a, strips, lanes):
     """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, N."""
@@ -70,11 +79,44 @@ def _given_at(s, a, strips, lanes):
             force += at[MODES + k] * a[k]
         lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
         lanes[FORCE_AT, p] = force
-        if at[CURL] > 0.0:
-            x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
-            phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
-            factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
-            lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
+    if along[0, CURL] > 0.0:
+        flatten_at(s, strips, lanes)
+
+
+@part()
+def flatten_at(s, strips, lanes):
+    """Factors of ``curl_law`` at the Gauss points."""
+    for p in range(lanes.shape[1]):
+        at, x1, y1, x2, y2 = strips.along[s, p], lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
+        phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
+        factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
+        lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
+
+
+@lane()
+def add_mode(a, mode, force):
+    """Add a mode of the axial force."""
+    for p in range(mode.size):
+        force[p] += a * mode[p]
+
+
+@lane()
+def slopes_at(
+    measure, strain, stretching, weights, x1, y1, x2, y2, g0, g1, g2, g3, lengths, speed, curvature, rigidity,
+    by_m, force,
+):  # fmt: skip
+    """Of ``laws_at`` the derivatives of the energy in x', y', x'' and y'' alone."""
+    for p in range(weights.size):
+        a1, b1, a2, b2, v, weight = x1[p], y1[p], x2[p], y2[p], lengths[p], weights[p]
+        r = 1.0 / (v * v)
+        phi = (a1 * b2 - b1 * a2) * r
+        _, m, _, _, f, _ = bending_law(phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure)
+        f += force[p]
+        if stretching > 0.0:
+            f += stretching_law(v, speed[p], strain, stretching, measure)[1]
+        bend, pull = weight * m * by_m[p] * r, weight * f / v
+        g0[p], g1[p] = bend * (b2 - 2.0 * phi * a1) + pull * a1, pull * b1 - bend * (a2 + 2.0 * phi * b1)
+        g2[p], g3[p] = -bend * b1, bend * a1
 
 
 @lane()
@@ -205,9 +247,9 @@ def take_strains(s, shape, strips, local):
     lanes, along, strain = local.lanes[s], strips.along[s], strips.numbers[s, STRAIN]
     curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(lanes, 0))
     for p in range(along.shape[0]):
-        v = math.sqrt(lanes[0, p] * lanes[0, p] + lanes[1, p] * lanes[1, p])
-        lanes[SPEED_AT, p] = v
-        lanes[PULL_AT, p] = shape.rule[WEIGHT, p] * (v - (1.0 + strain) * along[p, SPEED])
+        lanes[GIVEN, p] = along[p, SPEED]
+    weights, lengths, pulls = shape.rule[WEIGHT], lanes[SPEED_AT], lanes[PULL_AT]
+    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, strain, lengths, pulls)
 
 
 @part()
@@ -223,10 +265,10 @@ def forces_of_strains(s, strips, local, a):
 
 @part()
 def evaluate_curve(s, a, moving, shape, strips, local, out):
-    """Fill the gradient of the first ``moving`` places of strip s, the gaps, and the rows of its lanes.
+    """Fill the gradient of the first ``moving`` places of strip s, and the rows of its lanes.
 
-    The curve is there already. Adds bending, axial and the dead load's energy to the first three of out;
-    out[3] becomes the least v / J0.
+    The curve is there already. Adds bending, axial and the dead load's energy to the first three of out, but
+    for that of axial forces; out[3] becomes the least v / J0.
     """
     numbers, lanes = strips.numbers[s], local.lanes[s]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
@@ -244,15 +286,16 @@ def evaluate_curve(s, a, moving, shape, strips, local, out):
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
     out[0] += bending
-    out[1] += axial + add_gaps(s, a, strips, local)
+    out[1] += axial
     out[3] = min(out[3], slowest)
 
 
 @part()
 def evaluate_residual(s, a, moving, shape, strips, local, out):
-    """The same of control points whose curve is not known yet."""
+    """The same of control points whose curve is not known yet, with the gaps and energy of axial forces."""
     curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(local.lanes[s], 0))
     evaluate_curve(s, a, moving, shape, strips, local, out)
+    out[1] += add_gaps(s, a, strips, local)
 
 
 @part()
