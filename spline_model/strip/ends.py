@@ -29,7 +29,7 @@ def end_frame(body, numbers, end, pose, out):
 
 @part()
 def turned_frame(body, pose, frame, turns, out):
-    """The same from point and direction (4,) in the frame of the body, by the cosine and sine of its angle."""
+    """The same from point and direction (4,) on the body, by the cosine and sine of its angle."""
     if body < 0:
         out[0], out[1], out[2], out[3], out[4], out[5] = frame[0], frame[1], frame[2], frame[3], 0.0, 0.0
     else:
