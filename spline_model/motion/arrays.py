@@ -210,7 +210,7 @@ class Poses(NamedTuple):
 
     y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
     slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    what the last step's, of length last [s], left out; system, x, free; still: places of what has no mass.
+    what the last step's, of length last [s], left out; system, x: what is solved; still: what has no mass.
     """
 
     y: Annotated[Array, "Y"]
@@ -228,7 +228,6 @@ class Poses(NamedTuple):
     last: Annotated[Array, "1"]
     system: Annotated[Array, "Q' Q'"]
     x: Annotated[Array, "Q'"]
-    free: Annotated[Places, "Q'"]
     still: Annotated[Places, "0"]
 
     @classmethod
