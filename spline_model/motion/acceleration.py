@@ -1,219 +1,256 @@
-"""Accelerations of a free mechanism in its reduced coordinates, strip by strip, compiled.
-
-    r = (poses of the bodies, free strip ends among them; P_2 ... P_(n-3), s_A, s_B of each strip)
+"""Accelerations of a free mechanism in its coordinates y, strip by strip, compiled.
 
 Clamps hold by construction. A strip's mass is constant in its control points and the same along both axes,
-B: its inner points i follow from its four end points p = (1, n - 2, n - 1, 0),
+B: its inner points i follow from its four end points p, which are last in the order of elimination,
 
     A_i = -B_ii^-1 f_i - W A_p,   W = B_ii^-1 B_ip,   (B_pp - B_pi W) A_p = -(f_p - W^T f_i),
 
 whose accelerations are A_p = T (s_A'', s_B'', bodies'') + what the rates make of them. s_A, s_B and the axial
-forces of strips that cannot stretch are eliminated, and the bodies' small system remains. The rows of such
-forces come with the inner points eliminated, and times a root of B_ii^-1 in them (``Grid.ties``).
+forces of strips that cannot stretch are eliminated, and the bodies' small system remains.
+
+Axial forces follow at each mode from its strain over its compliance. Of a strip that cannot stretch they
+are unknown, and what a mode of them asks of the accelerations of the control points,
+
+    sum b A = -rest,   b = int mode t dC' / dP,   rest = int mode (|dC'/dt|^2 - (t . dC'/dt)^2) / |C'|
+                                                         + 2 O (its strain's rate) + O^2 (its strain),
+
+keeps its strain at zero: the last two let what round-off and the step leave of it die out (Baumgarte,
+CMAME 1 (1972) 1). Its rows come with the inner points eliminated, and times a root of B_ii^-1 in them.
 """
 
 from __future__ import annotations
 
 import math
 
-from spline_model.motion.forces import (
-    INNER_ROOT,
-    INNER_TIP,
-    ROOT,
-    TIP,
-    add_forces,
-    add_ties,
-    move,
-    place,
-)
-from spline_model.reduced.assembly import scatter
+from spline_model.reduced.assembly import place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
+from spline_model.strip.element import (
+    CURL,
+    FORCE_AT,
+    GIVEN,
+    GRADIENT,
+    HESSIAN_AT,
+    MODES,
+    ON_POINTS,
+    POINTS,
+    PULL_AT,
+    SPEED_AT,
+    STRAIN,
+    STRETCHING,
+    WEIGHT,
+)
+from spline_model.strip.ends import move_points, place_in_frames, to_ends, turned_frame
+from spline_model.strip.points import (
+    add_mode,
+    add_slopes,
+    couple,
+    curve_at,
+    flatten_at,
+    four,
+    lengths_at,
+    slopes_at,
+)
 
 
 @part()
-def _to_ends(c, ends, lever, tip, root, out):
-    """A covector (2, 4) of the end points in (s_A, s_B, pose of the tip's body, of the root's): out (8,)."""
-    out[0] = ends[0, 2] * c[0, INNER_ROOT] + ends[0, 3] * c[1, INNER_ROOT]
-    out[1] = ends[1, 2] * c[0, INNER_TIP] + ends[1, 3] * c[1, INNER_TIP]
-    k = 2
-    if tip:
-        out[k], out[k + 1] = c[0, INNER_TIP] + c[0, TIP], c[1, INNER_TIP] + c[1, TIP]
-        out[k + 2] = lever[0] * c[0, INNER_TIP] + lever[1] * c[1, INNER_TIP]
-        out[k + 2] += lever[2] * c[0, TIP] + lever[3] * c[1, TIP]
-        k += 3
-    if root:
-        out[k], out[k + 1] = c[0, INNER_ROOT] + c[0, ROOT], c[1, INNER_ROOT] + c[1, ROOT]
-        out[k + 2] = lever[4] * c[0, INNER_ROOT] + lever[5] * c[1, INNER_ROOT]
-        out[k + 2] += lever[6] * c[0, ROOT] + lever[7] * c[1, ROOT]
-
-
-@part()
-def _mass_of_ends(m, ends, lever, tip, root, first, h):
-    """Upper mass matrix T^T m T of the end points, those of the bodies from the place ``first`` on."""
-    ax, ay, bx, by = ends[0, 2], ends[0, 3], ends[1, 2], ends[1, 3]
-    m00, m01, m02, m03, m11 = m[0, 0], m[0, 1], m[0, 2], m[0, 3], m[1, 1]
-    m12, m13, m22, m23, m33 = m[1, 2], m[1, 3], m[2, 2], m[2, 3], m[3, 3]
-    h[0, 0], h[1, 1] = m00 * (ax * ax + ay * ay), m11 * (bx * bx + by * by)
-    h[0, 1] = m01 * (ax * bx + ay * by)
-    ux, uy, vx, vy = lever[0], lever[1], lever[2], lever[3]
-    px, py, qx, qy = lever[4], lever[5], lever[6], lever[7]
-    k = first
-    if tip:
-        a, b, c, d = m01 + m02, m11 + m12, m12 + m22, m11 + 2.0 * m12 + m22
-        h[0, k], h[0, k + 1], h[1, k], h[1, k + 1] = a * ax, a * ay, b * bx, b * by
-        h[0, k + 2] = ax * (m01 * ux + m02 * vx) + ay * (m01 * uy + m02 * vy)
-        h[1, k + 2] = bx * (m11 * ux + m12 * vx) + by * (m11 * uy + m12 * vy)
-        h[k, k], h[k, k + 1], h[k, k + 2] = d, 0.0, b * ux + c * vx
-        h[k + 1, k + 1], h[k + 1, k + 2] = d, b * uy + c * vy
-        h[k + 2, k + 2] = m11 * (ux * ux + uy * uy) + 2.0 * m12 * (ux * vx + uy * vy)
-        h[k + 2, k + 2] += m22 * (vx * vx + vy * vy)
-        k += 3
-    if root:
-        a, b, c, d = m00 + m03, m01 + m13, m03 + m33, m00 + 2.0 * m03 + m33
-        h[0, k], h[0, k + 1], h[1, k], h[1, k + 1] = a * ax, a * ay, b * bx, b * by
-        h[0, k + 2] = ax * (m00 * px + m03 * qx) + ay * (m00 * py + m03 * qy)
-        h[1, k + 2] = bx * (m01 * px + m13 * qx) + by * (m01 * py + m13 * qy)
-        h[k, k], h[k, k + 1], h[k, k + 2] = d, 0.0, a * px + c * qx
-        h[k + 1, k + 1], h[k + 1, k + 2] = d, a * py + c * qy
-        h[k + 2, k + 2] = m00 * (px * px + py * py) + 2.0 * m03 * (px * qx + py * qy)
-        h[k + 2, k + 2] += m33 * (qx * qx + qy * qy)
-        if tip:
-            i, c, d = first, m02 + m23, m01 + m02
-            h[i, k] = h[i + 1, k + 1] = b + c
-            h[i, k + 1] = h[i + 1, k] = 0.0
-            h[i, k + 2], h[i + 1, k + 2] = d * px + (m13 + m23) * qx, d * py + (m13 + m23) * qy
-            h[i + 2, k], h[i + 2, k + 1] = b * ux + c * vx, b * uy + c * vy
-            h[i + 2, k + 2] = m01 * (ux * px + uy * py) + m13 * (ux * qx + uy * qy)
-            h[i + 2, k + 2] += m02 * (vx * px + vy * py) + m23 * (vx * qx + vy * qy)
-
-
-@part()
-def _set_drift(s, at, w, strips, room):
-    """Accelerations (2, 4) of the end points that the rates make."""
-    drift, ends, lever, last = room.drift[s], room.ends[s], room.lever[s], at + strips.own - 2
-    for e in range(2):
-        body = strips.roots[s] if e == 0 else strips.tips[s]
-        inner, outer, turn = (INNER_ROOT, ROOT, 4) if e == 0 else (INNER_TIP, TIP, 0)
-        spin = w[3 * body + 2] if body >= 0 else 0.0
-        square, both = spin * spin, 2.0 * spin * w[last + e]
-        drift[0, outer], drift[1, outer] = -square * lever[turn + 3], square * lever[turn + 2]
-        drift[0, inner] = -square * lever[turn + 1] - both * ends[e, 3]
-        drift[1, inner] = square * lever[turn] + both * ends[e, 2]
-
-
-@part()
-def _gather_ends(v, follow, c):
-    """The four end points' entries of a covector (n,), inner points condensed by W."""
-    n = v.size
-    c[INNER_ROOT], c[INNER_TIP], c[TIP], c[ROOT] = v[1], v[n - 2], v[n - 1], v[0]
-    for p in range(4):
+def _push(s, a, grid, shape, strips, local):
+    """The gradient of a placed strip, with the axial forces that its strains give."""
+    numbers, lanes, along, weights = strips.numbers[s], local.lanes[s], strips.along[s], shape.rule[WEIGHT]
+    d1, d2, gradient, modes = shape.curve[0], shape.curve[1], local.nodal[s, GRADIENT], grid.modes[s]
+    curve_at(local.nodal[s, POINTS], d1, d2, four(lanes, 0))
+    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, numbers[STRAIN], lanes[SPEED_AT], lanes[PULL_AT])
+    force = lanes[FORCE_AT]
+    for p in range(force.size):
+        force[p] = 0.0
+    for k in range(a.size):
         total = 0.0
-        for i in range(follow.shape[1]):
-            total += follow[p, i] * v[i + 2]
-        c[p] -= total
+        for p in range(force.size):
+            total += modes[k, p] * lanes[PULL_AT, p]
+        a[k] = total * grid.stiffness[s, k]
+        add_mode(a[k], modes[k], force)
+    if along[0, CURL] > 0.0:
+        flatten_at(s, strips, lanes)
+    slopes_at(
+        strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, lanes[0], lanes[1], lanes[2], lanes[3],
+        lanes[4], lanes[5], lanes[6], lanes[7], lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1],
+        lanes[GIVEN + 2], lanes[GIVEN + 4], force,
+    )  # fmt: skip
+    for i in range(gradient.size):
+        gradient[i] = -numbers[ON_POINTS + i]
+    add_slopes(d1.shape[0], d1, d2, four(lanes, 4), gradient)
 
 
 @part()
-def _strip_system(s, tied, grid, strips, room):
+def _add_ties(s, tied, sharpness, grid, shape, strips, local, room):
+    """Rows and rests of what the ``tied`` axial forces keep, behind the strip's residual and rates (2 n).
+
+    sharpness: O [1/s].
+    """
+    lanes, along, d1, d2 = local.lanes[s], strips.along[s], shape.curve[0], shape.curve[1]
+    n, gauss = d1.shape[0], along.shape[0]
+    tx, ty, rest, mode = (
+        lanes[HESSIAN_AT],
+        lanes[HESSIAN_AT + 1],
+        lanes[HESSIAN_AT + 2],
+        lanes[HESSIAN_AT + 3],
+    )
+    rates = four(lanes, HESSIAN_AT + 4)
+    curve_at(room.along, d1, d2, rates)
+    for p in range(gauss):
+        inverse, weight = 1.0 / lanes[SPEED_AT, p], shape.rule[WEIGHT, p]
+        x, y, ux, uy = lanes[0, p] * inverse, lanes[1, p] * inverse, rates[0][p], rates[1][p]
+        along_it, across = x * ux + y * uy, x * uy - y * ux
+        tx[p], ty[p] = weight * x, weight * y
+        rest[p] = weight * (across * across * inverse + 2.0 * sharpness * along_it)
+        rest[p] += sharpness * sharpness * lanes[PULL_AT, p]
+    for k in range(tied):
+        room.rest[k] = 0.0
+        for p in range(gauss):
+            mode[p] = along[p, MODES + k]
+            room.rest[k] += mode[p] * rest[p]
+        couple(n, grid.ties[s], mode, (tx, ty), room.rows[s, k])
+
+
+@part()
+def _set_mass(e, f, m, ends, tip, root, first, h):
+    """Upper mass matrix T^T m T of the end points at an end e and at f, 0 the root and 1 the tip.
+
+    Bodies follow from the place ``first`` on, that of the tip first.
+    """
+    x, y, lever, far = ends[2 * e], ends[2 * e + 1], 8 - 4 * e, 8 - 4 * f
+    ii, io, oi, oo = m[e, f], m[e, 3 - f], m[3 - e, f], m[3 - e, 3 - f]
+    mine, other = first if e else first + 3 * tip, first if f else first + 3 * tip
+    if f >= e:
+        h[e, f] = ii * (x * ends[2 * f] + y * ends[2 * f + 1])
+    if not (tip if f else root):
+        return
+    px, py, qx, qy = ends[far], ends[far + 1], ends[far + 2], ends[far + 3]
+    inner_x, inner_y = ii * px + io * qx, ii * py + io * qy
+    outer_x, outer_y = oi * px + oo * qx, oi * py + oo * qy
+    h[e, other], h[e, other + 1], h[e, other + 2] = (ii + io) * x, (ii + io) * y, x * inner_x + y * inner_y
+    if mine > other or not (tip if e else root):
+        return
+    ax, ay, bx, by = ends[lever], ends[lever + 1], ends[lever + 2], ends[lever + 3]
+    h[mine, other] = h[mine + 1, other + 1] = ii + io + oi + oo
+    h[mine, other + 1] = 0.0
+    h[mine, other + 2], h[mine + 1, other + 2] = inner_x + outer_x, inner_y + outer_y
+    h[mine + 2, other + 2] = ax * inner_x + ay * inner_y + bx * outer_x + by * outer_y
+    if mine < other:
+        h[mine + 1, other] = 0.0
+        h[mine + 2, other] = (ii + io) * ax + (oi + oo) * bx
+        h[mine + 2, other + 1] = (ii + io) * ay + (oi + oo) * by
+
+
+@part()
+def _set_drift(s, at, w, strips, ends, drift):
+    """Accelerations (8,) of the end points that the rates make."""
+    for e in range(2):
+        body, stick, lever, inner, outer = (
+            strips.tips[s] if e else strips.roots[s],
+            2 * e,
+            8 - 4 * e,
+            2 * e,
+            6 - 2 * e,
+        )
+        spin = w[3 * body + 2] if body >= 0 else 0.0
+        square, both = spin * spin, 2.0 * spin * w[at + e]
+        drift[outer], drift[outer + 1] = -square * ends[lever + 3], square * ends[lever + 2]
+        drift[inner] = -square * ends[lever + 1] - both * ends[stick + 1]
+        drift[inner + 1] = square * ends[lever] + both * ends[stick]
+
+
+@part()
+def _strip_system(s, tied, grid, strips, local, room):
     """The equations of a strip's ends in g and h, and their size; its inner points are eliminated."""
-    force, follow, drift = room.force[s], grid.follow[s], room.drift[s]
-    count = follow.shape[1]
-    tip, root, m = strips.tips[s] >= 0, strips.roots[s] >= 0, grid.ends[s]
-    first, g, h, c = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector
-    ends, lever, line, inner = room.ends[s], room.lever[s], room.line, room.inner
-    outer = 2 + 3 * tip + 3 * root
-    _mass_of_ends(m, ends, lever, tip, root, first, h)
-    for k in range(2):
-        _gather_ends(force[k], follow, c[k])
-        d0, d1, d2, d3 = drift[k, 0], drift[k, 1], drift[k, 2], drift[k, 3]
-        for p in range(4):
-            c[k, p] = -(c[k, p] + m[p, 0] * d0 + m[p, 1] * d1 + m[p, 2] * d2 + m[p, 3] * d3)
-    _to_ends(c, ends, lever, tip, root, line)
-    for i in range(outer):
-        g[i if i < 2 else first + i - 2] = line[i]
-    if tied > 0:
-        for k in range(2):
-            for i in range(count):
-                inner[k, i] = 0.0
-                for j in range(count):
-                    inner[k, i] += grid.white[s, i, j] * force[k, j + 2]
+    force, follow, drift, m = local.nodal[s, GRADIENT], grid.follow[s], room.drift[s], grid.ends[s]
+    count, tip, root = follow.shape[1], strips.tips[s] >= 0, strips.roots[s] >= 0
+    first, g, h, c, ends = 2 + max(tied - 1, 0), room.g[s], room.h[s], room.covector, local.map[s]
+    size, inner = first + 3 * tip + 3 * root, room.inner
+    _set_mass(0, 0, m, ends, tip, root, first, h)
+    _set_mass(0, 1, m, ends, tip, root, first, h)
+    _set_mass(1, 0, m, ends, tip, root, first, h)
+    _set_mass(1, 1, m, ends, tip, root, first, h)
+    for p in range(4):
+        x, y = -force[2 * (count + p)], -force[2 * (count + p) + 1]
+        for i in range(count):
+            x += follow[p, i] * force[2 * i]
+            y += follow[p, i] * force[2 * i + 1]
+        for q in range(4):
+            x -= m[p, q] * drift[2 * q]
+            y -= m[p, q] * drift[2 * q + 1]
+        c[2 * p], c[2 * p + 1] = x, y
+    to_ends(c, 0, ends, tip, root, g, 0, first)
+    if tied == 0:
+        return size
+    for i in range(count):
+        inner[2 * i] = inner[2 * i + 1] = 0.0
+        for j in range(count):
+            inner[2 * i] += grid.white[s, i, j] * force[2 * j]
+            inner[2 * i + 1] += grid.white[s, i, j] * force[2 * j + 1]
     for a in range(tied):
-        row, mine = room.rows[s, a], (first + outer - 2 if a == 0 else a + 1)
-        left = -room.rest[a]
-        for k in range(2):
-            for p in range(4):
-                left -= row[k, p] * drift[k, p]
-            for i in range(count):
-                left += row[k, i + 4] * inner[k, i]
+        row, mine, left, line = room.rows[s, a], size if a == 0 else a + 1, -room.rest[a], room.solved
+        for i in range(8):
+            left -= row[2 * count + i] * drift[i]
+        for i in range(2 * count):
+            left += row[i] * inner[i]
         g[mine] = left
-        _to_ends(row, ends, lever, tip, root, line)
-        for i in range(outer):
-            place = i if i < 2 else first + i - 2
-            h[min(place, mine), max(place, mine)] = line[i]
+        to_ends(row, 2 * count, ends, tip, root, line, 0, first)
+        for i in range(size):
+            if i < 2 or i >= first:
+                h[min(i, mine), max(i, mine)] = line[i]
         for b in range(a, tied):
-            other, total = (first + outer - 2 if b == 0 else b + 1), 0.0
-            for k in range(2):
-                for i in range(4, 4 + count):
-                    total -= row[k, i] * room.rows[s, b, k, i]
+            other, total = size if b == 0 else b + 1, 0.0
+            for i in range(2 * count):
+                total -= row[i] * room.rows[s, b, i]
             h[min(mine, other), max(mine, other)] = total
-    return first + outer - 2 + (1 if tied > 0 else 0)
+    return size + 1
 
 
 @part()
-def _solve_ends(s, tied, size, poses, strips, room, push):
-    """A strip's unknowns y from its bodies' and the rest of its equations, and its axial forces."""
-    g, h, y, first = room.g[s], room.h[s], room.y, 2 + max(tied - 1, 0)
-    tip, root, k = strips.tips[s], strips.roots[s], first
-    if tip >= 0:
-        for i in range(3):
-            y[k + i] = push[3 * tip + i]
-        k += 3
-    if root >= 0:
-        for i in range(3):
-            y[k + i] = push[3 * root + i]
-        k += 3
+def _solve_ends(s, tied, poses, strips, room, push, a):
+    """A strip's s_A'' and s_B'', into ``solved``, from its bodies' and the rest of its equations; tied a."""
+    g, h, y, first = room.g[s], room.h[s], room.solved, 2 + max(tied - 1, 0)
+    tip, root = strips.tips[s], strips.roots[s]
+    size = first + 3 * (tip >= 0) + 3 * (root >= 0)
+    for i in range(first, size):
+        y[i] = push[place_of(i - first, tip, root, 0)]
     if tied > 0:
-        y[k] = room.axial[s, 0] = room.load[poses + s]
+        y[size] = a[0] = room.load[poses + s]
+        size += 1
     for i in range(first - 1, -1, -1):
         total = g[i]
         for j in range(i + 1, size):
             total -= h[i, j] * y[j]
         y[i] = total / h[i, i]
-    for a in range(1, tied):
-        room.axial[s, a] = y[a + 1]
+    for k in range(1, tied):
+        a[k] = y[k + 1]
 
 
 @part()
-def _follow_ends(s, at, tied, grid, strips, room, push):
-    """Accelerations of a strip's ends (2, 4) from its unknowns and its bodies, and of its own coordinates."""
-    count, y, last = grid.follow.shape[2], room.y, at + strips.own - 2
-    force, drift, tip, root = room.force[s], room.drift[s], strips.tips[s], strips.roots[s]
-    c, lever, ends, pull = room.covector, room.lever[s], room.ends[s], room.inner
-    push[last], push[last + 1] = y[0], y[1]
-    for i in range(2):
-        c[i, INNER_ROOT] = drift[i, INNER_ROOT] + y[0] * ends[0, 2 + i]
-        c[i, INNER_TIP] = drift[i, INNER_TIP] + y[1] * ends[1, 2 + i]
-        c[i, TIP], c[i, ROOT] = drift[i, TIP], drift[i, ROOT]
-        if tip >= 0:
-            shift, spin = push[3 * tip + i], push[3 * tip + 2]
-            c[i, INNER_TIP] += shift + spin * lever[i]
-            c[i, TIP] += shift + spin * lever[2 + i]
-        if root >= 0:
-            shift, spin = push[3 * root + i], push[3 * root + 2]
-            c[i, INNER_ROOT] += shift + spin * lever[4 + i]
-            c[i, ROOT] += shift + spin * lever[6 + i]
+def _follow_ends(s, at, tied, a, grid, strips, local, room, push):
+    """Accelerations of a strip's own coordinates from those of its ends and bodies."""
+    count, force, pull, c = grid.follow.shape[2], local.nodal[s, GRADIENT], room.inner, room.along
+    push[at + 2 * count], push[at + 2 * count + 1] = room.solved[0], room.solved[1]
+    move_points(s, at, push, strips, local, c)
+    for i in range(8):
+        c[2 * count + i] += room.drift[s, i]
+    for i in range(2 * count):
+        pull[i] = 0.0
+        for k in range(tied):
+            pull[i] += a[k] * room.rows[s, k, i]
+    for j in range(count):
+        x = y = 0.0
         for q in range(count):
-            pull[i, q] = 0.0
-            for a in range(tied):
-                pull[i, q] += room.axial[s, a] * room.rows[s, a, i, q + 4]
-        for j in range(count):
-            total = 0.0
-            for q in range(count):
-                total -= grid.inverse[s, j, q] * force[i, q + 2] + grid.white[s, q, j] * pull[i, q]
-            for p in range(4):
-                total -= grid.follow[s, p, j] * c[i, p]
-            push[at + 2 * j + i] = total
+            x -= grid.inverse[s, j, q] * force[2 * q]
+            y -= grid.inverse[s, j, q] * force[2 * q + 1]
+        for q in range(count * (tied > 0)):
+            x -= grid.white[s, q, j] * pull[2 * q]
+            y -= grid.white[s, q, j] * pull[2 * q + 1]
+        for p in range(4):
+            x -= grid.follow[s, p, j] * c[2 * (count + p)]
+            y -= grid.follow[s, p, j] * c[2 * (count + p) + 1]
+        push[at + 2 * j], push[at + 2 * j + 1] = x, y
 
 
 @part()
@@ -229,35 +266,39 @@ def _solve_bodies(poses, tangent, load, push):
 
 
 @part()
-def accelerate(r, w, sharpness, grid, strips, masses, room, push):
-    """Fill the accelerations (R,) at r with rates w; sharpness [1/s]: as of ``add_ties``."""
-    poses, own = masses.inertia.size, strips.own
-    tangent, load = room.tangent, room.load
+def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
+    """Fill the accelerations (Y,) and the axial forces in y at y with rates w; sharpness: O [1/s]."""
+    bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
+    poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
+    own, tangent, load = 2 * n - 6, room.tangent, room.load
     for b in range(poses // 3):
-        room.turns[b, 0], room.turns[b, 1] = math.cos(r[3 * b + 2]), math.sin(r[3 * b + 2])
+        room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
     for i in range(load.size):
-        load[i] = masses.weight[i] if i < poses else 0.0
+        load[i] = bodies.weight[i] if i < poses else 0.0
         for j in range(i, load.size):
             tangent[i, j] = 0.0
         tangent[i, i] = masses.inertia[i] if i < poses else 0.0
     for s in range(strips.roots.size):
-        at, tied = poses + s * own, grid.tied[s]
-        place(s, at, r, grid, strips, room)
-        add_forces(s, tied, strips, grid, room.points[s], room.at, room.axial[s], room.force[s])
-        _set_drift(s, at, w, strips, room)
+        at, tied = poses + s * (own + modes), grid.tied[s]
+        a = y[at + own : at + own + modes]
+        for e in range(2):
+            turned_frame(
+                strips.tips[s] if e else strips.roots[s], y, grid.frames[s, e], room.turns, room.ends[e]
+            )
+        place_in_frames(s, y[at : at + own], room.ends[0], room.ends[1], strips, local)
+        _push(s, a, grid, shape, strips, local)
+        _set_drift(s, at + own - 2, w, strips, local.map[s], room.drift[s])
         if tied > 0:
-            move(s, at, w, strips, room)
-            add_ties(s, tied, sharpness, strips, grid, room.speed[s], room.at, room.rows[s], room.rest)
+            move_points(s, at, w, strips, local, room.along)
+            _add_ties(s, tied, sharpness, grid, shape, strips, local, room)
         elif grid.outer:
             tangent[poses + s, poses + s] = -1.0
-        size = _strip_system(s, tied, grid, strips, room)
-        first = 2 + max(tied - 1, 0)
+        size, first = _strip_system(s, tied, grid, strips, local, room), 2 + max(tied - 1, 0)
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
     _solve_bodies(poses, tangent, load, push)
     for s in range(strips.roots.size):
-        tied = grid.tied[s]
-        size = 2 + max(tied - 1, 0) + (3 if strips.tips[s] >= 0 else 0) + (3 if strips.roots[s] >= 0 else 0)
-        size += 1 if tied > 0 else 0
-        _solve_ends(s, tied, size, poses, strips, room, push)
-        _follow_ends(s, poses + s * own, tied, grid, strips, room, push)
+        at, tied = poses + s * (own + modes), grid.tied[s]
+        a = y[at + own : at + own + modes]
+        _solve_ends(s, tied, poses, strips, room, push, a)
+        _follow_ends(s, at, tied, a, grid, strips, local, room, push)

@@ -11,143 +11,151 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.effects import StripDamping
 from spline_model.motion.start import Motion
+from spline_model.reduced.model import Reduced
+from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
 from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
 
-class Flexures(NamedTuple):
-    """S strips of n control points, G Gauss points, K axial forces.
-
-    d1, d2 (G, n) derivatives of the basis, pairs (G, 4, n n) the products d1 d1,
-    d1 d2, d2 d1, d2 d2; weight (G,); speed, curvature, rigidity (S, G), curl (S, G, 2): the numbers of
-    ``curl_law``, stretching, strain (S,), modes (S, G, K), compliance and gain (S, K), roots, tips (S,),
-    root, tip (S, 3), reach (S, 2) as in ``spline_model.strip.element``; own: W; outer: leading axial
-    forces that stay beside the bodies; free_from: first free end; relaxation (S,) [s]; mass, drag (S, n, n);
-    dead (S, 2, n).
-    """
-
-    d1: Array
-    d2: Array
-    pairs: Array
-    weight: Array
-    speed: Array
-    curvature: Array
-    rigidity: Array
-    curl: Array
-    stretching: Array
-    strain: Array
-    modes: Array
-    compliance: Array
-    gain: Array
-    own: int
-    outer: int
-    free_from: int
-    relaxation: Array
-    mass: Array
-    drag: Array
-    dead: Array
-    roots: Places
-    tips: Places
-    root: Array
-    tip: Array
-    reach: Array
-    measure: int
+RECORDED = 5
+"""Leading arrays of ``State`` that stand in a record."""
 
 
 class Masses(NamedTuple):
-    """B bodies, free strip ends among them, and what acts on them: Q = 3 B coordinates.
+    """What a mechanism in motion has beside its elasticity: B bodies, free strip ends among them, S strips.
 
-    inertia, drag, weight (Q,); loads (F) and drives (D) of the motion, these at the coordinates drive_at;
-    load_body, load_strip, load_place (F,): body coordinate or -1, strip and place of its control point
-    (component n + number).
+    inertia, drag (Q,) of the bodies, Q = 3 B; points, damping (S, n, n): mass and drag of control points,
+    along x as along y, in the order of elimination; relaxation (S,) [s]; pairs (G, 4, n n): products d1 d1,
+    d1 d2, d2 d1, d2 d2 of the basis. loads (F) and drives (D) of the motion, at the coordinates load_at and
+    drive_at of the bodies. gain (S, K): stiffness by which axial forces are condensed, of which the
+    first ``outer`` stay beside the bodies; free_from: first free end.
     """
 
     inertia: Array
     drag: Array
-    weight: Array
+    points: Array
+    damping: Array
+    relaxation: Array
+    pairs: Array
     loads: LoadTable
-    load_body: Places
-    load_strip: Places
-    load_place: Places
+    load_at: Places
     drives: DriveTable
     drive_at: Places
+    gain: Array
+    outer: int
+    free_from: int
 
     @classmethod
-    def of(cls, motion: Motion, poses: int) -> Masses:
-        """The bodies and what acts on them; poses: the number of their coordinates."""
-        system, loads, drives = motion.system, motion.loads, motion.drives
-        layout, length, energy = system.layout, system.scales.length, system.scales.energy
-        unit, begin = np.tile(system.scales.pose, poses // 3), layout.poses.start
-        inertia, drag, weight = np.zeros((3, poses))
-        given = np.diag(motion.mass), np.diag(motion.drag), system.weight
-        for mine, acts in zip((inertia, drag, weight), given, strict=True):
-            if acts.size:
-                mine[: layout.poses.stop - begin] = acts[layout.poses]
-        load_strip, load_place = np.full((2, loads.coordinate.size), -1)
-        for s, (start, n) in enumerate(layout.strips[strip.name] for strip in system.scene.strips):
-            at = loads.coordinate - start
-            here = (at >= 0) & (at < 2 * n)
-            load_strip[here], load_place[here] = s, (at % 2 * n + at // 2)[here]
+    def of(cls, motion: Motion, model: Reduced) -> Masses:
+        """Those of a motion of the reduced mechanism."""
+        layout, length, energy = model.system.layout, model.length, model.energy
+        poses, strips, loads, drives = len(model.bodies.rest), model.strips, motion.loads, motion.drives
+        unit, begin = model.system.scales.pose**2 / energy, layout.poses.start
+        own = layout.poses.stop - begin
+        inertia, drag = np.zeros((2, poses))
+        places = [layout.strip(name) for name in layout.strips]
+        order, damped = model.shape.order, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
+        for acts, whole in ((inertia, motion.mass), (drag, damped)):
+            acts[:own] = np.diag(whole)[layout.poses] * np.tile(unit, own // 3)
+        points, damping = (
+            np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
+            for whole in (motion.mass, damped)
+        )
+        basis = model.shape.d1, model.shape.d2
+        pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
+        time = {e.strip: e.relaxation_time for e in model.system.scene.of(StripDamping)}
+        c = strips.compliance
+        small = c < LEAST_COMPLIANCE
+        outer = c.shape[1] if small[:, strips.split :].any() else strips.split if small.any() else 0
+        small[:, :outer] = True
         size = np.where(drives.turns == 1, 1.0, length)
         return cls(
-            inertia=inertia * unit**2 / energy,
-            drag=drag * unit**2 / energy,
-            weight=weight * unit / energy,
+            inertia=inertia,
+            drag=drag,
+            points=points,
+            damping=damping,
+            relaxation=np.array([time.get(name, 0.0) for name in layout.strips]),
+            pairs=np.stack(pairs, axis=1).reshape(-1, 4, len(order) ** 2),
             loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
-            load_body=np.where(load_strip < 0, loads.coordinate - begin, -1),
-            load_strip=load_strip,
-            load_place=load_place,
+            load_at=np.array([_pose_of(model, at) for at in loads.coordinate], dtype=np.int64),
             drives=drives._replace(origin=drives.origin / size, target=drives.target / size),
             drive_at=drives.coordinate - begin,
+            gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+            outer=outer,
+            free_from=len(model.system.scene.bodies),
         )
+
+
+def _pose_of(model: Reduced, coordinate: int) -> int:
+    """Place among the poses of a coordinate of a body or of a free end."""
+    layout, strips = model.system.layout, model.strips
+    for s, (start, n) in enumerate(layout.strips.values()):
+        for body, first in ((strips.roots[s], start), (strips.tips[s], start + 2 * n - 2)):
+            if 0 <= coordinate - first < 2 and body >= len(layout.bodies):
+                return int(3 * body + coordinate - first)
+    return int(coordinate - layout.poses.start)
 
 
 class State(NamedTuple):
     """Where the mechanism is, and how it came there; S strips, Q coordinates of bodies, Y of all.
 
-    y: the bodies' poses, own coordinates and axial forces of the strips; points, velocity, acceleration of
-    the control points; rate, push: velocity and acceleration of the bodies; at: C', C'' and |C'|; ends: arm
-    and s-direction of the clamps; clamped: force and moment of each clamp on its strip; totals: work of loads
-    and drives and energy dissipated; reaction of drives.
+    record holds y, rate, velocity, clamped and reaction: the bodies' poses, own coordinates and axial forces
+    of the strips; velocity of the bodies and of the control points; force and moment of each clamp on its
+    strip; of drives. acceleration, push: of control points and bodies; curve: C', C'' and |C'|; map: of
+    the ends; totals: work of loads and drives and energy dissipated.
     """
 
     y: Annotated[Array, "Y"]
-    points: Annotated[Array, "S 2 n"]
-    velocity: Annotated[Array, "S 2 n"]
-    acceleration: Annotated[Array, "S 2 n"]
     rate: Annotated[Array, "Q"]
-    push: Annotated[Array, "Q"]
-    at: Annotated[Array, "S G 5"]
-    ends: Annotated[Array, "S 2 4"]
+    velocity: Annotated[Array, "S 2n"]
     clamped: Annotated[Array, "S 2 3"]
-    totals: Annotated[Array, "2"]
     reaction: Annotated[Array, "D"]
+    acceleration: Annotated[Array, "S 2n"]
+    push: Annotated[Array, "Q"]
+    curve: Annotated[Array, "S 5 G"]
+    map: Annotated[Array, "S 16"]
+    totals: Annotated[Array, "2"]
+    record: Annotated[Array, "0"]
+
+    @classmethod
+    def of(cls, sizes: dict[str, int]) -> State:
+        """One at zero; sizes: of what the letters stand for."""
+        state = zeros(cls, sizes)
+        record = np.zeros(sum(each.size for each in state[:RECORDED]))
+        parts = dict(zip(cls._fields, state.parted(record[None]), strict=False))
+        return state._replace(record=record, **{name: each[0] for name, each in parts.items()})
+
+    def parted(self, records: Array) -> list[Array]:
+        """Views of y, rate, velocity, clamped and reaction of records (R, W), (R, ...) each."""
+        ends = np.cumsum([each.size for each in self[:RECORDED]])
+        parts = zip(np.split(records, ends[:-1], axis=1), self, strict=False)
+        return [each.reshape(len(records), *like.shape) for each, like in parts]
 
 
 class Scratch(NamedTuple):
     """Working arrays of a step; E = W + 6 + outer element coordinates, Q' = Q + S outer at the bodies.
 
-    dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; pose, points, move, at,
-    ends: of the step's end; steady, force, stiff: inertia, drag and loads; maps: D, and derivatives at the
-    end; blocks xx, xy, yx, yy of the tangent; half of it in
-    element coordinates; pull, along: of the axial forces and of their strains; residual, reduced: of it at
-    the bodies with the strips condensed; system and x, free: what is solved; held: 1 where a drive holds.
+    dy: changes, 2 tan(dphi / 2) of rotations, and the means of the axial forces; y: of the step's end; move:
+    of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
+    and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
+    along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
+    condensed; system and x, free: what is solved; held: 1 where a drive holds.
     """
 
     dy: Annotated[Array, "Y"]
-    pose: Annotated[Array, "Q"]
-    points: Annotated[Array, "S 2 n"]
-    move: Annotated[Array, "S 2 n"]
-    at: Annotated[Array, "S G 5"]
-    ends: Annotated[Array, "S 2 4"]
-    steady: Annotated[Array, "S 2 n"]
-    force: Annotated[Array, "S 2 n"]
+    y: Annotated[Array, "Y"]
+    move: Annotated[Array, "S 2n"]
+    mean: Annotated[Array, "S 16"]
+    end: Annotated[Array, "16"]
+    steady: Annotated[Array, "S 2n"]
+    force: Annotated[Array, "S 2n"]
     stiff: Annotated[Array, "S n n"]
-    maps: Annotated[Array, "S 2 16"]
     blocks: Annotated[Array, "4 nn"]
+    line: Annotated[Array, "2n"]
     half: Annotated[Array, "2n E"]
     pull: Annotated[Array, "K 2n"]
     along: Annotated[Array, "K 2n"]
@@ -155,16 +163,14 @@ class Scratch(NamedTuple):
     h: Annotated[Array, "S E E"]
     left: Annotated[Array, "K E"]
     right: Annotated[Array, "S K E"]
-    gap: Annotated[Array, "S K"]
     tangent: Annotated[Array, "Q' Q'"]
     residual: Annotated[Array, "Y"]
     reduced: Annotated[Array, "Q'"]
     load: Annotated[Array, "Q"]
     system: Annotated[Array, "Q' Q'"]
     x: Annotated[Array, "Q'"]
-    ends_change: Annotated[Array, "E"]
-    mix: Annotated[Array, "4"]
-    energies: Annotated[Array, "2"]
+    change: Annotated[Array, "E"]
+    energies: Annotated[Array, "5"]
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
 
@@ -192,12 +198,11 @@ def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
     )
 
 
-def sizes_of(strips: Flexures, masses: Masses) -> dict[str, int]:
+def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
-    s, g, k = strips.modes.shape
-    n, q, own = strips.mass.shape[1], len(masses.inertia), strips.own
+    (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
-    return sizes | {"Y": q + s * (own + k), "E": own + 6 + strips.outer, "Q'": q + s * strips.outer}
+    return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
 
 
 class Poses(NamedTuple):
@@ -205,7 +210,7 @@ class Poses(NamedTuple):
 
     y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
     slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    what the last step's, of length last [s], left out; system, x, free; still: places of what has no mass.
+    what the last step's, of length last [s], left out; system, x: what is solved; still: what has no mass.
     """
 
     y: Annotated[Array, "Y"]
@@ -223,7 +228,6 @@ class Poses(NamedTuple):
     last: Annotated[Array, "1"]
     system: Annotated[Array, "Q' Q'"]
     x: Annotated[Array, "Q'"]
-    free: Annotated[Places, "Q'"]
     still: Annotated[Places, "0"]
 
     @classmethod

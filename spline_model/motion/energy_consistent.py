@@ -19,13 +19,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.motion.mechanism import Moving
+from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
+from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
-from spline_model.motion.strip import look_at, place_strip
+from spline_model.motion.strip import SLOPE, keep_curve, lost_between, quadratic
+from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
+from spline_model.reduced.model import from_unknowns, require_reduced
+from spline_model.reduced.states import unknowns_of
 from spline_model.scene import Scene
-from spline_model.strip.compiled import kernel, part
+from spline_model.strip.compiled import copy, kernel, part
+from spline_model.strip.element import SPEED, SPEED_AT
+from spline_model.strip.ends import place_points
+from spline_model.strip.points import evaluate_residual, forces_of_strains, take_strains
 
 TOLERANCE = 1e-11
 """Residual of a step, in EI/L^2, EI/L, L and rad; the energy of a step is exact to this."""
@@ -34,47 +41,43 @@ SLOWEST_SPEED = 0.1
 
 
 @part()
-def forward(state, strips, masses, work):
+def forward(y, arrays, masses):
     """True if every clamped end's tangent points forwards and |C'| is above a tenth of that at rest."""
-    own, modes = strips.own, strips.compliance.shape[1]
+    strips, local = arrays.strips, arrays.local
+    own, modes = 2 * arrays.shape.order.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
-        at = masses.inertia.size + s * (own + modes) + own - 2
-        for e in range(2):
-            body = strips.roots[s] if e == 0 else strips.tips[s]
-            if body < strips.free_from and not state.y[at + e] + work.dy[at + e] > 0.0:
-                return False
-        for p in range(strips.weight.size):
-            if not work.at[s, p, 4] > SLOWEST_SPEED * strips.speed[s, p]:
+        at = arrays.bodies.rest.size + s * (own + modes) + own
+        if strips.roots[s] < masses.free_from and not y[at - 2] > 0.0:
+            return False
+        if strips.tips[s] < masses.free_from and not y[at - 1] > 0.0:
+            return False
+        for p in range(local.lanes.shape[2]):
+            if not local.lanes[s, SPEED_AT, p] > SLOWEST_SPEED * strips.along[s, p, SPEED]:
                 return False
     return True
 
 
 @part()
-def clamp_forces(s, state, strips, work):
+def _hold(s, state, strips, work):
     """What the clamps do to a strip, from the forces of the step just solved."""
-    n = strips.mass.shape[1]
+    own, force, mean = work.line.size - 6, work.force[s], work.mean[s]
     for e in range(2):
-        end, inner = (0, 1) if e == 0 else (n - 1, n - 2)
-        maps, force = work.maps[s, e], work.force[s]
-        body = strips.roots[s] if e == 0 else strips.tips[s]
+        inner, outer, stick, clamped = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e, state.clamped[s, e]
+        moving = (strips.tips[s] if e else strips.roots[s]) >= 0
         for k in range(2):
-            state.clamped[s, e, k] = force[k, end] + force[k, inner]
-        state.clamped[s, e, 2] = (maps[0] * force[1, inner] - maps[1] * force[0, inner]) / (
-            maps[7] if body >= 0 else 1.0
-        )
+            clamped[k] = force[outer + k] + force[inner + k]
+        across = mean[stick] * force[inner + 1] - mean[stick + 1] * force[inner]
+        clamped[2] = across / (mean[SLOPE + e] if moving else 1.0)
 
 
 @part()
-def _count_work(time, h, active, state, strips, masses, work):
+def _count_work(time, h, active, state, masses, work):
     """What loads and drives did in the solved step, and what the drives' reactions were."""
-    n, dy, totals = strips.mass.shape[1], work.dy, state.totals
-    for f in range(masses.load_body.size):
-        value, i = load_at(f, time + 0.5 * h, masses), masses.load_body[f]
-        if i >= 0:
-            totals[0] += value * (2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i])
-        else:
-            place = masses.load_place[f]
-            totals[0] += value * work.move[masses.load_strip[f], place // n, place % n]
+    dy, totals = work.dy, state.totals
+    for f in range(masses.load_at.size):
+        i = masses.load_at[f]
+        moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
+        totals[0] += load_at(f, time + 0.5 * h, masses) * moved
     for d in range(masses.drive_at.size):
         state.reaction[d] = 0.0
         if active[d] == 1:
@@ -84,87 +87,73 @@ def _count_work(time, h, active, state, strips, masses, work):
 
 
 @part()
-def _accept(time, h, active, state, strips, masses, work):
-    """Take the solved step: books of work and losses, velocities, coordinates."""
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy, y, totals = strips.own, work.dy, state.y, state.totals
-    _count_work(time, h, active, state, strips, masses, work)
-    for i in range(poses):
+def _accept(time, h, active, state, arrays, masses, work):
+    """Take the solved step: energy balance of work and losses, velocities, coordinates."""
+    strips, local, dy, totals = arrays.strips, arrays.local, work.dy, state.totals
+    _count_work(time, h, active, state, masses, work)
+    for i in range(masses.inertia.size):
         mean = dy[i] / h
         totals[1] += h * masses.drag[i] * mean * mean
         state.push[i] = 2.0 * (mean - state.rate[i]) / h
         state.rate[i] = 2.0 * mean - state.rate[i]
-        y[i] = work.pose[i]
-    work.energies[1] = 0.0
+    own, modes = work.line.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
-        at = poses + s * (own + modes)
-        if strips.relaxation[s] > 0.0:
-            look_at(s, state.at[s], work.at[s], h, strips, work.energies)
-        for k in range(2):
-            for i in range(n):
-                mean = work.move[s, k, i] / h
-                lost = 0.0
-                for j in range(n):
-                    lost += strips.drag[s, i, j] * work.move[s, k, j]
-                work.energies[1] += mean * lost
-                state.acceleration[s, k, i] = 2.0 * (mean - state.velocity[s, k, i]) / h
-                state.velocity[s, k, i] = 2.0 * mean - state.velocity[s, k, i]
-        for i in range(at, at + own):
-            y[i] += dy[i]
-        for i in range(at + own, at + own + modes):
-            y[i] = dy[i]
-        place_strip(s, y, at, strips, state.points[s], state.ends[s])
-        for p in range(strips.weight.size):
-            for i in range(5):
-                state.at[s, p, i] = work.at[s, p, i]
-        clamp_forces(s, state, strips, work)
-    totals[1] += work.energies[1]
+        at, move = masses.inertia.size + s * (own + modes) + own, work.move[s]
+        if masses.relaxation[s] > 0.0:
+            totals[1] += lost_between(s, h, state.curve[s], strips, arrays.shape, masses.relaxation[s], local)
+        totals[1] += quadratic(masses.damping[s], move) / h
+        for i in range(move.size):
+            mean = move[i] / h
+            state.acceleration[s, i] = 2.0 * (mean - state.velocity[s, i]) / h
+            state.velocity[s, i] = 2.0 * mean - state.velocity[s, i]
+        for i in range(at, at + modes):
+            work.y[i] = dy[i]
+        keep_curve(s, strips, local, state)
+        _hold(s, state, strips, work)
+    copy(work.y, state.y)
 
 
 @kernel()
-def store(state, strips, masses, work, row):
-    """A record: y, the bodies' rates, points, velocities, clamps, reactions, and its energies.
+def look(state, arrays):
+    """Map and curve of a state that is given by its coordinates."""
+    strips, shape, local = arrays.strips, arrays.shape, arrays.local
+    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
+    for s in range(strips.roots.size):
+        at = state.rate.size + s * (own + modes)
+        place_points(s, state.y[at : at + own], state.y, strips, local)
+        take_strains(s, shape, strips, local)
+        keep_curve(s, strips, local, state)
+
+
+@kernel()
+def store(state, arrays, masses, row):
+    """A record: what ``State.record`` holds, and energies.
 
     These are, in EI/L: kinetic energy, potential of the weight, strain energy, work and losses.
     """
-    at, n = 0, strips.mass.shape[1]
-    for i in range(state.y.size):
-        row[at + i] = state.y[i]
-    at += state.y.size
+    bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
+    out, spare, n, at = arrays.space.out, arrays.space.states[SPARE], shape.order.size, state.record.size
+    own, modes, kinetic = 2 * n - 6, strips.compliance.shape[1], 0.0
+    out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
     for i in range(state.rate.size):
-        row[at + i] = state.rate[i]
-    at += state.rate.size
-    work.energies[0] = 0.0
+        kinetic += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
+        out[DEAD] -= bodies.weight[i] * state.y[i]
     for s in range(strips.roots.size):
-        look_at(s, state.at[s], state.at[s], 0.0, strips, work.energies)
-        for i in range(n):
-            for k in range(2):
-                row[at], row[at + 1] = state.points[s, k, i], state.velocity[s, k, i]
-                at += 2
-        for e in range(2):
-            for k in range(3):
-                row[at] = state.clamped[s, e, k]
-                at += 1
-    for d in range(state.reaction.size):
-        row[at] = state.reaction[d]
-        at += 1
-    row[at] = row[at + 1] = 0.0
-    for i in range(state.rate.size):
-        row[at] += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
-        row[at + 1] -= masses.weight[i] * state.y[i]
-    for s in range(strips.roots.size):
-        for k in range(2):
-            for i in range(n):
-                total = 0.0
-                for j in range(n):
-                    total += strips.mass[s, i, j] * state.velocity[s, k, j]
-                row[at] += 0.5 * total * state.velocity[s, k, i]
-                row[at + 1] -= strips.dead[s, k, i] * state.points[s, k, i]
-    row[at + 2], row[at + 3], row[at + 4] = work.energies[0], state.totals[0], state.totals[1]
+        first = state.rate.size + s * (own + modes)
+        a = spare[first + own : first + own + modes]
+        place_points(s, state.y[first : first + own], state.y, strips, local)
+        take_strains(s, shape, strips, local)
+        forces_of_strains(s, strips, local, a)
+        evaluate_residual(s, a, n, shape, strips, local, out)
+        kinetic += 0.5 * quadratic(masses.points[s], state.velocity[s])
+    for i in range(at):
+        row[i] = state.record[i]
+    row[at], row[at + 1], row[at + 2] = kinetic, out[DEAD], out[BENDING] + out[AXIAL]
+    row[at + 3], row[at + 4] = state.totals[0], state.totals[1]
 
 
 @kernel()
-def _run(time, step, begin, end, every, active, state, strips, masses, tolerance, work, counters, records):
+def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance, work, counters, records):
     """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
 
     records: filled at the ends of steps whose number ``every`` divides.
@@ -176,14 +165,14 @@ def _run(time, step, begin, end, every, active, state, strips, masses, tolerance
             work.held[masses.drive_at[d]] = 1
     for k in range(begin, end):
         now = time + k * step
-        solved = newton(now, step, active, state, strips, masses, tolerance, work, counters)
-        if not solved or not forward(state, strips, masses, work):
+        solved = newton(now, step, active, state, arrays, masses, tolerance, work, counters)
+        if not solved or not forward(work.y, arrays, masses):
             counters[REFUSED] = FOLDS if solved else 0
             return k
-        _accept(now, step, active, state, strips, masses, work)
+        _accept(now, step, active, state, arrays, masses, work)
         counters[STEPS] += 1
         if (k + 1) % every == 0:
-            store(state, strips, masses, work, records[(k + 1) // every - begin // every - 1])
+            store(state, arrays, masses, records[(k + 1) // every - begin // every - 1])
     return end
 
 
@@ -214,34 +203,60 @@ class Stepper(Moves):
 
     def __init__(self, start: Start) -> None:
         self.motion, self.first = start.motion, start.z
-        self._model = Moving.of(self.motion)
-        self.width = self._model.width
-        self._state, self._work = self._model.arrays(start.z, start.v, start.acceleration)
+        self.model = model = require_reduced(self.motion.system)
+        self._arrays, self._masses = model.arrays(), Masses.of(self.motion, model)
         self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
+        sizes = sizes_of(model, self._masses)
+        self._state, self._work = State.of(sizes), zeros(Scratch, sizes)
+        self._state.y[:] = from_unknowns(model, start.z)
+        self._state.rate[:], self._state.velocity[:] = self._rates(start.v)
+        self._state.push[:], self._state.acceleration[:] = self._rates(start.acceleration)
+        self.width = self._state.record.size + ENERGIES
+        look(self._state, self._arrays)
+
+    def _rates(self, given: Array) -> tuple[Array, Array]:
+        """Rates of the bodies (Q,) and control points (S, 2 n) from those (Q,) of the scene."""
+        model, layout, rates = self.model, self.model.system.layout, np.zeros(len(self._masses.inertia))
+        moved = given[layout.poses] / np.tile(model.system.scales.pose, len(layout.bodies))
+        rates[: len(moved)] = moved
+        points = [given[layout.strip(name)].reshape(-1, 2)[model.shape.order] for name in layout.strips]
+        return rates, np.array(points).reshape(len(points), -1) / model.length
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails."""
-        model, asked = self._model, (time, step, begin, end, every, self.active)
-        given = self._state, model.strips, model.masses, TOLERANCE, self._work, self.counters
+        asked = time, step, begin, end, every, self.active
+        given = self._state, self._arrays, self._masses, TOLERANCE, self._work, self.counters
         return int(_run(*asked, *given, records))
 
     def record(self) -> Array:
         """The present state's record (W,)."""
         record = np.zeros(self.width)
-        store(self._state, self._model.strips, self._model.masses, self._work, record)
+        store(self._state, self._arrays, self._masses, record)
         return record
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records."""
-        return self._model.unknowns(records)
+        """Unknowns (R, N) and velocities (R, Q) of records.
+
+        Axial forces and multipliers are the means of the steps that end there.
+        """
+        model, layout = self.model, self.model.system.layout
+        y, rate, velocity, clamped, reaction = self._state.parted(records[:, :-ENERGIES])
+        z = unknowns_of(model, np.ascontiguousarray(y), reaction, clamped)
+        v = np.zeros((len(records), layout.coordinate_count))
+        poses = 3 * len(layout.bodies)
+        v[:, layout.poses] = rate[:, :poses] * np.tile(model.system.scales.pose, poses // 3)
+        for s, name in enumerate(layout.strips):
+            points = np.empty((len(v), len(model.shape.order), 2))
+            points[:, model.shape.order] = velocity[:, s].reshape(points.shape) * model.length
+            v[:, layout.strip(name)] = points.reshape(len(v), -1)
+        return z, v
 
     def reason(self) -> str:
         """Why the last step was given up, and what helps."""
-        model, own = self._model, self._model.strips.own
-        slowest = np.nan_to_num(self._work.at[:, :, 4] / model.strips.speed).min(axis=1)
-        after = (self._state.y + self._work.dy)[len(model.masses.inertia) :]
-        ends = after.reshape(len(slowest), -1)[:, own - 2 : own]
+        model, own = self.model, 2 * len(self.model.shape.order) - 6
+        slowest = np.nan_to_num(self._arrays.local.lanes[:, SPEED_AT] / model.strips.speed).min(axis=1)
+        ends = self._work.y[len(model.bodies.rest) :].reshape(len(slowest), -1)[:, own - 2 : own]
         slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
         return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
 
@@ -252,10 +267,10 @@ class Stepper(Moves):
             return
         (z,), (v,), _ = self.look()
         self.motion = self.motion.from_here(z, self.active, before, time)
-        self._model = self._model.with_drives(self.motion)
+        self._masses = Masses.of(self.motion, self.model)
         v, lost = self.motion.catch(z, v, self.active, time, span)
-        self._model.set_velocity(self._state, v)
-        lost /= self.motion.system.scales.energy
+        self._state.rate[:], self._state.velocity[:] = self._rates(v)
+        lost /= self.model.energy
         # energy is lost where a drive catches a body, not where it changes its own rate; gained it is by work
         if lost > 0.0 and (self.active > before).any():
             self._state.totals[1] += lost

@@ -1,6 +1,6 @@
-"""The leapfrog, with a corrected force, on the reduced coordinates r of a free mechanism: all steps compiled.
+"""The leapfrog, with a corrected force, on the coordinates y of a free mechanism: all steps compiled.
 
-    w(t + h/2) = w(t - h/2) + h A(r + h^2/12 A(r, w), w),   r(t + h) = r(t) + h w(t + h/2)
+    w(t + h/2) = w(t - h/2) + h A(y + h^2/12 A(y, w), w),   y(t + h) = y(t) + h w(t + h/2)
 
 Two evaluations a step give fourth order in the phase of every oscillation (effective order, Takahashi and
 Imada's scheme with the force gradient as a displacement) and stability up to omega h = sqrt(12), against 2
@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 import sys
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,13 +28,12 @@ from spline_model.errors import InvalidParameter
 from spline_model.modes import linear_modes
 from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
-from spline_model.motion.arrays import State
+from spline_model.motion.arrays import Masses, Places, State, sizes_of, zeros
 from spline_model.motion.energy_consistent import forward, store
-from spline_model.motion.forces import Grid, Room, move, place
-from spline_model.motion.mechanism import Moving
 from spline_model.motion.start import Motion, Start
-from spline_model.motion.strip import set_points
+from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import kernel, part
+from spline_model.strip.ends import move_points, place_points
 
 Array = NDArray[np.float64]
 
@@ -50,18 +50,97 @@ SHARPNESS = 0.1
 """O h of inextensible strips: what a step leaves of their strain dies out over a few steps."""
 
 
+class _Grid(NamedTuple):
+    """Constants of S strips with I inner points.
+
+    frames (S, 2, 4) point and direction of root and tip in the frame of their body or the ground; modes
+    (S, K, G) and stiffness (S, K) of the axial forces; inverse (S, I, I) B_ii^-1, white its root C^T,
+    C C^T = B_ii^-1; follow (S, 4, I) W^T, ends (S, 4, 4) the end points' mass; ties (S, n, G) d1 of the end
+    points less W^T of the inner ones, and C^T of these; tied (S,) leading axial forces that hold the length;
+    outer: 1 with any, the first stays with the bodies.
+    """
+
+    frames: Array
+    modes: Array
+    stiffness: Array
+    inverse: Array
+    white: Array
+    follow: Array
+    ends: Array
+    ties: Array
+    tied: Places
+    outer: int
+
+    @classmethod
+    def of(cls, model: Reduced, masses: Masses) -> _Grid:
+        """The constants of strips with mass."""
+        c = model.strips.compliance
+        inner, mass, d1 = masses.points.shape[1] - 4, masses.points, model.shape.curve[0]
+        inverse = np.asarray(np.linalg.inv(mass[:, :inner, :inner]), dtype=float)
+        across = mass[:, :inner, inner:]
+        follow, white = inverse @ across, np.linalg.cholesky(inverse).transpose(0, 2, 1)
+        at_ends = d1[inner:] - follow.transpose(0, 2, 1) @ d1[:inner]
+        frames = np.stack((model.strips.root, model.strips.tip), axis=1)[:, :, [0, 1, 2, 2]]
+        frames[..., 2], frames[..., 3] = np.cos(frames[..., 2]), np.sin(frames[..., 3])
+        tied = np.cumprod(c == 0.0, axis=1).sum(axis=1).astype(np.int64)
+        return cls(
+            frames=frames,
+            modes=np.ascontiguousarray(model.strips.modes.transpose(0, 2, 1)),
+            stiffness=1.0 / np.where(c > 0.0, c, np.inf),
+            inverse=inverse,
+            white=np.ascontiguousarray(white),
+            follow=np.ascontiguousarray(follow.transpose(0, 2, 1)),
+            ends=mass[:, inner:, inner:] - across.transpose(0, 2, 1) @ follow,
+            ties=np.concatenate((white @ d1[:inner], at_ends), axis=1),
+            tied=tied,
+            outer=int(tied.any()),
+        )
+
+
+class _Room(NamedTuple):
+    """Working arrays: x, u, push where accelerations are asked for, rates and the accelerations; mean of a
+    step; turns: cosine and sine of the bodies; ends: frames; drift: accelerations of the end points by the
+    rates; rows, rest: of what tied forces keep; g, h, solved of a strip; tangent, load of the bodies.
+    """
+
+    x: Annotated[Array, "Y"]
+    u: Annotated[Array, "Y"]
+    push: Annotated[Array, "Y"]
+    mean: Annotated[Array, "Y"]
+    turns: Annotated[Array, "B 2"]
+    ends: Annotated[Array, "2 6"]
+    drift: Annotated[Array, "S 8"]
+    rows: Annotated[Array, "S K 2n"]
+    rest: Annotated[Array, "K"]
+    covector: Annotated[Array, "8"]
+    along: Annotated[Array, "2n"]
+    inner: Annotated[Array, "2n"]
+    g: Annotated[Array, "S E"]
+    h: Annotated[Array, "S E E"]
+    solved: Annotated[Array, "E"]
+    tangent: Annotated[Array, "Q' Q'"]
+    load: Annotated[Array, "Q'"]
+
+    @classmethod
+    def of(cls, model: Reduced, masses: Masses, grid: _Grid) -> _Room:
+        """Working arrays."""
+        sizes = sizes_of(model, masses)
+        sizes |= {"B": sizes["Q"] // 3, "E": 8 + sizes["K"], "Q'": sizes["Q"] + sizes["S"] * grid.outer}
+        return zeros(cls, sizes)
+
+
 @part()
-def _start_stage(stage, h, r, w, push, room):
+def _start_stage(stage, h, y, w, push, room):
     """Where a stage asks for accelerations, room.x, and the rates there, room.u; stage -1 begins a run."""
     x, u, mean = room.x, room.u, room.mean
-    for i in range(r.size):
+    for i in range(y.size):
         if stage < 0:
-            x[i], u[i] = r[i], w[i]
+            x[i], u[i] = y[i], w[i]
         elif stage == 0:
-            r[i] += h * mean[i]
-            x[i], u[i] = r[i], mean[i] + 0.5 * h * push[i]
+            y[i] += h * mean[i]
+            x[i], u[i] = y[i], mean[i] + 0.5 * h * push[i]
         else:
-            x[i] = r[i] + h * h / 12.0 * push[i]
+            x[i] = y[i] + h * h / 12.0 * push[i]
 
 
 @part()
@@ -77,48 +156,43 @@ def _end_stage(stage, last, h, w, push, room):
 
 
 @part()
-def _show(r, w, grid, strips, masses, room, state):
-    """The state at r with rates w, axial forces of the last evaluation."""
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own = strips.own
+def _show(w, arrays, room, state):
+    """The state at y with rates w, with the axial forces of the last evaluation."""
+    strips, n, poses = arrays.strips, arrays.shape.order.size, state.rate.size
+    modes = strips.compliance.shape[1]
     for i in range(poses):
-        state.y[i], state.rate[i] = r[i], w[i]
-    for b in range(poses // 3):
-        room.turns[b, 0], room.turns[b, 1] = math.cos(r[3 * b + 2]), math.sin(r[3 * b + 2])
+        state.rate[i] = w[i]
     for s in range(strips.roots.size):
-        at, to = poses + s * own, poses + s * (own + modes)
-        for i in range(own):
-            state.y[to + i] = r[at + i]
-        for k in range(modes):
-            state.y[to + own + k] = room.axial[s, k]
-        place(s, at, r, grid, strips, room)
-        move(s, at, w, strips, room)
-        for i in range(n):
-            state.velocity[s, 0, i], state.velocity[s, 1, i] = room.speed[s, 0, i], room.speed[s, 1, i]
-    set_points(state, strips, masses)
+        at = poses + s * (2 * n - 6 + modes)
+        for i in range(at + 2 * n - 6, at + 2 * n - 6 + modes):
+            state.y[i] = room.x[i]
+        place_points(s, state.y[at : at + 2 * n - 6], state.y, strips, arrays.local)
+        move_points(s, at, w, strips, arrays.local, state.velocity[s])
 
 
 @kernel()
-def _run(stages, h, every, r, w, push, grid, strips, masses, room, state, work, records):
+def _run(stages, h, every, w, push, grid, arrays, masses, room, state, records):
     """Fill the rows of the records, ``every`` steps of that many stages apart; returns the rows filled.
 
     A state that diverges or is no strip's ends the run.
     """
+    y = state.y
     for row in range(records.shape[0]):
         for step in range(every):
             for stage in range(-1 if row + step == 0 else 0, stages):
-                _start_stage(stage, h, r, w, push, room)
-                accelerate(room.x, room.u, SHARPNESS / h, grid, strips, masses, room, push)
+                _start_stage(stage, h, y, w, push, room)
+                accelerate(room.x, room.u, SHARPNESS / h, grid, arrays, masses, room, push)
                 _end_stage(stage, stage == stages - 1, h, w, push, room)
             largest = 0.0
-            for i in range(r.size):
-                largest = max(largest, abs(r[i]) + h * abs(w[i])) if r[i] == r[i] else np.inf
+            for i in range(y.size):
+                moved = abs(y[i]) + h * abs(w[i]) if w[i] != 0.0 else 0.0
+                largest = max(largest, moved) if moved == moved else np.inf
             if not largest < 1e3:  # far outside any pose, or not finite
                 return row
-        _show(r, w, grid, strips, masses, room, state)
-        if not forward(state, strips, masses, work):
+        _show(w, arrays, room, state)
+        store(state, arrays, masses, records[row])
+        if not forward(y, arrays, masses):
             return row
-        store(state, strips, masses, work, records[row])
     return records.shape[0]
 
 
@@ -135,12 +209,12 @@ class Stepper(energy_consistent.Stepper):
     def __init__(self, start: Start) -> None:
         require_explicit(start.motion)
         super().__init__(start)
-        model, state, grid = self._model, self._state, Grid.of(self._model.strips)
+        model, masses, state = self.model, self._masses, self._state
+        grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
-        r, w = _reduced(model, state)
-        room = Room.of(model.strips, model.masses, grid)
-        work = self._work._replace(at=state.at)  # a state is looked at as the end of a step without changes
-        self._given = r, w, np.zeros_like(r), grid, model.strips, model.masses, room, state, work
+        w, room = _rates_of(model, masses, state), _Room.of(model, masses, grid)
+        self.record()  # fills what is given along the strips
+        self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps from the first on; at any time, as nothing that acts has a history."""
@@ -181,23 +255,20 @@ def require_explicit(motion: Motion) -> None:
         raise InvalidParameter("integrator", NAME, "energy for strips without mass")
 
 
-def _reduced(model: Moving, state: State) -> tuple[Array, Array]:
-    """Reduced coordinates r and rates w, (R,) each, of a state with its velocities."""
-    strips, q, n = model.strips, len(model.masses.inertia), model.strips.mass.shape[1]
-    own, modes = strips.own, strips.compliance.shape[1]
-    y, rate = state.y, state.rate.copy()
-    places, rates = [y[:q]], [rate]
-    for s in range(len(strips.roots)):
-        at = q + s * (own + modes)
-        places.append(y[at : at + own])
-        velocity, reaches = state.velocity[s], []
-        for e, (body, outer, inner) in enumerate(((strips.roots[s], 0, 1), (strips.tips[s], n - 1, n - 2))):
-            along = state.ends[s, e, 2:]
-            chord, square = velocity[:, inner] - velocity[:, outer], along @ along
-            reaches.append(along @ chord / square)
-            if body >= strips.free_from:  # a free end is its own body
+def _rates_of(model: Reduced, masses: Masses, state: State) -> Array:
+    """Rates (Y,) of a state's coordinates by the velocities of its control points."""
+    w, strips, own = np.zeros(model.size), model.strips, 2 * len(model.shape.order) - 6
+    w[: len(state.rate)] = state.rate
+    for s, velocity in enumerate(state.velocity):
+        at = model.places(s)[0].start
+        w[at : at + own - 2] = velocity[: own - 2]
+        for e, body in enumerate((strips.roots[s], strips.tips[s])):
+            inner, outer = own - 2 + 2 * e, own + 4 - 2 * e
+            along, end = state.map[s, 2 * e : 2 * e + 2], velocity[outer : outer + 2]
+            chord, square = velocity[inner : inner + 2] - end, along @ along
+            w[at + own - 2 + e] = along @ chord / square
+            if body >= masses.free_from:  # a free end is its own body
                 turn = along[0] * chord[1] - along[1] * chord[0]
-                turn /= square * y[at + own - 2 + e]
-                rate[3 * body : 3 * body + 3] = *velocity[:, outer], turn
-        rates += [velocity[:, 2 : n - 2].T.ravel(), np.array(reaches)]
-    return np.concatenate(places), np.concatenate(rates)
+                turn /= square * state.y[at + own - 2 + e]
+                w[3 * body : 3 * body + 3] = *end, turn
+    return w

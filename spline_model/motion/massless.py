@@ -73,17 +73,6 @@ def _look_ahead(poses, arrays):
 
 
 @part()
-def _list_free(moving, poses, masses, bodies):
-    """List the coordinates to be solved for, at held bodies those without mass alone; their number."""
-    count = 0
-    for i in range(bodies.load.size):
-        if moving > 0.0 or i >= poses.dx.size or masses.inertia[i] == 0.0:
-            poses.free[count] = i
-            count += 1
-    return count
-
-
-@part()
 def _mean_gradient(poses, masses, space):
     """The mean gradient's correction along M dx, dx . M dx, and the gap's derivative, less the metric's."""
     force, dx = space.vectors[FORCE], poses.dx
@@ -107,45 +96,41 @@ def _mean_gradient(poses, masses, space):
 
 
 @part()
-def _balance(h, count, poses, masses, space):
+def _balance(h, poses, masses, space):
     """Fill the rows of the step's residual, negative, and its tangent; returns the largest residual."""
-    force, free, x, dx, system = space.vectors[FORCE], poses.free, poses.x, poses.dx, poses.system
+    force, x, dx, system = space.vectors[FORCE], poses.x, poses.dx, poses.system
     push, metric = _mean_gradient(poses, masses, space)
     norm = 0.0
-    for r in range(count):
-        i = free[r]
+    for i in range(x.size):
         heavy = i < dx.size and masses.inertia[i] > 0.0
         share, residual = 0.5 if heavy else 1.0, force[i]
-        for c in range(count):
-            system[r, c] = share * entry(space.tangent, i, free[c])
+        for c in range(x.size):
+            system[i, c] = share * entry(space.tangent, i, c)
         if heavy:
             mass, mean = masses.inertia[i], dx[i] / h
             residual = 0.5 * (poses.pull[i] + force[i]) + push * mass * dx[i]
             residual += 2.0 / h * mass * (mean - poses.rate[i]) + masses.drag[i] * mean
-            system[r, r] += 2.0 * mass / (h * h) + masses.drag[i] / h + push * mass
+            system[i, i] += 2.0 * mass / (h * h) + masses.drag[i] / h + push * mass
             if push != 0.0:
-                for c in range(count):
-                    system[r, c] += mass * dx[i] / metric * poses.slope[free[c]]
+                for c in range(x.size):
+                    system[i, c] += mass * dx[i] / metric * poses.slope[c]
         if i < dx.size:
             residual -= poses.load[i]
         norm = max(norm, abs(residual)) if residual == residual else math.inf
-        x[r] = -residual
+        x[i] = -residual
     return norm
 
 
 @part()
-def _move_all(share, count, poses, arrays):
+def _move_all(share, poses, arrays):
     """Move by the solution x of the rows, the strips with the bodies; share: 1 with their own residual."""
     space, dx, y = arrays.space, poses.dx, poses.trial
     move, rate = space.vectors[MOVE], space.states[RATE]
-    for i in range(arrays.bodies.load.size):
-        move[i] = 0.0
-    for r in range(count):
-        i = poses.free[r]
-        move[i] = poses.x[r]
-        if i < dx.size:
-            dx[i] += poses.x[r]
-            y[i] = poses.y[i] + dx[i]
+    for i in range(poses.x.size):
+        move[i] = poses.x[i]
+    for i in range(dx.size):
+        dx[i] += poses.x[i]
+        y[i] = poses.y[i] + dx[i]
     move_strips(share, arrays, rate)
     for i in range(dx.size, y.size):
         y[i] += rate[i]
@@ -161,7 +146,7 @@ def _bend_on(h, poses):
 
 
 @part()
-def _evaluate(fresh, poses, arrays):
+def evaluate(fresh, poses, arrays):
     """Energy and reactions at ``trial``, with a fresh tangent or an older one; the strips' residual."""
     if fresh:
         norm = assemble(poses.trial, 0.0, arrays)
@@ -175,38 +160,36 @@ def _evaluate(fresh, poses, arrays):
 
 
 @part()
-def solve(h, moving, poses, masses, arrays, tolerance, counters):
-    """Solve a step of length h for the state ``trial``, or the strips at held bodies; True if it converged.
+def solve(h, poses, masses, arrays, tolerance, counters):
+    """Solve a step of length h for the state ``trial``, from the last one along its tangent; True if done.
 
-    With bodies that move dx is their change, kept apart as their inertia would drown in its round-off. They
-    begin from the last state along the last tangent.
+    dx is the bodies' change, kept apart as their inertia would drown in its round-off.
     """
-    space = arrays.space
-    count, norm, before, fresh = _list_free(moving, poses, masses, arrays.bodies), math.inf, math.inf, False
+    space, norm, before, fresh = arrays.space, math.inf, math.inf, False
     for i in range(poses.dx.size):
         poses.dx[i] = 0.0
     copy(poses.y, poses.trial)
     copy(poses.pull, space.vectors[FORCE])
     poses.energy[1] = poses.energy[0]
-    for trial in range(-1 if moving > 0.0 else 0, MOST_ITERATIONS):
+    for trial in range(-1, MOST_ITERATIONS):
         strain = 0.0
         if trial >= 0:
-            fresh, before = trial == 0 or moving == 0.0 or norm > POOR * before, norm
+            fresh, before = trial == 0 or norm > POOR * before, norm
             counters[FACTORISATIONS] += fresh
-            strain = _evaluate(fresh, poses, arrays)
-        norm = max(strain, _balance(h, count, poses, masses, space)) if strain == strain else math.inf
+            strain = evaluate(fresh, poses, arrays)
+        norm = max(strain, _balance(h, poses, masses, space)) if strain == strain else math.inf
         if trial >= 0 and (norm <= tolerance or (norm <= 1e3 * tolerance and norm > 0.5 * before)):
             return True
-        if not norm < 1e12 or not solve_rows(count, poses.system, poses.x):
+        if not norm < 1e12 or not solve_rows(poses.x.size, poses.system, poses.x):
             return False
-        _move_all(0.0 if trial < 0 else 1.0, count, poses, arrays)
+        _move_all(0.0 if trial < 0 else 1.0, poses, arrays)
         if trial < 0:
             _bend_on(h, poses)
             norm = math.inf
             continue
         counters[NEWTON] += 1
         small = norm <= NEARLY if fresh else norm <= CLOSE and norm * norm <= AFTER * before
-        if moving > 0.0 and small and arrays.strips.coupled == 0:
+        if small and arrays.strips.coupled == 0:
             _look_ahead(poses, arrays)
             return True
     return False

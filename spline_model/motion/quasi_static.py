@@ -11,13 +11,13 @@ from scipy.linalg import eigh
 
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Masses, Poses
-from spline_model.motion.energy_consistent import SLOWEST_SPEED, turned, why
-from spline_model.motion.massless import solve
+from spline_model.motion.energy_consistent import forward, turned, why
+from spline_model.motion.massless import evaluate, solve
 from spline_model.motion.moves import Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FOLDS, REFUSED, SNAPS, STEPS, load_at
-from spline_model.reduced.arrays import NEGATIVE, SLOWEST
+from spline_model.motion.step import FACTORISATIONS, FOLDS, REFUSED, SNAPS, STEPS, load_at
+from spline_model.reduced.arrays import NEGATIVE
 from spline_model.reduced.assembly import assemble, factorise
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of, whole_tangents
@@ -29,6 +29,8 @@ NAME = "quasi-static strips"
 """What the energy integrator is called where only the bodies are dynamic."""
 TOLERANCE = 1e-11
 """Residual of a step in EI/L^2, EI/L and L."""
+STILL = 1e-6
+"""The same of the strips at the start, which is in equilibrium."""
 LEAST = 1e-9
 """Compliance in L^2/EI that stands for none where the stiffness of strips is asked for."""
 SOFT = 0.5
@@ -68,22 +70,13 @@ def softness(model: Reduced, y: Array, strip: int) -> float:
 
 
 @part()
-def _refused(poses, arrays, scene_bodies):
+def _refused(poses, masses, arrays):
     """Why a solved state is refused, or 0: FOLDS, or SNAPS where the strips' equilibrium is unstable.
 
-    Every clamped end's tangent points forwards, |C'| is above a tenth of that at rest, and at held masses no
-    direction lowers the energy: coordinates without mass would leave such a state at once.
+    At held masses no direction lowers the energy: coordinates without mass would leave such a state at once.
     """
-    bodies, strips = arrays.bodies, arrays.strips
-    shape, space = arrays.shape, arrays.space
-    own, modes = 2 * shape.order.size - 6, strips.compliance.shape[1]
-    for s in range(strips.roots.size):
-        at = bodies.rest.size + s * (own + modes) + own
-        if strips.roots[s] < scene_bodies and not poses.trial[at - 2] > 0.0:
-            return FOLDS
-        if strips.tips[s] < scene_bodies and not poses.trial[at - 1] > 0.0:
-            return FOLDS
-    if not space.out[SLOWEST] > SLOWEST_SPEED:
+    bodies, space = arrays.bodies, arrays.space
+    if not forward(poses.trial, arrays, masses):
         return FOLDS
     outer = bodies.load.size - bodies.rest.size
     negative = factorise(poses.still, space.tangent, space.factors, outer)
@@ -142,36 +135,35 @@ def _store(poses, masses, arrays, row):
 
 
 @kernel()
-def _run(
-    time, step, begin, end, every, scene_bodies, poses, masses, arrays, tolerance, counters, records
-):  # fmt: skip
+def _begin(poses, masses, arrays, row):
+    """Energy, reactions and record of a state in equilibrium; returns the strips' residual."""
+    copy(poses.y, poses.trial)
+    norm = evaluate(True, poses, arrays)
+    _settle(poses)
+    _store(poses, masses, arrays, row)
+    return norm
+
+
+@kernel()
+def _run(time, step, begin, end, every, poses, masses, arrays, tolerance, counters, records):
     """Take the steps ``begin`` ... ``end`` - 1 after a time; returns the first that fails, or end.
 
-    Where there are none, strips and coordinates without mass are brought into equilibrium, which is recorded,
-    or the number is less. records (R, Y + Q + 5): of ``_store``, at the ends of steps whose number ``every``
-    divides.
+    records (R, Y + Q + 5): of ``_store``, at the ends of steps whose number ``every`` divides.
     """
-    for k in range(begin if begin < end else begin - 1, end):
-        moving = 1.0 if k >= begin else 0.0
-        for i in range(poses.load.size * int(moving)):
+    for k in range(begin, end):
+        for i in range(poses.load.size):
             poses.load[i] = 0.0
-        for f in range(masses.load_body.size * int(moving)):
-            poses.load[masses.load_body[f]] += load_at(f, time + k * step + 0.5 * step, masses)
-        solved = solve(step, moving, poses, masses, arrays, tolerance, counters)
-        if moving == 0.0:
-            if not solved:
-                return k
-            _settle(poses)
-        else:
-            counters[REFUSED] = _refused(poses, arrays, scene_bodies) if solved else 0
-            if not solved or counters[REFUSED] != 0:
-                assemble(poses.y, 0.0, arrays)  # the tangent to begin along
-                return k
-            _accept(step, poses, masses)
-            counters[STEPS] += 1
+        for f in range(masses.load_at.size):
+            poses.load[masses.load_at[f]] += load_at(f, time + k * step + 0.5 * step, masses)
+        solved = solve(step, poses, masses, arrays, tolerance, counters)
+        counters[REFUSED] = _refused(poses, masses, arrays) if solved else 0
+        if not solved or counters[REFUSED] != 0:
+            assemble(poses.y, 0.0, arrays)  # the tangent to begin along
+            return k
+        _accept(step, poses, masses)
+        counters[STEPS] += 1
         if (k + 1) % every == 0:
-            row = records[(k + 1) // every - begin // every - 1]
-            _store(poses, masses, arrays, row)
+            _store(poses, masses, arrays, records[(k + 1) // every - begin // every - 1])
     return end
 
 
@@ -180,25 +172,26 @@ class _Stepper(Moves):
 
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:
         self.motion, self._model = start.motion, model
-        self._masses = Masses.of(self.motion, len(model.bodies.rest))
+        self._masses = Masses.of(self.motion, model)
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / model.system.scales.pose
         self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
         self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
-        self._given = self._poses, self._masses, model.arrays(), TOLERANCE, self.counters
+        self._arrays = model.arrays()
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails."""
-        bodies = len(self._model.system.scene.bodies)
-        return int(_run(time, step, begin, end, every, bodies, *self._given, records))
+        given = self._poses, self._masses, self._arrays, TOLERANCE, self.counters
+        return int(_run(time, step, begin, end, every, *given, records))
 
     def record(self) -> Array:
         """The present state's record (W,), in equilibrium."""
-        records = np.zeros((1, self.width))
-        if self.steps(0.0, 1.0, 0, 0, 1, records) < 0:
+        record = np.zeros(self.width)
+        self.counters[FACTORISATIONS] += 1
+        if not _begin(self._poses, self._masses, self._arrays, record) < STILL:
             raise InvalidParameter("start", "no equilibrium of the strips", "a static state")
-        return np.asarray(records[0])
+        return record
 
     def reason(self) -> str:
         """Why the last step was given up: where none folds, a strip that is soft by now snaps through."""

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 
-from spline_model.motion.project import condense, to_reduced
 from spline_model.motion.start import factor_of
-from spline_model.motion.strip import add_points, move_strip
+from spline_model.motion.strip import add_points, condense, move_strip, to_reduced
 from spline_model.newton import ROUND_OFF
+from spline_model.reduced.assembly import place_of
 from spline_model.strip.compiled import called, part
+from spline_model.strip.element import ON_POINTS
 
 STEPS, HALVED, NEWTON, FACTORISATIONS, REFUSED, WHOLE = range(6)
 """Places of the counters of a run: STEPS with the parts of halved ones, WHOLE without; REFUSED: why the last
@@ -31,28 +32,23 @@ def cayley(c):
     return share, (1.0 / (1.0 + 0.25 * square) - share) / c
 
 
-@called(entered=True)
+@part()
 def prepare(time, h, state, strips, masses, work):
     """What does not change in a step: inertia, drag and loads on the control points, and loads on bodies."""
-    n = strips.mass.shape[1]
+    n = masses.points.shape[1]
     for i in range(masses.inertia.size):
         work.load[i] = 0.0
     for s in range(strips.roots.size):
         for i in range(n):
+            x = y = 0.0
             for j in range(n):
-                work.stiff[s, i, j] = 2.0 / (h * h) * strips.mass[s, i, j] + strips.drag[s, i, j] / h
-            for k in range(2):
-                total = 0.0
-                for j in range(n):
-                    total += strips.mass[s, i, j] * state.velocity[s, k, j]
-                work.steady[s, k, i] = -strips.dead[s, k, i] - 2.0 / h * total
-    for f in range(masses.load_body.size):
-        value = load_at(f, time + 0.5 * h, masses)
-        if masses.load_body[f] >= 0:
-            work.load[masses.load_body[f]] += value
-        else:
-            place = masses.load_place[f]
-            work.steady[masses.load_strip[f], place // n, place % n] -= value
+                work.stiff[s, i, j] = 2.0 / (h * h) * masses.points[s, i, j] + masses.damping[s, i, j] / h
+                x += masses.points[s, i, j] * state.velocity[s, 2 * j]
+                y += masses.points[s, i, j] * state.velocity[s, 2 * j + 1]
+            work.steady[s, 2 * i] = -strips.numbers[s, ON_POINTS + 2 * i] - 2.0 / h * x
+            work.steady[s, 2 * i + 1] = -strips.numbers[s, ON_POINTS + 2 * i + 1] - 2.0 / h * y
+    for f in range(masses.load_at.size):
+        work.load[masses.load_at[f]] += load_at(f, time + 0.5 * h, masses)
 
 
 @part()
@@ -67,71 +63,60 @@ def driven_to(d, time, acts):
     return acts.drives.origin[d] + factor_of(d, time, acts.drives) * acts.drives.target[d]
 
 
-@called()
-def _place_of(i, tip, root, behind):
-    """The bodies' unknown that a strip's i-th coordinate behind its own ones is."""
-    if tip >= 0:
-        if i < 3:
-            return 3 * tip + i
-        i -= 3
-    if root >= 0:
-        if i < 3:
-            return 3 * root + i
-        i -= 3
-    return behind + i
-
-
 @part()
-def _add_bodies(h, state, masses, work):
-    """Residual and tangent of the bodies alone, and their poses at the step's end."""
+def _add_bodies(h, state, bodies, masses, work):
+    """Residual and tangent of the bodies alone, and all coordinates at the step's end."""
     dy, raw, tangent = work.dy, work.residual, work.tangent
+    for i in range(dy.size):
+        work.y[i] = state.y[i] + dy[i]
     for i in range(masses.inertia.size):
         mean, load = dy[i] / h, work.load[i]
-        work.pose[i] = state.y[i] + dy[i]
         tangent[i, i] = 2.0 / (h * h) * masses.inertia[i] + masses.drag[i] / h
         if i % 3 == 2:
-            work.pose[i] = state.y[i] + 2.0 * math.atan(0.5 * dy[i])
+            work.y[i] = state.y[i] + 2.0 * math.atan(0.5 * dy[i])
             if load != 0.0:
                 share, slope = cayley(dy[i])
                 tangent[i, i] -= load * slope
                 load *= share
         raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
-        raw[i] -= masses.weight[i] + load
+        raw[i] -= bodies.weight[i] + load
         work.reduced[i] = raw[i]
 
 
 @part()
-def _add_strip(s, poses, h, state, strips, work):
+def _add_strip(s, h, state, arrays, masses, work):
     """Residual of a strip, and what it does to the bodies with its own coordinates condensed."""
-    n, own, modes = strips.mass.shape[1], strips.own, strips.compliance.shape[1]
-    at, behind, dy, raw = poses + s * (own + modes), poses + s * strips.outer, work.dy, work.residual
+    strips, shape, local, poses = arrays.strips, arrays.shape, arrays.local, masses.inertia.size
+    n, modes = masses.points.shape[1], strips.compliance.shape[1]
+    own = 2 * n - 6
+    at, behind, dy, raw = poses + s * (own + modes), poses + s * masses.outer, work.dy, work.residual
     tip, root = strips.tips[s], strips.roots[s]
-    move_strip(s, at, state, strips, work)
+    move_strip(s, at, state, strips, local, work)
     force, move = work.force[s], work.move[s]
-    for k in range(2):
-        for i in range(n):
-            total = work.steady[s, k, i]
-            for j in range(n):
-                total += work.stiff[s, i, j] * move[k, j]
-            force[k, i] = total
-    add_points(s, dy[at + own : at + own + modes], h, state, strips, work)
+    for i in range(n):
+        x, y = work.steady[s, 2 * i], work.steady[s, 2 * i + 1]
+        for j in range(n):
+            x += work.stiff[s, i, j] * move[2 * j]
+            y += work.stiff[s, i, j] * move[2 * j + 1]
+        force[2 * i], force[2 * i + 1] = x, y
+    add_points(s, dy[at + own : at + own + modes], h, state, shape, strips, masses, local, work)
     size, g, hessian = to_reduced(s, strips, work), work.g[s], work.h[s]
     for i in range(own):
         raw[at + i] = g[i]
     for k in range(modes):
-        raw[at + own + k] = work.gap[s, k]
+        raw[at + own + k] = local.gap[s, k]
     for i in range(own, size):
-        raw[_place_of(i - own, tip, root, behind)] += g[i]
-    size = condense(s, size, strips, work)
+        raw[place_of(i - own, tip, root, behind)] += g[i]
+    size = condense(s, size, strips, masses, local, work)
     for i in range(own, size):
-        row = _place_of(i - own, tip, root, behind)
+        row = place_of(i - own, tip, root, behind)
         work.reduced[row] += g[i]
         for j in range(own, size):
-            work.tangent[row, _place_of(j - own, tip, root, behind)] += hessian[i, j]
+            work.tangent[row, place_of(j - own, tip, root, behind)] += hessian[i, j]
 
 
-@called(entered=True)
-def assemble(h, state, strips, masses, work):
+@called()
+def assemble(h, state, arrays, masses, work):
     """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
 
     In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
@@ -141,9 +126,9 @@ def assemble(h, state, strips, masses, work):
         work.reduced[i] = 0.0
         for j in range(work.reduced.size):
             work.tangent[i, j] = 0.0
-    _add_bodies(h, state, masses, work)
-    for s in range(strips.roots.size):
-        _add_strip(s, poses, h, state, strips, work)
+    _add_bodies(h, state, arrays.bodies, masses, work)
+    for s in range(arrays.strips.roots.size):
+        _add_strip(s, h, state, arrays, masses, work)
     for i in range(raw.size):
         if i >= poses or work.held[i] == 0:
             norm = max(norm, abs(raw[i])) if raw[i] == raw[i] else math.inf
@@ -177,11 +162,11 @@ def solve_rows(count, matrix, x):
     return True
 
 
-@called(entered=True)
-def improve(strips, masses, work):
+@called()
+def improve(strips, masses, local, work):
     """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular."""
     poses, modes = masses.inertia.size, strips.compliance.shape[1]
-    own, outer, dy, free, x = strips.own, strips.outer, work.dy, work.free, work.x
+    own, outer, dy, free, x = work.line.size - 6, masses.outer, work.dy, work.free, work.x
     count = 0
     for i in range(work.reduced.size):
         if i >= poses or work.held[i] == 0:
@@ -204,9 +189,9 @@ def improve(strips, masses, work):
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)
-        g, h, change, right = work.g[s], work.h[s], work.ends_change, work.right[s]
+        g, h, change, right = work.g[s], work.h[s], work.change, work.right[s]
         for i in range(own, ends + outer):
-            change[i] = work.reduced[_place_of(i - own, tip, root, poses + s * outer)]
+            change[i] = work.reduced[place_of(i - own, tip, root, poses + s * outer)]
         for i in range(own - 1, -1, -1):
             total = -g[i]
             for j in range(i + 1, ends + outer):
@@ -218,56 +203,55 @@ def improve(strips, masses, work):
             if k < outer:
                 dy[at + own + k] += change[ends + k]
             else:
-                strain = work.gap[s, k]
+                strain = local.gap[s, k]
                 for j in range(ends):
                     strain += right[k, j] * change[j]
-                dy[at + own + k] += strips.gain[s, k] * strain
+                dy[at + own + k] += masses.gain[s, k] * strain
     return size
 
 
 @part()
 def guess_step(h, state, strips, masses, work):
     """Initial dy from velocities and accelerations."""
-    poses, n, modes = masses.inertia.size, strips.mass.shape[1], strips.compliance.shape[1]
-    own, dy = strips.own, work.dy
+    poses, modes, dy = masses.inertia.size, strips.compliance.shape[1], work.dy
+    own = work.line.size - 6
     for i in range(poses):
         dy[i] = h * (state.rate[i] + 0.5 * h * state.push[i])
         if i % 3 == 2:
             dy[i] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, dy[i])))
     for s in range(strips.roots.size):
-        at = poses + s * (own + modes)
-        for k in range(2):
-            for i in range(n):
-                work.move[s, k, i] = h * (state.velocity[s, k, i] + 0.5 * h * state.acceleration[s, k, i])
-        for i in range(2, n - 2):
-            dy[at + 2 * i - 4], dy[at + 2 * i - 3] = work.move[s, 0, i], work.move[s, 1, i]
+        at, move, ends = poses + s * (own + modes), work.move[s], state.map[s]
+        for i in range(move.size):
+            move[i] = h * (state.velocity[s, i] + 0.5 * h * state.acceleration[s, i])
+        for i in range(own - 2):
+            dy[at + i] = move[i]
         for e in range(2):
-            end, inner, body = (0, 1, strips.roots[s]) if e == 0 else (n - 1, n - 2, strips.tips[s])
-            tx, ty = state.ends[s, e, 2], state.ends[s, e, 3]
-            points, move = state.points[s], work.move[s]
-            cx = points[0, inner] - points[0, end] + move[0, inner] - move[0, end]
-            cy = points[1, inner] - points[1, end] + move[1, inner] - move[1, end]
+            body, inner, outer = strips.tips[s] if e else strips.roots[s], own - 2 + 2 * e, own + 4 - 2 * e
+            reach, tx, ty = state.y[at + own - 2 + e], ends[2 * e], ends[2 * e + 1]
+            cx = reach * tx + move[inner] - move[outer]
+            cy = reach * ty + move[inner + 1] - move[outer + 1]
             square, along = tx * tx + ty * ty, tx * cx + ty * cy
-            if body >= strips.free_from:  # the chord turns as it likes
+            if body >= masses.free_from:  # the chord turns as it likes
                 turn = math.atan2(tx * cy - ty * cx, along)
-                dy[3 * body], dy[3 * body + 1] = work.move[s, 0, end], work.move[s, 1, end]
+                dy[3 * body], dy[3 * body + 1] = move[outer], move[outer + 1]
                 dy[3 * body + 2] = 2.0 * math.tan(0.5 * max(-1.5, min(1.5, turn)))
                 along = math.sqrt((cx * cx + cy * cy) * square)
             elif body >= 0:
                 angle = 2.0 * math.atan(0.5 * dy[3 * body + 2])
                 c, d = math.cos(angle), math.sin(angle)
                 along = (c * tx - d * ty) * cx + (d * tx + c * ty) * cy
-            dy[at + own - 2 + e] = along / square - state.y[at + own - 2 + e]
-        for k in range(modes):
-            dy[at + own + k] = state.y[at + own + k]
+            dy[at + own - 2 + e] = along / square - reach
+        for i in range(at + own, at + own + modes):
+            dy[i] = state.y[i]
 
 
 @part()
-def newton(time, h, active, state, strips, masses, tolerance, work, counters):
+def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
     """Solve one step for dy; True if the residual came below tolerance, or corrections are round-off.
 
     Rotations of more than a quarter turn in one step are refused: the Cayley map has a pole at a half turn.
     """
+    strips = arrays.strips
     prepare(time, h, state, strips, masses, work)
     guess_step(h, state, strips, masses, work)
     for d in range(masses.drive_at.size):
@@ -277,7 +261,7 @@ def newton(time, h, active, state, strips, masses, tolerance, work, counters):
             work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
     before, size, last = math.inf, math.inf, math.inf
     for _ in range(MOST_ITERATIONS):
-        norm = assemble(h, state, strips, masses, work)
+        norm = assemble(h, state, arrays, masses, work)
         if not norm < 1e12:
             return False
         rounded = size <= ROUND_OFF and size > 0.5 * last
@@ -287,7 +271,7 @@ def newton(time, h, active, state, strips, masses, tolerance, work, counters):
                 largest = max(largest, abs(work.dy[i]))
             return largest <= 2.0
         before, last = norm, size
-        size = improve(strips, masses, work)
+        size = improve(strips, masses, arrays.local, work)
         if size < 0.0:
             return False
         counters[NEWTON] += 1

@@ -42,13 +42,13 @@ Array = NDArray[np.float64]
 
 @part()
 def place_of(i, body_tip, body_root, outer):
-    """The bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or its mean force."""
+    """The bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or an outer force."""
     tip = body_tip >= 0
     if tip and i < 3:
         return 3 * body_tip + i
     if body_root >= 0 and i < 3 * tip + 3:
         return 3 * body_root + i - 3 * tip
-    return outer
+    return outer + i - 3 * tip - 3 * (body_root >= 0)
 
 
 @part()

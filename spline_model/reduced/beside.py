@@ -23,7 +23,7 @@ from spline_model.strip.element import (
     MODES,
     PULL_AT,
 )
-from spline_model.strip.ends import place_points, to_ends
+from spline_model.strip.ends import move_points, place_points, rates_of_end, to_coordinates
 from spline_model.strip.laws import MATERIAL
 from spline_model.strip.points import add_slopes, curve_at, evaluate_residual, four
 
@@ -35,16 +35,6 @@ over such a step a pivot changes by up to 400 times the residual, large ones mos
 GRAIN = 8.0 * 2.0**-52
 """Round-off of a residual over the square of the control points: of paths with 6 to 20 it was half of it at
 most, whatever the processor."""
-
-
-@part()
-def to_coordinates(s, v, last, strips, local):
-    """A covector v of the control points in the coordinates of the element, into g of strip s."""
-    first = v.size - 8
-    g = local.reduced[s, LAST]
-    for i in range(first):
-        g[i] = v[i]
-    to_ends(v, first, local.map[s], strips.tips[s] >= 0, strips.roots[s] >= 0, g, first, last)
 
 
 @part()
@@ -106,7 +96,7 @@ def take_residual(y, load, arrays):
         at = bodies.rest.size + s * (own + modes)
         place_points(s, y[at : at + own], y, strips, local)
         evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, space.out)
-        to_coordinates(s, local.nodal[s, GRADIENT], last, strips, local)
+        to_coordinates(s, local.nodal[s, GRADIENT], last, local.map[s], strips, local.reduced[s, LAST])
         norm = max(norm, residual_of(s, own, last, strips, local, space))
     return norm
 
@@ -157,36 +147,12 @@ def _add_product(s, a, points, shape, strips, local, covector):
 
 
 @part()
-def _rates_of_end(s, e, rate, strips):
-    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
-    body = strips.tips[s] if e else strips.roots[s]
-    x = y = turn = 0.0
-    if body >= 0:
-        x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
-    return x, y, turn
-
-
-@part()
-def _move_points(s, at, own, rate, strips, local):
-    """Rates of the control points of strip s, into ALONG, by those of its w, from rate[at] on, and poses."""
-    ends, along, first = local.map[s], local.nodal[s, ALONG], own - 2
-    for i in range(first):
-        along[i] = rate[at + i]
-    for e in range(2):
-        inner, outer, stick, lever, reach = first + 2 * e, first + 6 - 2 * e, 2 * e, 8 - 4 * e, at + first + e
-        x, y, turn = _rates_of_end(s, e, rate, strips)
-        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach]
-        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach]
-        along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
-
-
-@part()
 def _turn_ends(s, own, last, rate, strips, local):
     """Add to g what the gradient does as the directions turn in which the ends' points move."""
     ends, along, f, g = local.map[s], local.nodal[s, ALONG], local.nodal[s, GRADIENT], local.reduced[s, LAST]
     for e in range(2):
         inner, outer, stick = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e
-        x, y, turn = _rates_of_end(s, e, rate, strips)
+        x, y, turn = rates_of_end(s, e, rate, strips)
         fx, fy, ux, uy = f[inner], f[inner + 1], along[inner], along[inner + 1]
         g[own - 2 + e] += turn * (ends[stick] * fy - ends[stick + 1] * fx)
         if (strips.tips[s] if e else strips.roots[s]) >= 0:
@@ -207,9 +173,9 @@ def _take_product(rate, load_rate, arrays):
         force[i] = -load_rate * bodies.load[i]
     for s in range(strips.roots.size):
         at, along, covector = poses + s * (own + modes), local.nodal[s, ALONG], local.nodal[s, COVECTOR]
-        _move_points(s, at, own, rate, strips, local)
+        move_points(s, at, rate, strips, local, along)
         _add_product(s, rate[at + own : at + own + modes], along, shape, strips, local, covector)
-        to_coordinates(s, covector, last, strips, local)
+        to_coordinates(s, covector, last, local.map[s], strips, local.reduced[s, LAST])
         _turn_ends(s, own, last, rate, strips, local)
 
 

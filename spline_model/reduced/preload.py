@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, RATE, Bodies
 from spline_model.reduced.assembly import place_of
-from spline_model.reduced.beside import respond, to_coordinates
+from spline_model.reduced.beside import respond
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.strip.compiled import called, kernel
 from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, STRAIN, Strips
+from spline_model.strip.ends import to_coordinates
 from spline_model.strip.points import evaluate_residual
 
 Array = NDArray[np.float64]
@@ -111,7 +112,7 @@ def swell(y, share, preload, arrays):
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         given, g, gap = preload.change[s], local.reduced[s, LAST], local.gap[s]
-        to_coordinates(s, given[: 2 * n], last, strips, local)
+        to_coordinates(s, given[: 2 * n], last, local.map[s], strips, g)
         for i in range(own):
             push[at + i] = g[i]
         for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):

@@ -46,13 +46,16 @@ def _place_all(y, poses, shape, strips, local, out, points, forces):
                 ) * g[inner]
 
 
-def unknowns_of(model: Reduced, y: Array, reaction: Array) -> Array:
-    """The scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D)."""
+def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None = None) -> Array:
+    """The scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
+
+    clamped (S, G, 2, 3): what the clamps do to the strips; by default what holds them in equilibrium.
+    """
     strips, shape, n = model.strips, model.shape, len(model.shape.order)
     points = np.zeros((len(y), len(strips.roots), 2 * n))
     forces = np.zeros((len(y), len(strips.roots), 2, 3))
     _place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
-    return gathered(model, y, points, forces, reaction)
+    return gathered(model, y, points, forces if clamped is None else clamped, reaction)
 
 
 def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: Array) -> Array:

@@ -27,6 +27,18 @@ def end_frame(body, numbers, end, pose, out):
         out[4], out[5] = x, y
 
 
+@part()
+def turned_frame(body, pose, frame, turns, out):
+    """The same from point and direction (4,) on the body, by the cosine and sine of its angle."""
+    if body < 0:
+        out[0], out[1], out[2], out[3], out[4], out[5] = frame[0], frame[1], frame[2], frame[3], 0.0, 0.0
+    else:
+        x, y, c, d = pose[3 * body], pose[3 * body + 1], turns[body, 0], turns[body, 1]
+        out[0], out[1] = x + c * frame[0] - d * frame[1], y + d * frame[0] + c * frame[1]
+        out[2], out[3] = c * frame[2] - d * frame[3], d * frame[2] + c * frame[3]
+        out[4], out[5] = x, y
+
+
 @called()
 def to_ends(v, at, ends, tip, root, out, first, behind):
     """A covector's entries at P_1, P_(n-2), P_(n-1), P_0, from v[at] on, in (s_A, s_B) and the ends' poses.
@@ -48,21 +60,62 @@ def to_ends(v, at, ends, tip, root, out, first, behind):
 
 
 @part()
+def to_coordinates(s, v, last, ends, strips, out):
+    """A covector v (2 n) of the control points in the coordinates of the element, its poses from last on."""
+    first = v.size - 8
+    for i in range(first):
+        out[i] = v[i]
+    to_ends(v, first, ends, strips.tips[s] >= 0, strips.roots[s] >= 0, out, first, last)
+
+
+@part()
+def rates_of_end(s, e, rate, strips):
+    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
+    body = strips.tips[s] if e else strips.roots[s]
+    x = y = turn = 0.0
+    if body >= 0:
+        x, y, turn = rate[3 * body], rate[3 * body + 1], rate[3 * body + 2]
+    return x, y, turn
+
+
+@part()
+def move_points(s, at, rate, strips, local, along):
+    """Rates (2 n) of the control points of a placed strip by those of its w, from rate[at] on, and poses."""
+    ends, first = local.map[s], along.size - 8
+    for i in range(first):
+        along[i] = rate[at + i]
+    for e in range(2):
+        inner, outer, stick, lever, reach = first + 2 * e, first + 6 - 2 * e, 2 * e, 8 - 4 * e, at + first + e
+        x, y, turn = rates_of_end(s, e, rate, strips)
+        along[inner] = x + ends[lever] * turn + ends[stick] * rate[reach]
+        along[inner + 1] = y + ends[lever + 1] * turn + ends[stick + 1] * rate[reach]
+        along[outer], along[outer + 1] = x + ends[lever + 2] * turn, y + ends[lever + 3] * turn
+
+
+@part()
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
-    points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], local.scratch[16], strips.numbers[s]
+    root, tip = local.scratch[15], local.scratch[16]
+    end_frame(strips.roots[s], strips.numbers[s], ROOT, pose, root)
+    end_frame(strips.tips[s], strips.numbers[s], TIP, pose, tip)
+    place_in_frames(s, w, root, tip, strips, local)
+
+
+@part()
+def place_in_frames(s, w, root, tip, strips, local):
+    """The same from the frames of its ends (6,) as of ``end_frame``."""
+    points, ends, frame, numbers = local.nodal[s, POINTS], local.map[s], root, strips.numbers[s]
     own = w.size
     inner = own - 2
     for i in range(inner):
         points[i] = w[i]
-    end_frame(strips.roots[s], numbers, ROOT, pose, frame)
     kx, ky = numbers[REACH] * frame[2], numbers[REACH] * frame[3]
     points[inner], points[inner + 1] = frame[0] + w[own - 2] * kx, frame[1] + w[own - 2] * ky
     points[inner + 6], points[inner + 7] = frame[0], frame[1]
     ends[0], ends[1] = kx, ky
     ends[8], ends[9] = frame[5] - points[inner + 1], points[inner] - frame[4]
     ends[10], ends[11] = frame[5] - frame[1], frame[0] - frame[4]
-    end_frame(strips.tips[s], numbers, TIP, pose, frame)
+    frame = tip
     kx, ky = -numbers[REACH + 1] * frame[2], -numbers[REACH + 1] * frame[3]
     points[inner + 2], points[inner + 3] = frame[0] + w[own - 1] * kx, frame[1] + w[own - 1] * ky
     points[inner + 4], points[inner + 5] = frame[0], frame[1]

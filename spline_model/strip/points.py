@@ -36,6 +36,7 @@ from spline_model.strip.laws import (
     bending_law,
     by_curve,
     curl_law,
+    stretching_law,
 )
 
 
@@ -60,6 +61,14 @@ def curve_at(points, d1, d2, curve):
             y2[p] += d2[i, p] * y
 
 
+@lane()
+def lengths_at(x1, y1, speed, weights, strain, lengths, pulls):
+    """|C'| and, times the weights, the strains that axial forces see."""
+    for p in range(x1.size):
+        v = math.sqrt(x1[p] * x1[p] + y1[p] * y1[p])
+        lengths[p], pulls[p] = v, weights[p] * (v - (1.0 + strain) * speed[p])
+
+
 @part()
 def _given_at(s, a, strips, lanes):
     """What is given at the Gauss points: J0, curvature, EI, factors of ``curl_law``, N."""
@@ -70,11 +79,44 @@ def _given_at(s, a, strips, lanes):
             force += at[MODES + k] * a[k]
         lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
         lanes[FORCE_AT, p] = force
-        if at[CURL] > 0.0:
-            x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
-            phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
-            factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
-            lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
+    if along[0, CURL] > 0.0:
+        flatten_at(s, strips, lanes)
+
+
+@part()
+def flatten_at(s, strips, lanes):
+    """Factors of ``curl_law`` at the Gauss points."""
+    for p in range(lanes.shape[1]):
+        at, x1, y1, x2, y2 = strips.along[s, p], lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
+        phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
+        factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
+        lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
+
+
+@lane()
+def add_mode(a, mode, force):
+    """Add a mode of the axial force."""
+    for p in range(mode.size):
+        force[p] += a * mode[p]
+
+
+@lane()
+def slopes_at(
+    measure, strain, stretching, weights, x1, y1, x2, y2, g0, g1, g2, g3, lengths, speed, curvature, rigidity,
+    by_m, force,
+):  # fmt: skip
+    """Of ``laws_at`` the derivatives of the energy in x', y', x'' and y'' alone."""
+    for p in range(weights.size):
+        a1, b1, a2, b2, v, weight = x1[p], y1[p], x2[p], y2[p], lengths[p], weights[p]
+        r = 1.0 / (v * v)
+        phi = (a1 * b2 - b1 * a2) * r
+        _, m, _, _, f, _ = bending_law(phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure)
+        f += force[p]
+        if stretching > 0.0:
+            f += stretching_law(v, speed[p], strain, stretching, measure)[1]
+        bend, pull = weight * m * by_m[p] * r, weight * f / v
+        g0[p], g1[p] = bend * (b2 - 2.0 * phi * a1) + pull * a1, pull * b1 - bend * (a2 + 2.0 * phi * b1)
+        g2[p], g3[p] = -bend * b1, bend * a1
 
 
 @lane()
@@ -142,7 +184,7 @@ def add_slopes(moving, d1, d2, slopes, gradient):
 
 
 @lane()
-def _couple(moving, d1, share, tangent, row):
+def couple(moving, d1, share, tangent, row):
     """Coupling of one axial force to the first ``moving`` places."""
     tx, ty = tangent
     for i in range(moving):
@@ -155,7 +197,7 @@ def _couple(moving, d1, share, tangent, row):
 
 
 @part()
-def _add_gaps(s, a, strips, local):
+def add_gaps(s, a, strips, local):
     """Gap of all axial forces; returns their own energy."""
     along, compliance, lanes, gap = strips.along[s], strips.compliance[s], local.lanes[s], local.gap[s]
     axial = 0.0
@@ -176,7 +218,7 @@ def _add_axial(s, count, moving, shape, strips, local):
     for k in range(count):
         for p in range(along.shape[0]):
             share[p] = along[p, MODES + k]
-        _couple(moving, d1, share, tangent, local.nodal[s, first + k])
+        couple(moving, d1, share, tangent, local.nodal[s, first + k])
 
 
 @part()
@@ -200,15 +242,36 @@ def _add_hessian(moving, products, pairs, lanes, hessian):
 
 
 @part()
-def evaluate_residual(s, a, moving, shape, strips, local, out):
-    """Fill the gradient of the first ``moving`` places of strip s, the gaps, and the rows of its lanes.
+def take_strains(s, shape, strips, local):
+    """The curve of a placed strip and, times the weights, the strains that axial forces see, in its lanes."""
+    lanes, along, strain = local.lanes[s], strips.along[s], strips.numbers[s, STRAIN]
+    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(lanes, 0))
+    for p in range(along.shape[0]):
+        lanes[GIVEN, p] = along[p, SPEED]
+    weights, lengths, pulls = shape.rule[WEIGHT], lanes[SPEED_AT], lanes[PULL_AT]
+    lengths_at(lanes[0], lanes[1], lanes[GIVEN], weights, strain, lengths, pulls)
 
-    Adds bending, axial and the dead load's energy to the first three of out; out[3] becomes the least v / J0.
+
+@part()
+def forces_of_strains(s, strips, local, a):
+    """Axial forces (K,) by the strains that were taken; none of those without compliance."""
+    along = strips.along[s]
+    for k in range(a.size):
+        total, compliance = 0.0, strips.compliance[s, k]
+        for p in range(along.shape[0]):
+            total += along[p, MODES + k] * local.lanes[s, PULL_AT, p]
+        a[k] = total / compliance if compliance > 0.0 else 0.0
+
+
+@part()
+def evaluate_curve(s, a, moving, shape, strips, local, out):
+    """Fill the gradient of the first ``moving`` places of strip s, and the rows of its lanes.
+
+    The curve is there already. Adds bending, axial and the dead load's energy to the first three of out, but
+    for that of axial forces; out[3] becomes the least v / J0.
     """
     numbers, lanes = strips.numbers[s], local.lanes[s]
-    d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
-    curve_at(points, d1, d2, four(lanes, 0))
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
@@ -221,10 +284,18 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
-    add_slopes(moving, d1, d2, four(lanes, 4), gradient)
+    add_slopes(moving, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
     out[0] += bending
-    out[1] += axial + _add_gaps(s, a, strips, local)
+    out[1] += axial
     out[3] = min(out[3], slowest)
+
+
+@part()
+def evaluate_residual(s, a, moving, shape, strips, local, out):
+    """The same of control points whose curve is not known yet, with the gaps and energy of axial forces."""
+    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(local.lanes[s], 0))
+    evaluate_curve(s, a, moving, shape, strips, local, out)
+    out[1] += add_gaps(s, a, strips, local)
 
 
 @part()

@@ -11,7 +11,6 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
-from studies.cases.keys import GROUND
 from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.errors import BadInput
 from studies.kinds import Progress
