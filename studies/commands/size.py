@@ -28,13 +28,14 @@ import argparse
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from spline_model.confirmed import NOTHING
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
-from studies.cases.design import as_toml, document_of
+from studies.cases.design import as_toml
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
@@ -43,10 +44,10 @@ from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
 from studies.commands.sized import Optimum, as_document, question, readable
 from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
-from studies.design.numbers import NumbersTask, by_sides, number_of
+from studies.design.numbers import MechanismQuestion
 from studies.design.optimise import Outcome, best, search
-from studies.design.programme import compared
-from studies.design.task import OBJECTIVES, Sizing, Task
+from studies.design.programme import STARTS, compared
+from studies.design.question import OF_PIVOT, PivotQuestion, Question
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
@@ -80,7 +81,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     Argument(
         "--objective",
         "what is to be least: of a mechanism stress or stiffness-variation",
-        choices=[*OBJECTIVES, STRESS],
+        choices=[*OF_PIVOT, STRESS],
         required=True,
     ),
     Argument(
@@ -110,7 +111,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
         for name, (attribute, _, most, said) in BOUNDS.items()
     ),
     Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
-    Argument("--starts N", "starts of the search, default 8", whole_number(1), default=8),
+    Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
     take.OUT_FILE.but("write the optimum there as a case file (default: nowhere)"),
     take.JSON,
 )
@@ -119,7 +120,7 @@ def main(arguments: argparse.Namespace) -> int:
     content = parsed(arguments.case)
     mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)
-    asked: Sizing = _numbers(content, arguments) if mechanism else _pivot(arguments)
+    asked: Question = _numbers(content, arguments) if mechanism else _pivot(arguments)
     try:
         task, own = _limited(asked, arguments)
         with Bar("size") as bar:
@@ -136,21 +137,20 @@ def main(arguments: argparse.Namespace) -> int:
     return deliver(arguments, document, readable(task, own, outcomes, found), failure=failure)
 
 
-def _pivot(arguments: argparse.Namespace) -> Task:
+def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
     """Return what is asked of a pivot, within the bounds that are given."""
     start, bounds = _start(arguments), {}
     for name, (attribute, unit, _, _) in BOUNDS.items():
         given = getattr(arguments, attribute)
         if given is not None:
             bounds[name] = given[0] * unit, given[1] * unit
-    limits = {"stiffness": math.nan, "allowable_stress": math.inf, "largest_aspect": arguments.aspect}
-    task = Task.usual(start, bounds, objective=arguments.objective, **limits)
-    longest, thinnest, narrowest = (
-        1e3 * task.bounds[name][end] for name, end in (("length", 1), ("thickness", 0), ("width", 0))
-    )
+    task = PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
+    length, _, _, thickness, width = task.variables
+    slender, aspect = (ratio.limit for ratio in task.ratios)
+    longest = 1e3 * length.high
     for option, least, most, why in (
-        ("--thickness-mm", thinnest, longest / task.least_slenderness, "the case's thickness to the length"),
-        ("--width-mm", narrowest, longest * task.largest_aspect, "--aspect times the length"),
+        ("--thickness-mm", 1e3 * thickness.low, longest / slender, "the case's thickness to the length"),
+        ("--width-mm", 1e3 * width.low, longest * aspect, "--aspect times the length"),
     ):
         if least > most * (1.0 + ROUND_OFF):
             expected = f"no more than {most:.4g}, {why}, which is at most {longest:.4g} mm"
@@ -189,20 +189,19 @@ def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
             )
     wrong = "centre-shift" if mechanism else STRESS
     if arguments.objective == wrong:
-        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OBJECTIVES)
+        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OF_PIVOT)
         raise BadInput(f"--objective: got {wrong}, expected {kinds} for {Path(arguments.case).stem}")
     if mechanism and not arguments.free:
         raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
 
 
-def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersTask:
+def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> MechanismQuestion:
     """Return the numbers of a mechanism that are to be found, over the path that is asked for."""
     where = str(arguments.case)
-    document = by_sides(content, arguments.free)
     if arguments.rotation is not None:
-        document["drive"] = document.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
-    numbers = tuple(number_of(where, document, text) for text in arguments.free)
-    task = NumbersTask(where=where, document=document, numbers=numbers, objective=arguments.objective)
+        drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
+        content = content | {"drive": drive}
+    task = MechanismQuestion.of(where, content, arguments.free, objective=arguments.objective)
     if task.objective not in task.objectives:
         raise BadInput(f"--objective: got {task.objective}, expected stress of what follows its loads")
     if not task.start.bodies:
@@ -211,11 +210,11 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
     if getattr(arguments, other) is not None:
         expected = take.option("stiffness" if other == "travel_mm" else "travel_mm")
         raise BadInput(f"{take.option(other)}: got it for {Path(where).stem}, expected {expected}")
-    task.require_numbers()
+    task.require_gradients()
     return task
 
 
-def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accurate]:
+def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
@@ -227,18 +226,18 @@ def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accur
         own = task.accurate()
     except PathEnds:
         own = _unknown(task, arguments, {task.held: wanted, "stress": allowable})
-        return task.changed(stiffness=wanted, allowable_stress=allowable), own
+        assert allowable is not None, "it is given, as without it there is no question"
+        return replace(task, wanted=wanted, allowable_stress=allowable), own
     if own.quantities[task.objective] <= NOTHING:
         expected = "what is not zero already: its stiffness does not vary"
         raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
-    limits = {
-        "stiffness": own.answers.stiffness if wanted is None else wanted,
-        "allowable_stress": own.answers.largest(STRESS) if allowable is None else allowable,
-    }
-    return task.changed(**limits, control_points=own.control_points), own
+    wanted = own.quantities[task.held] if wanted is None else wanted
+    allowable = own.answers.largest(STRESS) if allowable is None else allowable
+    points = own.control_points
+    return replace(task, wanted=wanted, allowable_stress=allowable, control_points=points), own
 
 
-def _unknown(task: Sizing, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
+def _unknown(task: Question, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
     """Return the answers of a case whose path ends early: no numbers, if all limits are given without them;
     else PathEnds, with what is to be given."""
     options = {"stiffness": "--stiffness", "travel": "--travel-mm", "stress": "--max-stress-MPa"}
@@ -252,18 +251,14 @@ def _unknown(task: Sizing, arguments: argparse.Namespace, limits: dict[str, floa
         unloaded = f" (at rest it has {rest:.4g} N m/rad)" if rest > 0.0 else ""
         remedy = f"give {' and '.join(missing)} to search from other designs{unloaded}"
         raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}; {remedy}")
-    names, (_, answers) = (STRESS, *task.objectives, task.held), compared(task)
-    nothing = dict.fromkeys(names, math.nan)
+    nothing, (_, answers) = dict.fromkeys(task.quantities, math.nan), compared(task)
     return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
 
 
-def _file(task: Sizing, found: Outcome, name: str) -> str:
+def _file(task: Question, found: Outcome, name: str) -> str:
     """Return the optimum as a case file, with the comment what it is the optimum of."""
     least, held = question(task)
-    if isinstance(task, NumbersTask):
-        content = task.content(task.values(found.at))
-    else:
-        content = document_of(found.problem)
+    content = task.document(task.values(found.at))
     return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
 
 

@@ -13,10 +13,9 @@ from studies.answers.settings import SplineSettings
 from studies.answers.validity import validity
 from studies.cases.effects import OF_SIDES
 from studies.cases.problem import Problem
-from studies.design.evaluate import PLAIN, Accurate
-from studies.design.numbers import NumbersTask
+from studies.design.evaluate import PLAIN, Accurate, by_elements
 from studies.design.optimise import SAME, Outcome, numbered, settled
-from studies.design.task import Sizing, Task, variables_of
+from studies.design.question import PivotQuestion, Question, variables_of
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
 SHOWN = {
@@ -44,26 +43,26 @@ class Optimum:
     no_elements: str = ""
 
     @classmethod
-    def of(cls, task: Sizing, found: Outcome) -> Self:
+    def of(cls, asked: Question, found: Outcome) -> Self:
         """Return an optimum with all that is said of it."""
-        found, answers = settled(task, found)
-        path, reason = answer_static(found.problem, SplineSettings()), ""
+        found, answers = settled(asked, found)
+        path, reason = answer_static(found.design, SplineSettings()), ""
         try:
-            elements: Quantities = task.by_elements(found.problem)
+            elements: Quantities = by_elements(found.design).quantities(asked.quantities)
         except NoReference as error:
             elements, reason = dict.fromkeys(answers.quantities, math.nan), str(error)
         return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
 
 
 def as_document(
-    task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None
+    asked: Question, own: Accurate, outcomes: list[Outcome], found: Optimum | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command; own: the case's answers."""
     optimum = None
     if found is not None:
         optimum = {
-            **_dimensions(task, found.outcome),
-            **_section(found.outcome.problem),
+            **_dimensions(asked, found.outcome),
+            **_section(found.outcome.design),
             "spline": _named(found.answers.quantities),
             "estimated_error": _named(found.answers.errors),
             "control_points": found.answers.control_points,
@@ -72,10 +71,10 @@ def as_document(
             "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
         }
     return {
-        "objective": task.objective,
-        SHOWN[task.held][0]: task.stiffness,
-        "allowable_stress_Pa": task.allowable_stress,
-        "bounds": {name: list(task.bounds[name]) for name in task.variables},
+        "objective": asked.objective,
+        SHOWN[asked.held][0]: asked.wanted,
+        "allowable_stress_Pa": asked.allowable_stress,
+        "bounds": {each.name: [each.low, each.high] for each in asked.variables},
         "case": _named(own.quantities),
         "optimum": optimum,
         "starts": [
@@ -86,45 +85,45 @@ def as_document(
                 "kkt_residual": each.residual,
                 "paths_solved": each.solved,
                 "message": _ended(number, each),
-                **_dimensions(task, each),
+                **_dimensions(asked, each),
             }
             for number, each in zip(numbered(outcomes), outcomes, strict=True)
         ],
     }
 
 
-def question(task: Sizing) -> tuple[str, str]:
+def question(asked: Question) -> tuple[str, str]:
     """Return what is asked, in two lines."""
-    names, rotation = task.start.effects.names, task.start.rotation
+    names, rotation = asked.start.effects.names, asked.start.rotation
     loads = [name for name in names if name not in PLAIN]
     taken = [name.replace("_", " ") for name in OF_SIDES if name in names]
-    degrees = "" if rotation is None else f" over {_range(task, math.degrees(rotation))} deg"
-    wanted = f"{task.stiffness:.6g} N m/rad"
-    if task.held == "travel":
-        wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
+    degrees = "" if rotation is None else f" over {_range(asked, math.degrees(rotation))} deg"
+    wanted = f"{asked.wanted:.6g} N m/rad"
+    if asked.held == "travel":
+        wanted = f"a travel of {1e3 * asked.wanted:.6g} mm"
     return (
-        f"least {task.objective.replace('-', ' ')}{degrees}"
+        f"least {asked.objective.replace('-', ' ')}{degrees}"
         + (f" under {', '.join(loads)}" if loads else "")
         + (f" with {', '.join(taken)}" if taken else ""),
-        f"at {wanted} and at most {task.allowable_stress / 1e6:.6g} MPa",
+        f"at {wanted} and at most {asked.allowable_stress / 1e6:.6g} MPa",
     )
 
 
-def _range(task: Sizing, degrees: float) -> str:
+def _range(asked: Question, degrees: float) -> str:
     """Return the range in words: of a pivot to both sides, of a mechanism to the one it turns to."""
-    return f"+-{abs(degrees):.4g}" if isinstance(task, Task) else f"{degrees:.4g}"
+    return f"+-{abs(degrees):.4g}" if isinstance(asked, PivotQuestion) else f"{degrees:.4g}"
 
 
 def _named(measured: Quantities) -> dict[str, float]:
     return {SHOWN[name][0]: value for name, value in measured.items()}
 
 
-def _dimensions(task: Sizing, found: Outcome) -> dict[str, Any]:
+def _dimensions(asked: Question, found: Outcome) -> dict[str, Any]:
     """Return the dimensions of a pivot, or the numbers of a mechanism in the file's units."""
-    if isinstance(task, NumbersTask):
-        return {"numbers": dict(zip(task.variables, map(float, task.values(found.at)), strict=True))}
-    values = dict(zip(DIMENSIONS, map(float, variables_of(found.problem)), strict=True))
-    return values | {"inclination_deg": math.degrees(found.problem.inclination)}
+    if not isinstance(found.design, Problem):
+        return {"numbers": dict(zip(asked.names, map(float, asked.values(found.at)), strict=True))}
+    values = dict(zip(DIMENSIONS, map(float, variables_of(found.design)), strict=True))
+    return values | {"inclination_deg": math.degrees(found.design.inclination)}
 
 
 def _section(design: Any) -> dict[str, float]:
@@ -134,19 +133,19 @@ def _section(design: Any) -> dict[str, float]:
     return {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
 
 
-def readable(task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None) -> Iterator[str]:
+def readable(asked: Question, own: Accurate, outcomes: list[Outcome], found: Optimum | None) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    yield from question(task)
+    yield from question(asked)
     if found is not None:
-        yield from _comparison(task, own.quantities, found)
+        yield from _comparison(asked, own.quantities, found)
         yield from _remarks(found)
-        yield from _dimensioned(task, found.outcome)
+        yield from _dimensioned(asked, found.outcome)
     yield ""
-    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(task)}"
+    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(asked)}"
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
-        share = each.objective / own.quantities[task.objective]
+        share = each.objective / own.quantities[asked.objective]
         begun = f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}"
-        line = f"{begun}  {_line(task, task.values(each.at))}  {_ended(number, each)}"
+        line = f"{begun}  {_line(asked, asked.values(each.at))}  {_ended(number, each)}"
         yield line.replace(" nan ", " -   ")
 
 
@@ -155,7 +154,7 @@ def _ended(number: int, outcome: Outcome) -> str:
     return outcome.message or ("the least" if number == 1 else "an optimum, not the least")
 
 
-def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]:
+def _comparison(asked: Question, case: Quantities, found: Optimum) -> Iterator[str]:
     """Yield what case and optimum answer, and how sure that is."""
     spline, errors = found.answers.quantities, found.answers.errors
     yield ""
@@ -167,7 +166,7 @@ def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]
             yield f"{label:<28}{''.join(told)}"
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
-    yield _gain(case[task.objective] / spline[task.objective])
+    yield _gain(case[asked.objective] / spline[asked.objective])
     errs = ", ".join(
         f"{name} {error:.1e}" if math.isfinite(error) else f"{name} not estimated"
         for name, error in errors.items()
@@ -196,31 +195,30 @@ def _remarks(found: Optimum) -> Iterator[str]:
         yield path.message
 
 
-def _dimensioned(task: Sizing, found: Outcome) -> Iterator[str]:
+def _dimensioned(asked: Question, found: Outcome) -> Iterator[str]:
     """Yield the dimensions of case and optimum, and what holds this back."""
     yield ""
-    if isinstance(task, NumbersTask):
-        yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))
-    yield f"{'':<10}{_heading(task)}"
-    yield f"{'case':<10}{_line(task, task.own)}"
-    yield f"{'sized':<10}{_line(task, task.values(found.at))}"
+    if not isinstance(asked, PivotQuestion):
+        yield from (f"{each.heading:>5}: {each.name}" for each in asked.variables)
+    yield f"{'':<10}{_heading(asked)}"
+    yield f"{'case':<10}{_line(asked, asked.own)}"
+    yield f"{'sized':<10}{_line(asked, asked.values(found.at))}"
     yield ""
-    active = ", ".join(f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
+    active = ", ".join(f"{_said(asked, each.name)} ({each.price:+.2g})" for each in found.active)
     yield f"held back by, with prices: {active or 'nothing'}"
-    spans = zip(task.variables, task.span, strict=True)
-    if held := [_said(task, name) for name, span in spans if span == 0.0]:
+    if held := [_said(asked, each.name) for each in asked.variables if each.span == 0.0]:
         yield f"held as asked: {', '.join(held)}"
 
 
-def _said(task: Sizing, name: str) -> str:
+def _said(asked: Question, name: str) -> str:
     """Return the name of a constraint as it is read: keys of a file stand as they are."""
-    return name if isinstance(task, NumbersTask) else name.replace("_", " ")
+    return name.replace("_", " ") if isinstance(asked, PivotQuestion) else name
 
 
-def _heading(task: Sizing) -> str:
-    return "".join(f"{head:>{form.partition('.')[0]}}" for head, _, form in task.columns)
+def _heading(asked: Question) -> str:
+    return "".join(f"{each.heading:>{each.form.partition('.')[0]}}" for each in asked.variables)
 
 
-def _line(task: Sizing, values: Any) -> str:
-    columns = zip(task.columns, values, strict=True)
-    return "".join(f"{factor * value:{form}}" for (_, factor, form), value in columns)
+def _line(asked: Question, values: Any) -> str:
+    columns = zip(asked.variables, values, strict=True)
+    return "".join(f"{each.factor * value:{each.form}}" for each, value in columns)

@@ -198,7 +198,7 @@ def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
     case, best = named_case("large_steel_pivot"), named_case(path)
     assert (best.length, best.width) == (pytest.approx(0.3), pytest.approx(0.05))
     assert best.effects == case.effects
-    sized, own = answers(best).measured().quantities(), answers(case).measured().quantities()
+    sized, own = answers(best).measured.quantities(), answers(case).measured.quantities()
     assert sized["centre-shift"] < 0.5 * own["centre-shift"]
     assert sized["stiffness"] == pytest.approx(own["stiffness"], rel=2e-6)
     assert sized["stress"] <= 0.5 * best.yield_strength * (1.0 + 1e-6)
