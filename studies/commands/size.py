@@ -45,7 +45,7 @@ from studies.commands.parser import Argument, command, positive, reads, whole_nu
 from studies.commands.sized import Optimum, as_document, question, readable
 from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
 from studies.design.numbers import MechanismQuestion
-from studies.design.optimise import Outcome, best, search
+from studies.design.optimise import best, search
 from studies.design.programme import STARTS, compared
 from studies.design.question import OF_PIVOT, PivotQuestion, Question
 from studies.errors import BadInput
@@ -129,20 +129,39 @@ def main(arguments: argparse.Namespace) -> int:
         found = None if best_one is None else Optimum.of(task, best_one)
     except PathEnds as error:
         return not_converged(error)
-    failure = _failure(outcomes) if found is None else None
-    document = as_document(task, own, outcomes, found)
-    if arguments.out is not None and found is not None:
-        write_whole(arguments.out, _file(task, found.outcome, Path(arguments.case).stem).encode())
+    failure = None
+    if found is None:
+        nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
+        reason = outcomes[nearest].message
+        failure = f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {reason}"
+    elif arguments.out is not None:
+        (least, held), name = question(task), Path(arguments.case).stem
+        remarks = [f"Sized from {name} for the {least},", f"{held}."]
+        content = task.document(task.values(found.outcome.at))
+        write_whole(arguments.out, as_toml(content, remarks).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
+    document = as_document(task, own, outcomes, found)
     return deliver(arguments, document, readable(task, own, outcomes, found), failure=failure)
 
 
 def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
-    """Return what is asked of a pivot, within the bounds that are given."""
-    start, bounds = _start(arguments), {}
+    """Return what is asked of a pivot, within bounds; BadInput where it cannot be sized."""
+    start = take.turned_design(arguments, "range to size for")
+    assert isinstance(start, Problem)
+    got, expected = "", ""
+    if start.section_depth is not None:
+        got = f"strip.section_depth_m: got {start.section_depth:g}"
+        expected = "none: both sides of a rectangular section are sized"
+    elif "driven_displacement" in start.effects.names:
+        got, expected = "scene.effects: got driven_displacement", "a body that is free to shift"
+    elif len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
+        got = f'drive.order: got "{start.order}"'
+        expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
+    if got:
+        raise BadInput(f"{arguments.case}: {got}, expected {expected}")
+    bounds = {}
     for name, (attribute, unit, _, _) in BOUNDS.items():
-        given = getattr(arguments, attribute)
-        if given is not None:
+        if (given := getattr(arguments, attribute)) is not None:
             bounds[name] = given[0] * unit, given[1] * unit
     task = PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
     length, _, _, thickness, width = task.variables
@@ -156,24 +175,6 @@ def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
             expected = f"no more than {most:.4g}, {why}, which is at most {longest:.4g} mm"
             raise BadInput(f"{option}: got at least {least:.4g}, expected {expected}")
     return task
-
-
-def _start(arguments: argparse.Namespace) -> Problem:
-    """Return the case over the range that is asked for; BadInput where it cannot be sized."""
-    start = take.turned_design(arguments, "range to size for")
-    assert isinstance(start, Problem)
-    if start.section_depth is not None:
-        expected = "none: both sides of a rectangular section are sized"
-        raise BadInput(
-            f"{arguments.case}: strip.section_depth_m: got {start.section_depth:g}, expected {expected}"
-        )
-    if "driven_displacement" in start.effects.names:
-        expected = "a body that is free to shift"
-        raise BadInput(f"{arguments.case}: scene.effects: got driven_displacement, expected {expected}")
-    if len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
-        expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
-        raise BadInput(f'{arguments.case}: drive.order: got "{start.order}", expected {expected}')
-    return start
 
 
 def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
@@ -255,13 +256,6 @@ def _unknown(task: Question, arguments: argparse.Namespace, limits: dict[str, fl
     return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
 
 
-def _file(task: Question, found: Outcome, name: str) -> str:
-    """Return the optimum as a case file, with the comment what it is the optimum of."""
-    least, held = question(task)
-    content = task.document(task.values(found.at))
-    return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
-
-
 def _allowable(strength: float | None, arguments: argparse.Namespace) -> float | None:
     """Return the stress that is allowed [Pa], from what is given or the yield strength; None without both."""
     factor, wanted = arguments.safety_factor, arguments.max_stress_MPa
@@ -273,9 +267,3 @@ def _allowable(strength: float | None, arguments: argparse.Namespace) -> float |
     if wanted is not None:
         return float(1e6 * wanted)
     return None if strength is None else strength / (factor or 1.0)
-
-
-def _failure(outcomes: list[Outcome]) -> str:
-    """Return why there is no optimum, from the start that came nearest."""
-    nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
-    return f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {outcomes[nearest].message}"

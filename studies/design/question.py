@@ -96,6 +96,10 @@ class Question:
         """Return the document of the case with these variables (N,)."""
         raise NotImplementedError
 
+    def dimensions(self, values: Array) -> dict[str, Any]:
+        """Return these variables (N,) as the JSON has them."""
+        return {"numbers": dict(zip(self.names, map(float, values), strict=True))}
+
     def parameters(self, values: Array) -> tuple[Sequence[str], Array | None]:
         """Return names of the sensitivities and their derivatives by the variables, as of `evaluate`."""
         return self.names, None
@@ -200,6 +204,12 @@ class PivotQuestion(Question):
     def document(self, values: Array) -> dict[str, Any]:
         """Return the document of the pivot with these variables (5,)."""
         return document_of(self.design(values))
+
+    def dimensions(self, values: Array) -> dict[str, Any]:
+        """Return these variables (5,) with their units."""
+        length, inclination, crossing, thickness, width = map(float, values)
+        angle = {"inclination_deg": math.degrees(inclination), "crossing_ratio": crossing}
+        return {"length_m": length, **angle, "thickness_m": thickness, "width_m": width}
 
 
 def variables_of(problem: Problem) -> Array:
