@@ -7,6 +7,7 @@ would hang on round-off.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -85,7 +86,7 @@ def optimise(question: Question, start: Array, progress: Callable[[int], None] |
     begin = next((at for at in moves if programme.answers(at) is not None), None)
     if begin is None:
         return _outcome(programme, start, None)
-    outcome = _run(programme, feasible(programme, begin))
+    outcome = _run(programme, _feasible(programme, begin))
     for _ in range(MOST_RUNS - 1):
         if outcome.converged or outcome.violation > FEASIBLE or programme.solved >= MOST_PATHS:
             break
@@ -93,7 +94,7 @@ def optimise(question: Question, start: Array, progress: Callable[[int], None] |
     return outcome
 
 
-def feasible(programme: Programme, at: Array) -> Array:
+def _feasible(programme: Programme, at: Array) -> Array:
     """Return the scaled variables (N,) of a feasible design near ``at``, or of the least violation there.
 
     Each step is the shortest that leaves the linearised constraints least violated, shortened where needed.
@@ -162,8 +163,12 @@ def _run(programme: Programme, at: Array) -> Outcome:
             raise _Enough(x.copy())
 
     constraints = [
-        {"type": kind, "fun": lambda x, of=of: of(x)[0], "jac": lambda x, of=of: of(x)[1]}
-        for kind, of in (("ineq", programme.inequalities), ("eq", programme.equality))
+        {
+            "type": kind,
+            "fun": lambda x, at=at: at(programme.rows(x)[0]),
+            "jac": lambda x, at=at: at(programme.rows(x)[1]),
+        }
+        for kind, at in (("ineq", itemgetter(slice(-1))), ("eq", itemgetter(slice(-1, None))))
     ]
     try:
         found = minimize(

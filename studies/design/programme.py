@@ -117,21 +117,22 @@ class Programme:
 
     def limits(self, y: Array, found: Answers) -> Iterator[Rows]:
         """Yield the constraints at a point y (N + 1,) with these answers: the objective below t, the stress,
-        and the ratios, which are linear in the variables."""
-        asked, name = self.question, self.question.objective
-        stress, eye = found.followed[STRESS], np.eye(len(y))
+        the ratios, which are linear in the variables, and last the equality: stiffness, or travel, over the
+        wanted one less one."""
+        asked, name, eye = self.question, self.question.objective, np.eye(len(y))
         if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
             yield self._below(name, found.followed[name], self.scale**2, y[-1], eye[-1], signs=(1.0,))
         else:
             yield self._below(name, found.followed[name], self.scale, y[-1], eye[-1])
-        other = "allowable stress" if name == STRESS else STRESS
-        yield self._below(other, stress, asked.allowable_stress, 1.0, 0.0 * eye[-1])._replace(fall=-1.0)
+        stress = self._below(STRESS, found.followed[STRESS], asked.allowable_stress, 1.0, 0.0 * eye[-1])
+        yield stress._replace(name="allowable stress" if name == STRESS else STRESS, fall=-1.0)
         values, span = asked.values(y), np.append(asked.span, 0.0)
         for ratio in asked.ratios:
             side, limit = ratio.side / asked.variables[0].high, ratio.limit
             margin = side * (values[ratio.top] - limit * values[ratio.bottom])
             by = side * span * (eye[ratio.top] - limit * eye[ratio.bottom])
             yield Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
+        yield self._below(STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, 0.0 * eye[-1], signs=(-1.0,))
 
     def _below(
         self,
@@ -143,13 +144,13 @@ class Programme:
         signs: tuple[float, ...] = (1.0, -1.0),
     ) -> Rows:
         """Return the rows of values over a limit that are to be below a bound, those of these signs."""
-        value, by = found.value / limit, _widened(found.by * self.question.span / limit)
-        margins = [bound - sign * value for sign in signs]
-        return Rows(
-            name, np.concatenate(margins), np.concatenate([by_bound - sign * by for sign in signs]), 0.0
+        value, by = found.value / limit, np.pad(found.by * self.question.span / limit, ((0, 0), (0, 1)))
+        margin, jacobian = (
+            [of - sign * each for sign in signs] for of, each in ((bound, value), (by_bound, by))
         )
+        return Rows(name, np.concatenate(margin), np.concatenate(jacobian), 1.0)
 
-    def bounds(self, y: Array) -> Iterator[Rows]:
+    def _bounds(self, y: Array) -> Iterator[Rows]:
         """Yield the bounds of the variables at a point y (N + 1,)."""
         for place, variable in enumerate(self.question.variables):
             if variable.span:
@@ -158,34 +159,21 @@ class Programme:
                 yield Rows(f"{variable.name} at its least", at, one, low)
                 yield Rows(f"{variable.name} at its most", 1.0 - at, -one, -high)
 
-    def inequalities(self, y: Array) -> tuple[Array, Array]:
-        """Return all rows that must not be below zero (R,) [1], and their Jacobian (R, N + 1)."""
+    def rows(self, y: Array) -> tuple[Array, Array]:
+        """Return the margins of all rows (R,) [1], the last that of the equality, and their Jacobian
+        (R, N + 1)."""
         found = self.answers(y)
         if found is None:
             return np.full(self._count, OUTSIDE), np.zeros((self._count, len(y)))
         limits = list(self.limits(y, found))
         return np.concatenate([rows.margin for rows in limits]), np.concatenate([rows.by for rows in limits])
 
-    def equality(self, y: Array) -> tuple[Array, Array]:
-        """Return stiffness, or travel, over the wanted one less one (1,), and its gradient (1, N + 1)."""
-        found, wanted = self.answers(y), self.question.wanted
-        if found is None:
-            return np.array([OUTSIDE]), np.zeros((1, len(self.question.span) + 1))
-        held = found.followed[self.question.held]
-        return held.value / wanted - 1.0, _widened(held.by * self.question.span / wanted)
-
     def excesses(self, y: Array) -> tuple[Array, Array]:
         """Return how far each row that does not depend on t is beyond its limit (Q,) [1], below zero where it
         holds but for the last, the equality's; and their Jacobian (Q, N)."""
-        whole = np.append(y[: len(self.question.span)], np.inf)
-        rows, jacobian = self.inequalities(whole)
-        free, (held, by_held) = np.isfinite(rows), self.equality(whole)
-        return np.append(-rows[free], held), np.vstack((-jacobian[free], by_held))[:, :-1]
-
-    def violation(self, y: Array) -> float:
-        """Return by how much the worst of these rows is missed [1]."""
-        excess = self.excesses(y)[0]
-        return float(max(np.max(excess, initial=0.0), abs(excess[-1])))
+        margin, jacobian = self.rows(np.append(y[: len(self.question.span)], np.inf))
+        free, signs = np.isfinite(margin), np.append(np.full(self._count - 1, -1.0), 1.0)
+        return (signs * margin)[free], (signs[:, None] * jacobian)[free, :-1]
 
     def conditions(self, y: Array, found: Answers) -> tuple[tuple[Active, ...], float]:
         """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
@@ -193,30 +181,22 @@ class Programme:
         The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
         least zero, but for the equality's: the residual is the length of what is left over.
         """
-        limits = [*self.limits(y, found), *self.bounds(y)]
+        *limits, held = self.limits(y, found)
         reached = [
             (rows.name, rows.fall, by)
-            for rows in limits
+            for rows in (*limits, *self._bounds(y))
             for margin, by in zip(rows.margin, rows.by, strict=True)
             if margin < ACTIVE
         ]
-        equal = self.equality(y)[1][0]
-        columns = np.column_stack([*(by for _, _, by in reached), equal, -equal])
-        multipliers, residual = nnls(columns, np.eye(len(y))[-1])
+        reached += [(held.name, sign, sign * held.by[0]) for sign in (1.0, -1.0)]
+        multipliers, residual = nnls(np.column_stack([by for _, _, by in reached]), np.eye(len(y))[-1])
         prices: dict[str, float] = {}
-        for (name, fall, _), multiplier in zip(reached, multipliers, strict=False):
-            if multiplier:
-                prices[name] = prices.get(name, 0.0) + fall * multiplier
+        for (name, fall, _), multiplier in zip(reached, multipliers, strict=True):
+            prices[name] = prices.get(name, 0.0) + float(fall * multiplier)
         prices.pop(self.question.objective, None)
-        prices[STIFFNESS] = multipliers[-2] - multipliers[-1]
         whole = (2.0 if self.question.objective == CENTRE_SHIFT else 1.0) * y[-1]
-        active = tuple(Active(name, float(price / whole)) for name, price in prices.items() if price)
+        active = tuple(Active(name, price / whole) for name, price in prices.items() if price)
         return active, float(residual)
-
-
-def _widened(rows: Array) -> Array:
-    """Return Jacobian rows (R, N) with the column of t."""
-    return np.pad(rows, ((0, 0), (0, 1)))
 
 
 class _Held(NamedTuple):
