@@ -22,6 +22,13 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **keywords: Any) -> None:
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False, **keywords)
 
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse the words of a command; of an option=-- argparse would make a list without a value."""
+        for word in args or ():
+            if word.startswith("--") and word.endswith("=--"):
+                self.error(f"argument {word[:-3]}: expected one argument")
+        return super().parse_args(args, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Raise BadInput with `message` in one line, naming the option nearest to an unknown one."""
         if unknown := re.match(r"unrecognized arguments: (--[\w-]+)", message):

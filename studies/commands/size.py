@@ -28,13 +28,14 @@ import argparse
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from spline_model.confirmed import NOTHING
 from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
-from studies.cases.design import as_toml, document_of
+from studies.cases.design import as_toml
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
@@ -43,10 +44,10 @@ from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
 from studies.commands.sized import Optimum, as_document, question, readable
 from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
-from studies.design.numbers import NumbersTask, by_sides, number_of
-from studies.design.optimise import Outcome, best, search
-from studies.design.programme import compared
-from studies.design.task import OBJECTIVES, Sizing, Task
+from studies.design.numbers import MechanismQuestion
+from studies.design.optimise import best, search
+from studies.design.programme import STARTS, compared
+from studies.design.question import OF_PIVOT, PivotQuestion, Question
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
@@ -80,7 +81,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     Argument(
         "--objective",
         "what is to be least: of a mechanism stress or stiffness-variation",
-        choices=[*OBJECTIVES, STRESS],
+        choices=[*OF_PIVOT, STRESS],
         required=True,
     ),
     Argument(
@@ -110,7 +111,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
         for name, (attribute, _, most, said) in BOUNDS.items()
     ),
     Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
-    Argument("--starts N", "starts of the search, default 8", whole_number(1), default=8),
+    Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
     take.OUT_FILE.but("write the optimum there as a case file (default: nowhere)"),
     take.JSON,
 )
@@ -119,7 +120,7 @@ def main(arguments: argparse.Namespace) -> int:
     content = parsed(arguments.case)
     mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)
-    asked: Sizing = _numbers(content, arguments) if mechanism else _pivot(arguments)
+    asked: Question = _numbers(content, arguments) if mechanism else _pivot(arguments)
     try:
         task, own = _limited(asked, arguments)
         with Bar("size") as bar:
@@ -128,52 +129,52 @@ def main(arguments: argparse.Namespace) -> int:
         found = None if best_one is None else Optimum.of(task, best_one)
     except PathEnds as error:
         return not_converged(error)
-    failure = _failure(outcomes) if found is None else None
-    document = as_document(task, own, outcomes, found)
-    if arguments.out is not None and found is not None:
-        write_whole(arguments.out, _file(task, found.outcome, Path(arguments.case).stem).encode())
+    failure = None
+    if found is None:
+        nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
+        reason = outcomes[nearest].message
+        failure = f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {reason}"
+    elif arguments.out is not None:
+        (least, held), name = question(task), Path(arguments.case).stem
+        remarks = [f"Sized from {name} for the {least},", f"{held}."]
+        content = task.document(task.values(found.outcome.at))
+        write_whole(arguments.out, as_toml(content, remarks).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
+    document = as_document(task, own, outcomes, found)
     return deliver(arguments, document, readable(task, own, outcomes, found), failure=failure)
 
 
-def _pivot(arguments: argparse.Namespace) -> Task:
-    """Return what is asked of a pivot, within the bounds that are given."""
-    start, bounds = _start(arguments), {}
+def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
+    """Return what is asked of a pivot, within bounds; BadInput where it cannot be sized."""
+    start = take.turned_design(arguments, "range to size for")
+    assert isinstance(start, Problem)
+    got, expected = "", ""
+    if start.section_depth is not None:
+        got = f"strip.section_depth_m: got {start.section_depth:g}"
+        expected = "none: both sides of a rectangular section are sized"
+    elif "driven_displacement" in start.effects.names:
+        got, expected = "scene.effects: got driven_displacement", "a body that is free to shift"
+    elif len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
+        got = f'drive.order: got "{start.order}"'
+        expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
+    if got:
+        raise BadInput(f"{arguments.case}: {got}, expected {expected}")
+    bounds = {}
     for name, (attribute, unit, _, _) in BOUNDS.items():
-        given = getattr(arguments, attribute)
-        if given is not None:
+        if (given := getattr(arguments, attribute)) is not None:
             bounds[name] = given[0] * unit, given[1] * unit
-    limits = {"stiffness": math.nan, "allowable_stress": math.inf, "largest_aspect": arguments.aspect}
-    task = Task.usual(start, bounds, objective=arguments.objective, **limits)
-    longest, thinnest, narrowest = (
-        1e3 * task.bounds[name][end] for name, end in (("length", 1), ("thickness", 0), ("width", 0))
-    )
+    task = PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
+    length, _, _, thickness, width = task.variables
+    slender, aspect = (ratio.limit for ratio in task.ratios)
+    longest = 1e3 * length.high
     for option, least, most, why in (
-        ("--thickness-mm", thinnest, longest / task.least_slenderness, "the case's thickness to the length"),
-        ("--width-mm", narrowest, longest * task.largest_aspect, "--aspect times the length"),
+        ("--thickness-mm", 1e3 * thickness.low, longest / slender, "the case's thickness to the length"),
+        ("--width-mm", 1e3 * width.low, longest * aspect, "--aspect times the length"),
     ):
         if least > most * (1.0 + ROUND_OFF):
             expected = f"no more than {most:.4g}, {why}, which is at most {longest:.4g} mm"
             raise BadInput(f"{option}: got at least {least:.4g}, expected {expected}")
     return task
-
-
-def _start(arguments: argparse.Namespace) -> Problem:
-    """Return the case over the range that is asked for; BadInput where it cannot be sized."""
-    start = take.turned_design(arguments, "range to size for")
-    assert isinstance(start, Problem)
-    if start.section_depth is not None:
-        expected = "none: both sides of a rectangular section are sized"
-        raise BadInput(
-            f"{arguments.case}: strip.section_depth_m: got {start.section_depth:g}, expected {expected}"
-        )
-    if "driven_displacement" in start.effects.names:
-        expected = "a body that is free to shift"
-        raise BadInput(f"{arguments.case}: scene.effects: got driven_displacement, expected {expected}")
-    if len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
-        expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
-        raise BadInput(f'{arguments.case}: drive.order: got "{start.order}", expected {expected}')
-    return start
 
 
 def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
@@ -189,20 +190,19 @@ def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
             )
     wrong = "centre-shift" if mechanism else STRESS
     if arguments.objective == wrong:
-        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OBJECTIVES)
+        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OF_PIVOT)
         raise BadInput(f"--objective: got {wrong}, expected {kinds} for {Path(arguments.case).stem}")
     if mechanism and not arguments.free:
         raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
 
 
-def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersTask:
+def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> MechanismQuestion:
     """Return the numbers of a mechanism that are to be found, over the path that is asked for."""
     where = str(arguments.case)
-    document = by_sides(content, arguments.free)
     if arguments.rotation is not None:
-        document["drive"] = document.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
-    numbers = tuple(number_of(where, document, text) for text in arguments.free)
-    task = NumbersTask(where=where, document=document, numbers=numbers, objective=arguments.objective)
+        drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
+        content = content | {"drive": drive}
+    task = MechanismQuestion.of(where, content, arguments.free, objective=arguments.objective)
     if task.objective not in task.objectives:
         raise BadInput(f"--objective: got {task.objective}, expected stress of what follows its loads")
     if not task.start.bodies:
@@ -211,11 +211,11 @@ def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> NumbersT
     if getattr(arguments, other) is not None:
         expected = take.option("stiffness" if other == "travel_mm" else "travel_mm")
         raise BadInput(f"{take.option(other)}: got it for {Path(where).stem}, expected {expected}")
-    task.require_numbers()
+    task.require_gradients()
     return task
 
 
-def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accurate]:
+def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
@@ -227,18 +227,18 @@ def _limited(task: Sizing, arguments: argparse.Namespace) -> tuple[Sizing, Accur
         own = task.accurate()
     except PathEnds:
         own = _unknown(task, arguments, {task.held: wanted, "stress": allowable})
-        return task.changed(stiffness=wanted, allowable_stress=allowable), own
+        assert allowable is not None, "it is given, as without it there is no question"
+        return replace(task, wanted=wanted, allowable_stress=allowable), own
     if own.quantities[task.objective] <= NOTHING:
         expected = "what is not zero already: its stiffness does not vary"
         raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
-    limits = {
-        "stiffness": own.answers.stiffness if wanted is None else wanted,
-        "allowable_stress": own.answers.largest(STRESS) if allowable is None else allowable,
-    }
-    return task.changed(**limits, control_points=own.control_points), own
+    wanted = own.quantities[task.held] if wanted is None else wanted
+    allowable = own.answers.largest(STRESS) if allowable is None else allowable
+    points = own.control_points
+    return replace(task, wanted=wanted, allowable_stress=allowable, control_points=points), own
 
 
-def _unknown(task: Sizing, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
+def _unknown(task: Question, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
     """Return the answers of a case whose path ends early: no numbers, if all limits are given without them;
     else PathEnds, with what is to be given."""
     options = {"stiffness": "--stiffness", "travel": "--travel-mm", "stress": "--max-stress-MPa"}
@@ -252,19 +252,8 @@ def _unknown(task: Sizing, arguments: argparse.Namespace, limits: dict[str, floa
         unloaded = f" (at rest it has {rest:.4g} N m/rad)" if rest > 0.0 else ""
         remedy = f"give {' and '.join(missing)} to search from other designs{unloaded}"
         raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}; {remedy}")
-    names, (_, answers) = (STRESS, *task.objectives, task.held), compared(task)
-    nothing = dict.fromkeys(names, math.nan)
+    nothing, (_, answers) = dict.fromkeys(task.quantities, math.nan), compared(task)
     return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
-
-
-def _file(task: Sizing, found: Outcome, name: str) -> str:
-    """Return the optimum as a case file, with the comment what it is the optimum of."""
-    least, held = question(task)
-    if isinstance(task, NumbersTask):
-        content = task.content(task.values(found.at))
-    else:
-        content = document_of(found.problem)
-    return as_toml(content, [f"Sized from {name} for the {least},", f"{held}."])
 
 
 def _allowable(strength: float | None, arguments: argparse.Namespace) -> float | None:
@@ -278,9 +267,3 @@ def _allowable(strength: float | None, arguments: argparse.Namespace) -> float |
     if wanted is not None:
         return float(1e6 * wanted)
     return None if strength is None else strength / (factor or 1.0)
-
-
-def _failure(outcomes: list[Outcome]) -> str:
-    """Return why there is no optimum, from the start that came nearest."""
-    nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
-    return f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {outcomes[nearest].message}"

@@ -13,10 +13,10 @@ from studies.answers.settings import SplineSettings
 from studies.answers.validity import validity
 from studies.cases.effects import OF_SIDES
 from studies.cases.problem import Problem
-from studies.design.evaluate import PLAIN, Accurate
-from studies.design.numbers import NumbersTask
+from studies.commands.columns import cell
+from studies.design.evaluate import PLAIN, Accurate, by_elements
 from studies.design.optimise import SAME, Outcome, numbered, settled
-from studies.design.task import Sizing, Task, variables_of
+from studies.design.question import Question
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
 SHOWN = {
@@ -26,10 +26,6 @@ SHOWN = {
     "travel": ("travel_m", "travel [mm]", 1e3),
     "stress": ("max_stress_Pa", "stress [MPa]", 1e-6),
 }
-DIMENSIONS = ("length_m", "inclination_deg", "crossing_ratio", "thickness_m", "width_m")
-
-
-Quantities = Mapping[str, float]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,114 +36,111 @@ class Optimum:
     outcome: Outcome
     answers: Accurate
     path: Response
-    elements: Quantities
+    elements: Mapping[str, float]
     no_elements: str = ""
 
     @classmethod
-    def of(cls, task: Sizing, found: Outcome) -> Self:
+    def of(cls, asked: Question, found: Outcome) -> Self:
         """Return an optimum with all that is said of it."""
-        found, answers = settled(task, found)
-        path, reason = answer_static(found.problem, SplineSettings()), ""
+        found, answers = settled(asked, found)
+        path, reason = answer_static(found.design, SplineSettings()), ""
         try:
-            elements: Quantities = task.by_elements(found.problem)
+            elements = by_elements(found.design).quantities(asked.quantities)
         except NoReference as error:
-            elements, reason = dict.fromkeys(answers.quantities, math.nan), str(error)
+            elements, reason = dict.fromkeys(asked.quantities, math.nan), str(error)
         return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
+
+    def document(self, asked: Question) -> dict[str, Any]:
+        """Return it as a JSON object."""
+        design, active = self.outcome.design, self.outcome.active
+        section = {}
+        if isinstance(design, Problem):
+            section = {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
+        return {
+            **asked.dimensions(asked.values(self.outcome.at)),
+            **section,
+            "spline": _named(self.answers.quantities),
+            "estimated_error": _named(self.answers.errors),
+            "control_points": self.answers.control_points,
+            "finite_elements": _named(self.elements),
+            "validity": asdict(validity(self.path)),
+            "active": [{"constraint": each.name, "price": each.price} for each in active],
+        }
 
 
 def as_document(
-    task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None
+    asked: Question, own: Accurate, outcomes: list[Outcome], found: Optimum | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command; own: the case's answers."""
-    optimum = None
-    if found is not None:
-        optimum = {
-            **_dimensions(task, found.outcome),
-            **_section(found.outcome.problem),
-            "spline": _named(found.answers.quantities),
-            "estimated_error": _named(found.answers.errors),
-            "control_points": found.answers.control_points,
-            "finite_elements": _named(found.elements),
-            "validity": asdict(validity(found.path)),
-            "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
+    starts = [
+        {
+            "optimum": number,
+            "objective": each.objective,
+            "violation": each.violation,
+            "kkt_residual": each.residual,
+            "paths_solved": each.solved,
+            "message": _ended(number, each),
+            **asked.dimensions(asked.values(each.at)),
         }
+        for number, each in zip(numbered(outcomes), outcomes, strict=True)
+    ]
     return {
-        "objective": task.objective,
-        SHOWN[task.held][0]: task.stiffness,
-        "allowable_stress_Pa": task.allowable_stress,
-        "bounds": {name: list(task.bounds[name]) for name in task.variables},
+        "objective": asked.objective,
+        SHOWN[asked.held][0]: asked.wanted,
+        "allowable_stress_Pa": asked.allowable_stress,
+        "bounds": {each.name: [each.low, each.high] for each in asked.variables},
         "case": _named(own.quantities),
-        "optimum": optimum,
-        "starts": [
-            {
-                "optimum": number,
-                "objective": each.objective,
-                "violation": each.violation,
-                "kkt_residual": each.residual,
-                "paths_solved": each.solved,
-                "message": _ended(number, each),
-                **_dimensions(task, each),
-            }
-            for number, each in zip(numbered(outcomes), outcomes, strict=True)
-        ],
+        "optimum": found.document(asked) if found is not None else None,
+        "starts": starts,
     }
 
 
-def question(task: Sizing) -> tuple[str, str]:
-    """Return what is asked, in two lines."""
-    names, rotation = task.start.effects.names, task.start.rotation
-    loads = [name for name in names if name not in PLAIN]
-    taken = [name.replace("_", " ") for name in OF_SIDES if name in names]
-    degrees = "" if rotation is None else f" over {_range(task, math.degrees(rotation))} deg"
-    wanted = f"{task.stiffness:.6g} N m/rad"
-    if task.held == "travel":
-        wanted = f"a travel of {1e3 * task.stiffness:.6g} mm"
-    return (
-        f"least {task.objective.replace('-', ' ')}{degrees}"
-        + (f" under {', '.join(loads)}" if loads else "")
-        + (f" with {', '.join(taken)}" if taken else ""),
-        f"at {wanted} and at most {task.allowable_stress / 1e6:.6g} MPa",
-    )
+def question(asked: Question) -> tuple[str, str]:
+    """Return what is asked, in two lines: the range of a pivot is to both sides."""
+    names, rotation = asked.start.effects.names, asked.start.rotation
+    least = f"least {asked.objective.replace('-', ' ')}"
+    if rotation is not None:
+        degrees = math.degrees(rotation)
+        both = isinstance(asked.start, Problem)
+        least += f" over +-{abs(degrees):.4g} deg" if both else f" over {degrees:.4g} deg"
+    if loads := [name for name in names if name not in PLAIN]:
+        least += f" under {', '.join(loads)}"
+    if taken := [name.replace("_", " ") for name in OF_SIDES if name in names]:
+        least += f" with {', '.join(taken)}"
+    wanted = f"{asked.wanted:.6g} N m/rad"
+    if asked.held == "travel":
+        wanted = f"a travel of {1e3 * asked.wanted:.6g} mm"
+    return least, f"at {wanted} and at most {asked.allowable_stress / 1e6:.6g} MPa"
 
 
-def _range(task: Sizing, degrees: float) -> str:
-    """Return the range in words: of a pivot to both sides, of a mechanism to the one it turns to."""
-    return f"+-{abs(degrees):.4g}" if isinstance(task, Task) else f"{degrees:.4g}"
-
-
-def _named(measured: Quantities) -> dict[str, float]:
+def _named(measured: Mapping[str, float]) -> dict[str, float]:
     return {SHOWN[name][0]: value for name, value in measured.items()}
 
 
-def _dimensions(task: Sizing, found: Outcome) -> dict[str, Any]:
-    """Return the dimensions of a pivot, or the numbers of a mechanism in the file's units."""
-    if isinstance(task, NumbersTask):
-        return {"numbers": dict(zip(task.variables, map(float, task.values(found.at)), strict=True))}
-    values = dict(zip(DIMENSIONS, map(float, variables_of(found.problem)), strict=True))
-    return values | {"inclination_deg": math.degrees(found.problem.inclination)}
-
-
-def _section(design: Any) -> dict[str, float]:
-    """Return the section of a pivot as case files have it."""
-    if not isinstance(design, Problem):
-        return {}
-    return {"area_m2": design.area, "second_moment_m4": design.second_moment_of_area}
-
-
-def readable(task: Sizing, own: Accurate, outcomes: list[Outcome], found: Optimum | None) -> Iterator[str]:
+def readable(asked: Question, own: Accurate, outcomes: list[Outcome], found: Optimum | None) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
-    yield from question(task)
+    yield from question(asked)
+    heading = "".join(f"{each.heading:>{each.form.partition('.')[0]}}" for each in asked.variables)
     if found is not None:
-        yield from _comparison(task, own.quantities, found)
-        yield from _remarks(found)
-        yield from _dimensioned(task, found.outcome)
+        yield ""
+        yield from _comparison(asked, own.quantities, found)
+        yield ""
+        if not isinstance(asked.start, Problem):
+            yield from (f"{each.heading:>5}: {each.name}" for each in asked.variables)
+        yield f"{'':<10}{heading}"
+        yield f"{'case':<10}{_line(asked, asked.own)}"
+        yield f"{'sized':<10}{_line(asked, asked.values(found.outcome.at))}"
+        yield ""
+        active = ", ".join(f"{_said(each.name)} ({each.price:+.2g})" for each in found.outcome.active)
+        yield f"held back by, with prices: {active or 'nothing'}"
+        if held := [_said(each.name) for each in asked.variables if each.span == 0.0]:
+            yield f"held as asked: {', '.join(held)}"
     yield ""
-    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {_heading(task)}"
+    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {heading}"
     for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
-        share = each.objective / own.quantities[task.objective]
-        begun = f"{i:>5} {number or '-':>8} {share:10.4f} {each.solved:>6}"
-        line = f"{begun}  {_line(task, task.values(each.at))}  {_ended(number, each)}"
-        yield line.replace(" nan ", " -   ")
+        share = cell(each.objective / own.quantities[asked.objective], 10, ".4f")
+        begun = f"{i:>5} {number or '-':>8} {share} {each.solved:>6}"
+        yield f"{begun}  {_line(asked, asked.values(each.at))}  {_ended(number, each)}"
 
 
 def _ended(number: int, outcome: Outcome) -> str:
@@ -155,26 +148,25 @@ def _ended(number: int, outcome: Outcome) -> str:
     return outcome.message or ("the least" if number == 1 else "an optimum, not the least")
 
 
-def _comparison(task: Sizing, case: Quantities, found: Optimum) -> Iterator[str]:
-    """Yield what case and optimum answer, and how sure that is."""
+def _comparison(asked: Question, case: Mapping[str, float], found: Optimum) -> Iterator[str]:
+    """Yield what case and optimum answer, how sure that is, and what `solve` says of the optimum."""
     spline, errors = found.answers.quantities, found.answers.errors
-    yield ""
     yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
     for key, (_, label, factor) in SHOWN.items():
         if key in case:
             columns = (factor * each[key] for each in (case, spline, found.elements))
-            told = (f"{value:12.5g}" if math.isfinite(value) else f"{'-':>12}" for value in columns)
-            yield f"{label:<28}{''.join(told)}"
+            yield f"{label:<28}" + "".join(cell(value, 12, ".5g") for value in columns)
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
-    yield _gain(case[task.objective] / spline[task.objective])
-    errs = ", ".join(
-        f"{name} {error:.1e}" if math.isfinite(error) else f"{name} not estimated"
-        for name, error in errors.items()
-    )
-    yield f"estimated error of the splines, sized, {found.answers.control_points} control points: {errs}"
+    yield _gain(case[asked.objective] / spline[asked.objective])
+    points = f"{found.answers.control_points} control points"
+    told = (f"{name} {e:.1e}" if math.isfinite(e) else f"{name} not estimated" for name, e in errors.items())
+    yield f"estimated error of the splines, sized, {points}: {', '.join(told)}"
     if missed := [name for name, error in errors.items() if error > DEFAULT]:
         yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
+    yield from (f"beyond the model: {each}" for each in validity(found.path).outside)
+    if found.path.message:
+        yield found.path.message
 
 
 def _gain(times: float) -> str:
@@ -188,39 +180,11 @@ def _gain(times: float) -> str:
     return f"{1.0 / times:.4g} times the case's, which does not meet what is asked"
 
 
-def _remarks(found: Optimum) -> Iterator[str]:
-    """Yield what is to be said of the optimum, as `solve` does of its answer."""
-    path = found.path
-    yield from (f"beyond the model: {each}" for each in validity(path).outside)
-    if path.message:
-        yield path.message
+def _said(name: str) -> str:
+    """Return the name of a constraint as it is read: keys of a file, with dots, stand as they are."""
+    return name if "." in name else name.replace("_", " ")
 
 
-def _dimensioned(task: Sizing, found: Outcome) -> Iterator[str]:
-    """Yield the dimensions of case and optimum, and what holds this back."""
-    yield ""
-    if isinstance(task, NumbersTask):
-        yield from (f"{place:>5}: {name}" for place, name in enumerate(task.variables, start=1))
-    yield f"{'':<10}{_heading(task)}"
-    yield f"{'case':<10}{_line(task, task.own)}"
-    yield f"{'sized':<10}{_line(task, task.values(found.at))}"
-    yield ""
-    active = ", ".join(f"{_said(task, each.name)} ({each.price:+.2g})" for each in found.active)
-    yield f"held back by, with prices: {active or 'nothing'}"
-    spans = zip(task.variables, task.span, strict=True)
-    if held := [_said(task, name) for name, span in spans if span == 0.0]:
-        yield f"held as asked: {', '.join(held)}"
-
-
-def _said(task: Sizing, name: str) -> str:
-    """Return the name of a constraint as it is read: keys of a file stand as they are."""
-    return name if isinstance(task, NumbersTask) else name.replace("_", " ")
-
-
-def _heading(task: Sizing) -> str:
-    return "".join(f"{head:>{form.partition('.')[0]}}" for head, _, form in task.columns)
-
-
-def _line(task: Sizing, values: Any) -> str:
-    columns = zip(task.columns, values, strict=True)
-    return "".join(f"{factor * value:{form}}" for (_, factor, form), value in columns)
+def _line(asked: Question, values: Any) -> str:
+    columns = zip(asked.variables, values, strict=True)
+    return "".join(f"{each.factor * value:{each.form}}" for each, value in columns)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -24,6 +25,9 @@ from studies.kinds import Array
 #: Variables of a pivot's sizing, as keywords of the sensitivities; both strips are alike.
 VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
 CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
+STIFFNESS, TRAVEL = "stiffness", "travel"
+#: Quantities of a pivot.
+OF_PIVOTS = (CENTRE_SHIFT, VARIATION, STIFFNESS, STRESS)
 #: Where fibre stresses are constrained, reference arc length over L.
 STATIONS = np.linspace(0.0, 1.0, 21)
 #: The fewest control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation
@@ -35,10 +39,11 @@ CONTROL_POINTS = 10
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
 
 
-def sides_of(design: Design) -> tuple[float, ...]:
-    """Return the signs of the rotations that a range needs solved: both of a pivot under loads, else one."""
-    mirrored = not isinstance(design, Problem) or set(design.effects.names) <= PLAIN
-    return (1.0,) if mirrored else (1.0, -1.0)
+def sides_of(design: Design) -> list[Design]:
+    """Return the designs of the rotations that a range takes: both of a pivot under loads, else one."""
+    if not isinstance(design, Problem) or set(design.effects.names) <= PLAIN:
+        return [design]
+    return [design, replace(design, rotation=-design.rotation)]
 
 
 def held_states(design: Design) -> list[int]:
@@ -55,69 +60,59 @@ class PathEnds(RuntimeError):
 
 @dataclass(frozen=True, kw_only=True)
 class Measured:
-    """What an answer of either model says of a design; each over the range, both sides.
-
-    Attributes:
-        rotation: (S,) [rad]; shift: (S,) magnitude of the centre shift [m]; stiffness: (S,) [N m / rad];
-            stress: (S,) largest [Pa].
-    """
-
-    rotation: np.ndarray
-    shift: np.ndarray
-    stiffness: np.ndarray
-    stress: np.ndarray
-
-    def quantities(self) -> dict[str, float]:
-        """Return objectives and constraints by name: [m, 1, N m / rad, Pa]."""
-        return {
-            CENTRE_SHIFT: float(self.shift.max()),
-            VARIATION: float(np.abs(self.stiffness / self.stiffness[0] - 1.0).max()),
-            "stiffness": float(self.stiffness[0]),
-            "stress": float(self.stress.max()),
-        }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Answers:
-    """What a design answers over S states of its range behind the first, with gradients by variables (N,).
+    """What an answer of either model says of a design over the S states of its range, both sides.
 
     The first state has all loads, and the body has not turned; under loads the states of the other side
     follow.
 
     Attributes:
-        stiffness: at the first state [N m / rad], or, where the bodies follow the loads, how far the body
-            goes [m]; by_stiffness (N,).
-        square_shift: (S,) square of the centre shift since then [m^2]; by_square_shift (S, N).
-        variation: (S,) change of stiffness over that of the first state, signed [1]; by_variation (S, N).
-        stress: (F,) signed fibre stresses at the states of `held_states` [Pa]; by_stress (F, N).
-        rotation: (S + 1,) from the first state [rad]; largest_stress (S + 1,) [Pa].
+        rotation: (S,) from the first state [rad]; shift: (S,) distance since then of a pivot's crossing, or
+            of the body of a mechanism [m]; stiffness: (S,) [N m / rad]; stress: (S,) largest [Pa].
     """
 
-    stiffness: float
-    by_stiffness: Array
-    square_shift: Array
-    by_square_shift: Array
-    variation: Array
-    by_variation: Array
-    stress: Array
-    by_stress: Array
     rotation: Array
-    largest_stress: Array
+    shift: Array
+    stiffness: Array
+    stress: Array
 
-    def largest(self, objective: str) -> float:
-        """Return the largest value of an objective over the range [m, 1 or Pa]."""
-        if objective == CENTRE_SHIFT:
-            return float(np.sqrt(self.square_shift.max()))
-        return float(np.abs(self.stress if objective == STRESS else self.variation).max())
+    def quantities(self, names: Sequence[str] = OF_PIVOTS) -> dict[str, float]:
+        """Return objectives and constraints of these names: [m, 1, N m / rad, m, Pa]."""
+        known: dict[str, Callable[[], float]] = {
+            CENTRE_SHIFT: self.shift.max,
+            VARIATION: lambda: np.abs(self.stiffness / self.stiffness[0] - 1.0).max(),
+            STIFFNESS: lambda: self.stiffness[0],
+            TRAVEL: lambda: self.shift[-1],
+            STRESS: self.stress.max,
+        }
+        return {name: float(known[name]()) for name in names}
 
-    def measured(self) -> Measured:
-        """Return what they say of the design over its range."""
-        return Measured(
-            rotation=self.rotation,
-            shift=np.sqrt(np.concatenate(([0.0], self.square_shift))),
-            stiffness=self.stiffness * np.concatenate(([1.0], 1.0 + self.variation)),
-            stress=self.largest_stress,
-        )
+
+class Followed(NamedTuple):
+    """Values (R,) of a quantity over states or fibres, and their gradients by the variables (R, N)."""
+
+    value: Array
+    by: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answers:
+    """What a design answers over its range, with gradients.
+
+    Attributes:
+        followed: by quantity: `STIFFNESS` at the first state [N m / rad], or, where the bodies follow the
+            loads, `TRAVEL`, how far the body goes [m], each alone; behind the first state the squares of the
+            centre shift [m^2] and the change of the stiffness over that of the first state, signed [1]; the
+            signed fibre stresses at the states of `held_states` [Pa].
+        measured: the same without gradients.
+    """
+
+    followed: Mapping[str, Followed]
+    measured: Measured
+
+    def largest(self, quantity: str) -> float:
+        """Return the largest size of a quantity that is followed [m, 1, N m / rad or Pa]."""
+        largest = float(np.abs(self.followed[quantity].value).max())
+        return math.sqrt(largest) if quantity == CENTRE_SHIFT else largest
 
 
 def answers(
@@ -138,26 +133,33 @@ def answers(
         BadInput: an effect or value that the model, or its sensitivities, refuse; one line.
     """
     chain = np.eye(len(parameters)) if chain is None else chain
-    sides = [_to_one_side(design, side, control_points, parameters, chain) for side in sides_of(design)]
+    sides = [_to_one_side(side, control_points, parameters, chain) for side in sides_of(design)]
     found = _Side(*map(_joined, zip(*sides, strict=True)))
-    shift, by_shift = found.shift[1:] - found.shift[0], found.by_shift[1:] - found.by_shift[0]
-    at_rest, by_rest = held, by_held = found.stiffness[0], found.by_stiffness[0]
+    shift, by_shift = found.shift - found.shift[0], found.by_shift - found.by_shift[0]
+    at_rest, ratio = found.stiffness[0], found.stiffness[1:] / found.stiffness[0]
+    followed = {
+        STIFFNESS: Followed(found.stiffness[:1], found.by_stiffness[:1]),
+        CENTRE_SHIFT: Followed(
+            np.sum(shift[1:] ** 2, axis=1), 2.0 * np.einsum("si,sip->sp", shift[1:], by_shift[1:])
+        ),
+        VARIATION: Followed(
+            ratio - 1.0, (found.by_stiffness[1:] - ratio[:, None] * found.by_stiffness[0]) / at_rest
+        ),
+        STRESS: Followed(
+            found.stress[held_states(design)].ravel(),
+            found.by_stress[held_states(design)].reshape(-1, chain.shape[1]),
+        ),
+    }
     if design.rotation is None:
-        held = np.linalg.norm(found.shift[-1])
-        by_held = found.shift[-1] @ found.by_shift[-1] / held
-    ratio, states = found.stiffness[1:] / at_rest, held_states(design)
-    return Answers(
-        stiffness=float(held),
-        by_stiffness=by_held,
-        square_shift=np.sum(shift**2, axis=1),
-        by_square_shift=2.0 * np.einsum("si,sip->sp", shift, by_shift),
-        variation=ratio - 1.0,
-        by_variation=(found.by_stiffness[1:] - ratio[:, None] * by_rest) / at_rest,
-        stress=found.stress[states].ravel(),
-        by_stress=found.by_stress[states].reshape(-1, chain.shape[1]),
+        travel = np.linalg.norm(shift[-1:], axis=1)
+        followed[TRAVEL] = Followed(travel, shift[-1:] @ by_shift[-1] / travel)
+    measured = Measured(
         rotation=found.rotation,
-        largest_stress=np.abs(found.stress).max(axis=(1, 2, 3)),
+        shift=np.hypot(*shift.T),
+        stiffness=found.stiffness,
+        stress=np.abs(found.stress).max(axis=(1, 2, 3)),
     )
+    return Answers(followed=followed, measured=measured)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,39 +176,40 @@ class Accurate:
     control_points: int
 
 
-def accurate(solve: Callable[[int], Answers], quantities: Callable[[Answers], dict[str, float]]) -> Accurate:
-    """Return the answers of a design that `solve` gives with some control points, chosen for `DEFAULT`.
+def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
+    """Return the answers of a design that `solve` gives with some control points, chosen so that the
+    quantities of these names have an error of `DEFAULT`.
 
     Raises:
         PathEnds: the fewest control points do not reach the end of the range.
     """
     first = solve(CONTROL_POINTS)
-    known: dict[int, Answers | PathEnds] = {CONTROL_POINTS: first}
+    known: dict[int, Answers | None] = {CONTROL_POINTS: first}
 
-    def solved(points: int) -> Answers | PathEnds:
+    def solved(points: int) -> Answers | None:
         if points not in known:
-            try:
+            known[points] = None
+            with suppress(PathEnds):
                 known[points] = solve(points)
-            except PathEnds as error:
-                known[points] = error
         return known[points]
 
     def attempt(fewer: Grid, more: Grid) -> tuple[float, tuple[Answers, dict[str, float]]] | None:
         coarse, fine = solved(fewer[1]), solved(more[1])
-        if isinstance(coarse, PathEnds) or isinstance(fine, PathEnds):
+        if coarse is None or fine is None:
             return None
-        mine, errors = quantities(coarse), {}
-        for name, right in quantities(fine).items():
+        mine, errors = coarse.measured.quantities(names), {}
+        for name, right in fine.measured.quantities(names).items():
             scale = max(abs(right), NOTHING) if name == VARIATION else abs(right)
             errors[name] = abs(mine[name] - right) / scale if scale else 0.0
         return largest(errors.values()), (coarse, errors)
 
     outcome = search(Discretisation(control_points=CONTROL_POINTS), DEFAULT, attempt, most_segments=1)
-    if outcome.found is None:
-        outcome.found = first, dict.fromkeys(quantities(first), math.nan)
-    found, errors = outcome.found
+    found, errors = outcome.found or (first, dict.fromkeys(names, math.nan))
     return Accurate(
-        answers=found, quantities=quantities(found), errors=errors, control_points=outcome.best[1]
+        answers=found,
+        quantities=found.measured.quantities(names),
+        errors=errors,
+        control_points=outcome.best[1],
     )
 
 
@@ -227,15 +230,12 @@ class _Side(NamedTuple):
     by_stress: Array
 
 
-def _to_one_side(
-    design: Design, side: float, control_points: int, parameters: Sequence[str], chain: Array
-) -> _Side:
+def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> _Side:
     """Return the path to one side; arguments and errors as of `answers`."""
     asked = put(design, SplineSettings(control_points=control_points))
-    end = None if design.rotation is None else side * design.rotation
     with asked.refusals():
         try:
-            path = asked.static_path(rotation=end)
+            path = asked.static_path()
         except asked.model.ConvergenceError as error:
             raise PathEnds(str(error)) from None
         if path.critical_points and held_states(design) != [-1]:
@@ -244,7 +244,7 @@ def _to_one_side(
             asked.modelled, path, parameters=parameters, stations=STATIONS, body=design.body
         )
     turned = slice(-design.increments - 1, None)
-    arrays = [path.load_factor[turned] if end is None else path.rotation[turned]]
+    arrays = [path.load_factor[turned] if design.rotation is None else path.rotation[turned]]
     for quantity in (found.stiffness, found.centre_shift, found.fibre_stress):
         arrays += [quantity.value[turned], quantity.derivative[turned] @ chain]
     return _Side(*arrays)
@@ -255,18 +255,22 @@ def _joined(sides: Sequence[Array]) -> Array:
     return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
 
 
-def by_elements(problem: Problem) -> Measured:
+def by_elements(design: Design) -> Measured:
     """Return what the finite elements say of a design in the limit of refinement, stress on the finest mesh.
 
     Raises:
         NoReference: they do not reach the end of the range.
     """
-    limits = [reference(replace(problem, rotation=sign * problem.rotation)) for sign in sides_of(problem)]
-    turned = slice(-problem.increments - 1, None)
-    shifts = [centre_shift(problem.crossing_point, limit.rotation, limit.centre)[turned] for limit in limits]
+    limits = [reference(side) for side in sides_of(design)]
+    turned, shifts = slice(-design.increments - 1, None), []
+    for limit in limits:
+        shift = limit.centre
+        if isinstance(design, Problem):
+            shift = centre_shift(design.crossing_point, limit.rotation, limit.centre)
+        shifts.append(np.hypot(*(shift[turned] - shift[turned][0]).T))
     return Measured(
         rotation=_joined([limit.rotation[turned] for limit in limits]),
-        shift=_joined([np.hypot(*(shift - shift[0]).T) for shift in shifts]),
+        shift=_joined(shifts),
         stiffness=_joined([limit.stiffness[turned] for limit in limits]),
         stress=_joined([limit.finest.max_stress[turned] for limit in limits]),
     )

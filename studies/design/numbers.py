@@ -4,21 +4,21 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
-from studies.answers.reference import reference
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
-from studies.design.evaluate import CONTROL_POINTS, STRESS, VARIATION, Answers, answers
-from studies.design.task import Sizing
+from studies.design.evaluate import STRESS, VARIATION
+from studies.design.question import Question, Variable
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep import plan
 
+#: Objectives of a mechanism that is driven; of one that follows its loads the first alone.
+OBJECTIVES = (STRESS, VARIATION)
 #: Bounds of a number of a section or material where none are given, over its own.
 ROOM = (0.5, 2.0)
 #: Step of the differences by which a case's numbers are followed to those of its strips, polynomials of the
@@ -27,22 +27,81 @@ STEP = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Number:
-    """Keys of a case file that hold one value, in the file's unit, and its bounds."""
+class MechanismQuestion(Question):
+    """A question about a mechanism, over numbers of its case, in the file's units.
 
-    keys: tuple[str, ...]
-    own: float
-    low: float
-    high: float
+    Attributes:
+        where, content: the case file and what stands in it. The name of a variable is that of the keys that
+            share its value, with commas.
+    """
 
-    @property
-    def name(self) -> str:
-        """The keys with commas."""
-        return ",".join(self.keys)
+    where: str
+    content: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, where: str, content: Mapping[str, Any], texts: Sequence[str], **asked: Any) -> Self:
+        """Return the question about the numbers that texts KEY[,KEY...][=LOW:HIGH] stand for; `asked` are the
+        other arguments. Sections have width and thickness where one of these is to be found.
+
+        Raises:
+            BadInput: a text that stands for no number of the case, or for one without gradients.
+        """
+        document = copy.deepcopy(dict(content))
+        if any(side.name in text for text in texts for side in SIDES):
+            for table in (document.get("section", {}), *document["strips"]):
+                plan.to_sides(table)
+        numbers = enumerate(texts, start=1)
+        variables = tuple(_variable(where, document, text, str(place)) for place, text in numbers)
+        start = read_mechanism(where, document)
+        objectives = OBJECTIVES[:1] if start.rotation is None else OBJECTIVES
+        given = {"start": start, "variables": variables, "objectives": objectives, **asked}
+        return cls(where=where, content=document, **given)
+
+    def document(self, values: Array) -> dict[str, Any]:
+        """Return the case with these values (N,)."""
+        document = copy.deepcopy(dict(self.content))
+        for name, value in zip(self.names, values, strict=True):
+            plan.put(document, dict.fromkeys(name.split(","), float(value)))
+        return document
+
+    def design(self, values: Array) -> Mechanism:
+        """Return the mechanism with these values (N,)."""
+        return read_mechanism(self.where, self.document(values))
+
+    def parameters(self, values: Array) -> tuple[list[str], Array]:
+        """Return names of the strips' and bodies' numbers that change, and derivatives (R, N) of these by the
+        case's."""
+        columns = []
+        for i, number in enumerate(self.variables):
+            size = STEP * (abs(values[i]) if number.low > 0.0 else number.span)
+            one, rows = np.eye(len(values))[i], []
+            for step in (size, 0.5 * size):
+                up, down = (_numbers(self.design(values + side * step * one)) for side in (1, -1))
+                rows.append({name: (up[name] - down[name]) / (2.0 * step) for name in up})
+            columns.append({name: (4.0 * rows[1][name] - rows[0][name]) / 3.0 for name in rows[0]})
+        names = [name for name in columns[0] if any(abs(column[name]) > 0.0 for column in columns)]
+        return names, np.array([[column[name] for column in columns] for name in names])
+
+    def require_gradients(self) -> None:
+        """Raise BadInput unless every variable is one that gradients are known by."""
+        for number in self.variables:
+            alone, ends = replace(self, variables=(number,)), []
+            for value in (number.low, number.high):
+                try:
+                    ends.append(alone.design(np.array([value])))
+                except BadInput as error:
+                    raise BadInput(f"--free: {number.name} at its bound of {value:g}: {error}") from None
+            expected = ""
+            if any(_rest(end) != _rest(self.start) for end in ends):
+                expected = "a number of sections, moduli, ends of straight strips or centres"
+            elif _numbers(ends[0]) == _numbers(ends[1]):
+                expected = "one that the design depends on: all strips have their own"
+            if expected:
+                raise BadInput(f"--free: got {number.name}, expected {expected}")
 
 
-def number_of(where: str, document: Mapping[str, Any], text: str) -> _Number:
-    """Return the number that `KEY[,KEY...][=LOW:HIGH]` stands for; BadInput where it is none of the case."""
+def _variable(where: str, document: Mapping[str, Any], text: str, heading: str) -> Variable:
+    """Return the number that a text stands for; errors as of `MechanismQuestion.of`."""
     names, _, bounds = text.partition("=")
     given = tuple(name.strip() for name in names.split(","))
     known = plan.known(document, "spline")
@@ -61,143 +120,26 @@ def number_of(where: str, document: Mapping[str, Any], text: str) -> _Number:
         low = high = math.nan
     if not -math.inf < low < high < math.inf:
         raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH with LOW < HIGH, in the file's unit")
-    return _Number(keys=given, own=own, low=low, high=high)
-
-
-def by_sides(document: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any]:
-    """Return the document with its sections by width and thickness, where one of these is to be found."""
-    found = copy.deepcopy(dict(document))
-    if not any(side.name in text for text in texts for side in SIDES):
-        return found
-    for table in (found.get("section", {}), *found["strips"]):
-        plan.to_sides(table)
-    return found
+    return Variable(",".join(given), own, low, high, heading)
 
 
 def _value(document: Mapping[str, Any], key: str) -> float | None:
     """Return the number at a key, of a strip the one of all where it has none; None where there is none."""
-    found, name = plan.value_at(document, key), key.rpartition(".")[2]
-    for shared in ("section", "material"):
-        if found is None:
-            found = document.get(shared, {}).get(name)
-    return float(found) if isinstance(found, int | float) else None
+    shared = (
+        plan.value_at(document, f"{table}.{key.rpartition('.')[2]}") for table in ("section", "material")
+    )
+    for found in (plan.value_at(document, key), *shared):
+        if found is not None:
+            return float(found) if isinstance(found, int | float) else None
+    return None
 
 
-@dataclass(frozen=True, kw_only=True)
-class NumbersTask(Sizing):
-    """A question about a mechanism, over numbers of its case.
-
-    Attributes:
-        where, document: the case file and what stands in it. numbers: to be found.
-    """
-
-    where: str
-    document: Mapping[str, Any]
-    numbers: tuple[_Number, ...]
-    objective: str = STRESS
-    stiffness: float = math.nan
-    allowable_stress: float = math.inf
-    control_points: int = CONTROL_POINTS
-
-    @cached_property
-    def start(self) -> Mechanism:
-        """The case as it is."""
-        return read_mechanism(self.where, self.document)
-
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """What may be made least of this mechanism."""
-        return (STRESS,) if self.start.rotation is None else (STRESS, VARIATION)
-
-    @cached_property
-    def bounds(self) -> Mapping[str, tuple[float, float]]:  # type: ignore[override]
-        """Lowest and highest value of every number, in the file's unit."""
-        return {number.name: (number.low, number.high) for number in self.numbers}
-
-    @property
-    def columns(self) -> Sequence[tuple[str, float, str]]:
-        """The numbers in a table, by their places."""
-        return [(str(place), 1.0, "12.6g") for place in range(1, len(self.numbers) + 1)]
-
-    @property
-    def own(self) -> Array:
-        """Values of the case (N,)."""
-        return np.array([number.own for number in self.numbers])
-
-    def content(self, values: Array) -> dict[str, Any]:
-        """Return the case with these values (N,)."""
-        document = copy.deepcopy(dict(self.document))
-        for number, value in zip(self.numbers, values, strict=True):
-            plan.put(document, dict.fromkeys(number.keys, float(value)))
-        return document
-
-    def problem(self, values: Array) -> Mechanism:
-        """Return the mechanism with these values (N,)."""
-        return read_mechanism(self.where, self.content(values))
-
-    def answers(self, values: Array, control_points: int | None = None) -> Answers:
-        """Solve the mechanism with these values, with exact gradients by its numbers; as of `Sizing`."""
-        names, chain = self._chain(values)
-        points = control_points or self.control_points
-        return answers(self.problem(values), points, parameters=names, chain=chain)
-
-    def quantities(self, found: Answers) -> dict[str, float]:
-        """Return what the splines say of a design, by name: what is held, and the objectives."""
-        return {self.held: found.stiffness, **{name: found.largest(name) for name in self.objectives}}
-
-    def by_elements(self, design: Mechanism) -> dict[str, float]:
-        """Return what the finite elements say in the limit of refinement, stress on the finest mesh.
-
-        Raises:
-            NoReference: they do not reach the end of the path.
-        """
-        limit = reference(design)
-        begin = len(limit.rotation) - 1 - design.increments
-        stress = {STRESS: float(limit.finest.max_stress[[begin, -1]].max())}
-        if design.rotation is None:
-            return {self.held: float(np.linalg.norm(limit.centre[-1] - limit.finest.centre[0])), **stress}
-        stiffness = limit.stiffness[begin:]
-        variation = float(np.abs(stiffness / stiffness[0] - 1.0).max())
-        return {self.held: float(stiffness[0]), **stress, VARIATION: variation}
-
-    def _chain(self, values: Array) -> tuple[list[str], Array]:
-        """Return names of the strips' and bodies' numbers that change, and derivatives (R, N) of these by the
-        case's."""
-        columns = []
-        for i, number in enumerate(self.numbers):
-            size = STEP * (abs(values[i]) if number.low > 0.0 else number.high - number.low)
-            one, rows = np.eye(len(values))[i], []
-            for step in (size, 0.5 * size):
-                up, down = (_raw(self.problem(values + side * step * one)) for side in (1, -1))
-                rows.append({name: (up[name] - down[name]) / (2.0 * step) for name in up})
-            columns.append({name: (4.0 * rows[1][name] - rows[0][name]) / 3.0 for name in rows[0]})
-        names = [name for name in columns[0] if any(abs(column[name]) > 0.0 for column in columns)]
-        return names, np.array([[column[name] for column in columns] for name in names])
-
-    def require_numbers(self) -> None:
-        """Raise BadInput unless every number is one that gradients are known by."""
-        given = _rest(self.start)
-        for number in self.numbers:
-            alone = replace(self, numbers=(number,))
-            for value in (number.low, number.high):
-                try:
-                    other = alone.problem(np.array([value]))
-                except BadInput as error:
-                    raise BadInput(f"--free: {number.name} at its bound of {value:g}: {error}") from None
-                if _rest(other) != given:
-                    expected = "a number of sections, moduli, ends of straight strips or centres"
-                    raise BadInput(f"--free: got {number.name}, expected {expected}")
-            if _raw(alone.problem(np.array([number.low]))) == _raw(other):
-                expected = "one that the design depends on: all strips have their own"
-                raise BadInput(f"--free: got {number.name}, expected {expected}")
-
-
-def _raw(design: Mechanism) -> dict[str, float]:
+def _numbers(design: Mechanism) -> dict[str, float]:
     """Return all numbers that gradients are known by, by the names of the sensitivities."""
     found: dict[str, float] = {}
     for strip in design.strips:
-        found |= {f"{strip.name}.{name}": getattr(strip, name) for name in MATERIAL}
         places = zip(POINTS, (*strip.start, *strip.end), strict=True)
+        found |= {f"{strip.name}.{name}": getattr(strip, name) for name in MATERIAL}
         found |= {f"{strip.name}.{name}": value for name, value in places}
     for body in design.bodies:
         found |= {f"{body.name}.{n}": value for n, value in zip(CENTRES, body.centre, strict=True)}

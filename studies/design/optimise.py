@@ -6,17 +6,17 @@ would hang on round-off.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
 from studies.cases.problem import Problem
-from studies.design.evaluate import CENTRE_SHIFT, Accurate, Answers
-from studies.design.missed import missed
-from studies.design.programme import Active, Programme
-from studies.design.task import Sizing
+from studies.design.evaluate import Accurate, Answers
+from studies.design.programme import Active, Programme, missed
+from studies.design.question import Question
 from studies.kinds import Array, Progress
 
 MOST_ITERATIONS = 100
@@ -53,7 +53,7 @@ class Outcome:
     Attributes:
         at: scaled variables (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
-        problem: the design there; answers: its own, None where its path does not reach the end.
+        design: the design there; answers: its own, None where its path does not reach the end.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
         solved: designs that were solved.
@@ -62,7 +62,7 @@ class Outcome:
     at: Array
     converged: bool
     message: str
-    problem: Any
+    design: Any
     answers: Any
     objective: float
     violation: float
@@ -75,18 +75,18 @@ class _Enough(Exception):
     """`MOST_PATHS` designs are solved; its argument: where the optimiser is (N + 1,)."""
 
 
-def optimise(task: Sizing, start: Array, progress: Callable[[int], None] | None = None) -> Outcome:
+def optimise(question: Question, start: Array, progress: Callable[[int], None] | None = None) -> Outcome:
     """Minimise from a scaled start (N,), or from nearer one that has an answer if it has none.
 
     An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature;
     `progress` is told of designs that were solved.
     """
-    programme = Programme.of(task, progress)
+    programme = Programme(question=question, progress=progress)
     moves = (programme.known + 0.5**k * (start - programme.known) for k in range(MOST_MOVES + 1))
     begin = next((at for at in moves if programme.answers(at) is not None), None)
     if begin is None:
-        return _unsolved(programme, start)
-    outcome = _run(programme, feasible(programme, begin))
+        return _outcome(programme, start, None)
+    outcome = _run(programme, _feasible(programme, begin))
     for _ in range(MOST_RUNS - 1):
         if outcome.converged or outcome.violation > FEASIBLE or programme.solved >= MOST_PATHS:
             break
@@ -94,7 +94,7 @@ def optimise(task: Sizing, start: Array, progress: Callable[[int], None] | None 
     return outcome
 
 
-def feasible(programme: Programme, at: Array) -> Array:
+def _feasible(programme: Programme, at: Array) -> Array:
     """Return the scaled variables (N,) of a feasible design near ``at``, or of the least violation there.
 
     Each step is the shortest that leaves the linearised constraints least violated, shortened where needed.
@@ -156,22 +156,28 @@ def _run(programme: Programme, at: Array) -> Outcome:
     where there is no answer, its better end."""
     begin = programme.answers(at)
     assert begin is not None, "it has an answer"
+    objective = begin.largest(programme.question.objective)
 
     def stop(x: Array) -> None:
         if programme.solved >= MOST_PATHS:
             raise _Enough(x.copy())
 
+    constraints = [
+        {
+            "type": kind,
+            "fun": lambda x, at=at: at(programme.rows(x)[0]),
+            "jac": lambda x, at=at: at(programme.rows(x)[1]),
+        }
+        for kind, at in (("ineq", itemgetter(slice(-1))), ("eq", itemgetter(slice(-1, None))))
+    ]
     try:
         found = minimize(
             lambda x: (x[-1], np.eye(len(x))[-1]),
-            np.append(at, _t(programme, begin)),
+            np.append(at, programme.relative(objective)),
             jac=True,
             method="SLSQP",
             bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
-            constraints=[
-                {"type": "ineq", "fun": programme.inequalities, "jac": programme.inequality_jacobian},
-                {"type": "eq", "fun": programme.equality, "jac": programme.equality_jacobian},
-            ],
+            constraints=constraints,
             options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
             callback=stop,
         )
@@ -181,10 +187,11 @@ def _run(programme: Programme, at: Array) -> Outcome:
     end = _outcome(programme, last, programme.answers(last), message)
     if end.violation <= FEASIBLE:
         return end
-    return min((_outcome(programme, at, begin, message), end), key=lambda each: each.violation)
+    nearer = min((_outcome(programme, at, begin, message), end), key=lambda each: each.violation)
+    return replace(nearer, solved=programme.solved)
 
 
-def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
+def search(question: Question, begin: Array, progress: Progress) -> list[Outcome]:
     """Optimise from scaled starts (K, N); progress is of the designs that they may solve at most."""
     outcomes, most = [], len(begin) * MOST_PATHS
     for k, start in enumerate(begin):
@@ -192,20 +199,20 @@ def search(task: Sizing, begin: Array, progress: Progress) -> list[Outcome]:
         def told(solved: int, before: int = k * MOST_PATHS) -> None:
             progress(before + min(solved, MOST_PATHS), most)
 
-        outcomes.append(optimise(task, start, told))
+        outcomes.append(optimise(question, start, told))
     progress(most, most)
     return outcomes
 
 
-def settled(task: Sizing, found: Outcome) -> tuple[Outcome, Accurate]:
+def settled(question: Question, found: Outcome) -> tuple[Outcome, Accurate]:
     """Return an optimum with the control points that its own answers take, found again with them if these are
     more than it was found with, and what it answers."""
     while True:
-        answers = task.accurate(task.values(found.at))
-        if answers.control_points <= task.control_points:
+        answers = question.accurate(question.values(found.at))
+        if answers.control_points <= question.control_points:
             return found, answers
-        task = task.changed(control_points=answers.control_points)
-        again = optimise(task, found.at[:-1])
+        question = replace(question, control_points=answers.control_points)
+        again = optimise(question, found.at[:-1])
         if not again.converged:
             return found, answers
         found = again
@@ -221,7 +228,7 @@ def best(outcomes: list[Outcome]) -> Outcome | None:
         return None
     least = min(each.objective for each in good) * (1.0 + SAME)
     least_ones = [each for each in good if each.objective <= least]
-    return max(least_ones, key=lambda each: getattr(each.problem, "crossing_ratio", -each.objective))
+    return max(least_ones, key=lambda each: getattr(each.design, "crossing_ratio", -each.objective))
 
 
 def numbered(outcomes: list[Outcome]) -> list[int]:
@@ -245,56 +252,41 @@ def numbered(outcomes: list[Outcome]) -> list[int]:
 
 
 def _place(outcome: Outcome) -> Array:
-    if not isinstance(outcome.problem, Problem):
+    if not isinstance(outcome.design, Problem):
         return np.append(outcome.objective, 1.0 + outcome.at[:-1])
-    ratio = outcome.problem.crossing_ratio
-    return np.array([outcome.objective, outcome.problem.inclination, min(ratio, 1.0 - ratio)])
+    ratio = outcome.design.crossing_ratio
+    return np.array([outcome.objective, outcome.design.inclination, min(ratio, 1.0 - ratio)])
 
 
-def _t(programme: Programme, found: Answers) -> float:
-    """Return the objective over the start's, squared for the centre shift."""
-    name = programme.task.objective
-    ratio = found.largest(name) / programme.scale[name]
-    return float(ratio**2 if name == CENTRE_SHIFT else ratio)
-
-
-def _outcome(programme: Programme, at: Array, found: Answers | None, message: str) -> Outcome:
-    task = programme.task
+def _outcome(programme: Programme, at: Array, found: Answers | None, message: str = "") -> Outcome:
+    """Return what is known of the design at scaled variables (N,), or (N + 1,), by its answers, where the
+    search ended with a message; of one whose path ends early next to nothing."""
+    question = programme.question
+    at, values = np.append(at[: len(question.span)], math.nan), question.values(at)
+    active: tuple[Active, ...] = ()
+    residual, violation, objective = math.nan, math.inf, math.nan
     if found is None:
-        return _unsolved(programme, at[: len(task.span)])
-    at = np.append(at[: len(task.span)], _t(programme, found))
-    violation = float(np.abs(_violated(programme.excesses(at)[0])).max())
-    active, residual = programme.conditions(at)
-    converged = violation <= FEASIBLE and residual <= STATIONARY
-    reason = f"not stationary (residual {residual:.1e}): {message}"
-    if violation > FEASIBLE:
-        reason = f"no design here meets the constraints: {missed(task, task.values(at), found)}"
+        message = f"no answer over the range: {programme.ended}"
+    else:
+        objective = found.largest(question.objective)
+        at[-1] = programme.relative(objective)
+        violation = float(np.abs(_violated(programme.excesses(at)[0])).max())
+        active, residual = programme.conditions(at, found)
+        if violation > FEASIBLE:
+            message = f"no design here meets the constraints: {missed(question, values, found)}"
+        elif residual > STATIONARY:
+            message = f"not stationary (residual {residual:.1e}): {message}"
+        else:
+            message = ""
     return Outcome(
         at=at,
-        converged=converged,
-        message="" if converged else reason,
-        problem=task.problem(task.values(at)),
+        converged=not message,
+        message=message,
+        design=question.design(values),
         answers=found,
-        objective=found.largest(task.objective),
+        objective=objective,
         violation=violation,
         residual=residual,
         active=active,
-        solved=programme.solved,
-    )
-
-
-def _unsolved(programme: Programme, at: Array) -> Outcome:
-    """Return what is known of a design (N,) whose path ends early."""
-    task = programme.task
-    return Outcome(
-        at=np.append(at, math.nan),
-        converged=False,
-        message=f"no answer over the range: {programme.ended}",
-        problem=task.problem(task.values(at)),
-        answers=None,
-        objective=math.nan,
-        violation=math.inf,
-        residual=math.nan,
-        active=(),
         solved=programme.solved,
     )

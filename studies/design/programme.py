@@ -9,204 +9,239 @@ Karush, Kuhn and Tucker say what holds a design back, and what each constraint c
 to what they are held against: the start's objective, the wanted stiffness, the allowable stress.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import nnls
 
-from studies.design.evaluate import CENTRE_SHIFT, STRESS, VARIATION, Answers, PathEnds
-from studies.design.task import STARTS, Sizing
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, Answers, Followed, PathEnds
+from studies.design.question import Question
 from studies.kinds import Array
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3
-
-
 #: Margin below which a row is active [1].
 ACTIVE = 1e-6
+#: Starts of a search unless it says otherwise: the design to compare with and points spread over the bounds.
+STARTS = 8
+#: Part of a limit below which it is met [1].
+MET = 1e-6
+#: From so many times a limit on it is told as times, not as percent above.
+TIMES = 2.0
+#: Part of a limit up to which it is told as times below, not as percent.
+SMALL = 1e-3
 
 
-@dataclass(frozen=True, kw_only=True)
-class Active:
+class Rows(NamedTuple):
+    """A constraint: margins (R,) that must not be below zero [1], and their gradients by y and t (R, N + 1).
+
+    name: of the quantity, or of the variable at its bound. fall: of the margins, where they are zero, over a
+    relative change of the limit.
+    """
+
+    name: str
+    margin: Array
+    by: Array
+    fall: float
+
+
+class Active(NamedTuple):
     """A constraint that holds an optimum back.
 
-    Args:
-        name: of the quantity, or of the variable at its bound.
-        price: relative change of the objective over a relative change of the limit, to first order [1].
+    price: relative change of the objective over a relative change of the limit, to first order [1].
     """
 
     name: str
     price: float
 
 
-@dataclass(kw_only=True)
-class Programme:
-    """The programme of a task; `scale` holds the largest value of every objective of the design to compare
-    with, or of one beside it that has an answer, and `known` where that lies (N,), scaled.
-
-    Counts designs that were solved, and tells `progress` of them; keeps the last design's answer, and why the
-    last path `ended` early.
-    """
-
-    task: Sizing
-    scale: dict[str, float]
-    known: Array = field(default_factory=lambda: np.zeros(0), repr=False)
-    progress: Callable[[int], None] | None = field(default=None, repr=False)
-    solved: int = 0
-    ended: str = ""
-    _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
-
-    @classmethod
-    def of(cls, task: Sizing, progress: Callable[[int], None] | None = None) -> "Programme":
-        """Return the programme of a task, in whose scale the task's own design is one."""
-        known, given = compared(task)
-        scale = {name: given.largest(name) for name in task.objectives}
-        return cls(task=task, scale=scale, known=known, progress=progress)
-
-    def answers(self, y: Array) -> Answers | None:
-        """Return the design's answers; None where its path ends early."""
-        key = y[: len(self.task.span)].tobytes()
-        if key != self._last[0]:
-            self.solved += 1
-            if self.progress is not None:
-                self.progress(self.solved)
-            try:
-                found = self.task.answers(self.task.values(y))
-            except PathEnds as error:
-                found, self.ended = None, str(error)
-            self._last = (key, found)
-        return self._last[1]
-
-    def inequalities(self, y: Array) -> Array:
-        """Return all rows that must not be below zero (R,) [1]."""
-        return self._rows(y)[0]
-
-    def inequality_jacobian(self, y: Array) -> Array:
-        """Return their Jacobian (R, N + 1)."""
-        return self._rows(y)[1]
-
-    def equality(self, y: Array) -> Array:
-        """Return stiffness over the wanted one less one (1,)."""
-        found = self.answers(y)
-        return np.array([OUTSIDE if found is None else found.stiffness / self.task.stiffness - 1.0])
-
-    def equality_jacobian(self, y: Array) -> Array:
-        """Return its gradient (1, N + 1)."""
-        found = self.answers(y)
-        row = np.zeros((1, len(self.task.span) + 1))
-        if found is not None:
-            row[0, :-1] = found.by_stiffness * self.task.span / self.task.stiffness
-        return row
-
-    def excesses(self, y: Array) -> tuple[Array, Array]:
-        """Return how far each row that does not depend on t is beyond its limit (Q,) [1], below zero where it
-        holds but for the last, the equality's; and their Jacobian (Q, N)."""
-        whole = np.append(y[: len(self.task.span)], np.inf)
-        rows = self.inequalities(whole)
-        free = np.isfinite(rows)
-        excess = np.append(-rows[free], self.equality(whole))
-        jacobian = np.vstack((-self.inequality_jacobian(whole)[free], self.equality_jacobian(whole)))
-        return excess, jacobian[:, :-1]
-
-    def row_names(self) -> list[str]:
-        """Return what each row of `inequalities` holds."""
-        states, fibres = self.task.states, 2 * self.task.fibres
-        counts = {CENTRE_SHIFT: states, VARIATION: 2 * states, STRESS: fibres}
-        objective = self.task.objective
-        rows = [objective] * counts[objective]
-        shape = list(self.task.shape(self.task.low)[2])
-        return [*rows, *["allowable stress" if objective == STRESS else "stress"] * fibres, *shape]
-
-    def _rows(self, y: Array) -> tuple[Array, Array]:
-        found = self.answers(y)
-        if found is None:
-            size = len(self.row_names())
-            return np.full(size, OUTSIDE), np.zeros((size, len(self.task.span) + 1))
-        span, allowed = self.task.span, self.task.allowable_stress
-        stress, by_stress = found.stress / allowed, found.by_stress * span / allowed
-        shape, by_shape, _ = self.task.shape(self.task.values(y))
-        objective, by_objective = self._objective(found, y[-1])
-        jacobians = (by_objective, _widened(-by_stress), _widened(by_stress), _widened(by_shape))
-        return np.concatenate((objective, 1.0 - stress, 1.0 + stress, shape)), np.concatenate(jacobians)
-
-    def _objective(self, found: Answers, t: float) -> tuple[Array, Array]:
-        """Return the rows of the objective, below t."""
-        name, span = self.task.objective, self.task.span
-        scale = self.scale[name]
-        if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
-            value, by = found.square_shift / scale**2, found.by_square_shift * span / scale**2
-            return t - value, _widened(-by, 1.0)
-        value, by = (
-            (found.stress, found.by_stress) if name == STRESS else (found.variation, found.by_variation)
-        )
-        value, by = value / scale, by * span / scale
-        rows = np.concatenate((t - value, t + value))
-        return rows, np.concatenate((_widened(-by, 1.0), _widened(by, 1.0)))
-
-    def conditions(self, y: Array) -> tuple[tuple[Active, ...], float]:
-        """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
-
-        The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
-        least zero, but for the equality's: the residual is the length of what is left over.
-        """
-        names, jacobian = self._active(y)
-        equal = self.equality_jacobian(y)[0]
-        found, residual = nnls(np.column_stack([*jacobian, equal, -equal]), np.eye(len(y))[-1])
-        multipliers = [*found[:-2], found[-2] - found[-1]]
-        summed: dict[str, float] = {}
-        for name, multiplier in zip([*names, "stiffness"], multipliers, strict=True):
-            summed[name] = summed.get(name, 0.0) + float(multiplier)
-        squared = 2.0 if self.task.objective == CENTRE_SHIFT else 1.0
-        active = tuple(
-            Active(name=name, price=m * self._per_limit(y, name) / (squared * y[-1]))
-            for name, m in summed.items()
-            if name != self.task.objective and m != 0.0
-        )
-        return active, float(residual)
-
-    def _active(self, y: Array) -> tuple[list[str], list[Array]]:
-        """Return names and gradients of the rows without margin, and of the bounds that are reached."""
-        rows, jacobian = self.inequalities(y), self.inequality_jacobian(y)
-        labels = self.row_names()
-        reached = np.flatnonzero(rows < ACTIVE)
-        names, gradients = [labels[i] for i in reached], list(jacobian[reached])
-        for i, name in enumerate(self.task.variables):
-            if self.task.span[i] == 0.0:
-                continue
-            for end, where in ((0.0, "at its least"), (1.0, "at its most")):
-                if abs(y[i] - end) < ACTIVE:
-                    names.append(f"{name} {where}")
-                    gradients.append((1.0 - 2.0 * end) * np.eye(len(y))[i])
-        return names, gradients
-
-    def _per_limit(self, y: Array, name: str) -> float:
-        """Return d(t) over a relative change of a limit by a multiplier of one: minus its row's change."""
-        task = self.task
-        variable, _, end = name.partition(" at its ")
-        if variable in task.variables:
-            low, high = task.bounds[variable]
-            return float((low if end == "least" else -high) / (high - low))
-        fixed = {"stiffness": 1.0, "stress": -1.0, "allowable stress": -1.0}
-        return (fixed | task.shape(self.task.values(y))[2])[name]
-
-
-def compared(task: Sizing) -> tuple[Array, Answers]:
-    """Return where a task's own design lies (N,), scaled, and what it answers; of the first of the spread
+def compared(question: Question) -> tuple[Array, Answers]:
+    """Return where a question's own design lies (N,), scaled, and what it answers; of the first of the spread
     starts that has an answer if its own path ends early; PathEnds where none has one."""
-    own, *spread = task.starts(STARTS)
+    own, *spread = question.starts(STARTS)
     try:
-        return own, task.case()
+        return own, question.answers()
     except PathEnds as error:
         ended = str(error)
     for start in spread:
         try:
-            return start, task.answers(task.values(start))
+            return start, question.answers(question.values(start))
         except PathEnds as error:
             ended = str(error)
     raise PathEnds(f"neither the case nor {len(spread)} designs within the bounds have an answer: {ended}")
 
 
-def _widened(rows: Array, last: float = 0.0) -> Array:
-    """Return Jacobian rows (R, N) with the column of t."""
-    return np.column_stack((rows, np.full(len(rows), last)))
+@dataclass(kw_only=True)
+class Programme:
+    """The programme of a question; `scale` is the largest objective of the design to compare with, or of one
+    beside it that has an answer, and `known` where that lies (N,), scaled.
+
+    Counts designs that were solved, and tells `progress` of them; keeps the last design's answer, and why the
+    last path `ended` early.
+    """
+
+    question: Question
+    progress: Callable[[int], None] | None = field(default=None, repr=False)
+    known: Array = field(init=False, repr=False)
+    scale: float = field(init=False)
+    solved: int = 0
+    ended: str = ""
+    _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
+
+    def __post_init__(self) -> None:
+        self.known, given = compared(self.question)
+        self.scale = given.largest(self.question.objective)
+        self._count = sum(len(rows.margin) for rows in self.limits(np.append(self.known, 1.0), given))
+
+    def answers(self, y: Array) -> Answers | None:
+        """Return the design's answers; None where its path ends early."""
+        key = y[: len(self.question.span)].tobytes()
+        if key != self._last[0]:
+            self.solved += 1
+            if self.progress is not None:
+                self.progress(self.solved)
+            try:
+                found = self.question.answers(self.question.values(y))
+            except PathEnds as error:
+                found, self.ended = None, str(error)
+            self._last = (key, found)
+        return self._last[1]
+
+    def relative(self, objective: float) -> float:
+        """Return t of an objective: over the scale, and squared for the centre shift."""
+        ratio = objective / self.scale
+        return ratio**2 if self.question.objective == CENTRE_SHIFT else ratio
+
+    def limits(self, y: Array, found: Answers) -> Iterator[Rows]:
+        """Yield the constraints at a point y (N + 1,) with these answers: the objective below t, the stress,
+        the ratios, which are linear in the variables, and last the equality: stiffness, or travel, over the
+        wanted one less one."""
+        asked, name, eye = self.question, self.question.objective, np.eye(len(y))
+        if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
+            yield self._below(name, found.followed[name], self.scale**2, y[-1], eye[-1], signs=(1.0,))
+        else:
+            yield self._below(name, found.followed[name], self.scale, y[-1], eye[-1])
+        stress = self._below(STRESS, found.followed[STRESS], asked.allowable_stress, 1.0, 0.0 * eye[-1])
+        yield stress._replace(name="allowable stress" if name == STRESS else STRESS, fall=-1.0)
+        values, span = asked.values(y), np.append(asked.span, 0.0)
+        for ratio in asked.ratios:
+            side, limit = ratio.side / asked.variables[0].high, ratio.limit
+            margin = side * (values[ratio.top] - limit * values[ratio.bottom])
+            by = side * span * (eye[ratio.top] - limit * eye[ratio.bottom])
+            yield Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
+        flat = 0.0 * eye[-1]
+        yield self._below(STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, flat, signs=(-1.0,))
+
+    def _below(
+        self,
+        name: str,
+        found: Followed,
+        limit: float,
+        bound: float,
+        by_bound: Array,
+        signs: tuple[float, ...] = (1.0, -1.0),
+    ) -> Rows:
+        """Return the rows of values over a limit that are to be below a bound, those of these signs."""
+        value, by = found.value / limit, np.pad(found.by * self.question.span / limit, ((0, 0), (0, 1)))
+        margin, jacobian = (
+            [of - sign * each for sign in signs] for of, each in ((bound, value), (by_bound, by))
+        )
+        return Rows(name, np.concatenate(margin), np.concatenate(jacobian), 1.0)
+
+    def _bounds(self, y: Array) -> Iterator[Rows]:
+        """Yield the bounds of the variables at a point y (N + 1,)."""
+        for place, variable in enumerate(self.question.variables):
+            if variable.span:
+                at, one = y[place : place + 1], np.eye(len(y))[place : place + 1]
+                low, high = variable.low / variable.span, variable.high / variable.span
+                yield Rows(f"{variable.name} at its least", at, one, low)
+                yield Rows(f"{variable.name} at its most", 1.0 - at, -one, -high)
+
+    def rows(self, y: Array) -> tuple[Array, Array]:
+        """Return the margins of all rows (R,) [1], the last that of the equality, and their Jacobian
+        (R, N + 1)."""
+        found = self.answers(y)
+        if found is None:
+            return np.full(self._count, OUTSIDE), np.zeros((self._count, len(y)))
+        limits = list(self.limits(y, found))
+        return np.concatenate([rows.margin for rows in limits]), np.concatenate([rows.by for rows in limits])
+
+    def excesses(self, y: Array) -> tuple[Array, Array]:
+        """Return how far each row that does not depend on t is beyond its limit (Q,) [1], below zero where it
+        holds but for the last, the equality's; and their Jacobian (Q, N)."""
+        margin, jacobian = self.rows(np.append(y[: len(self.question.span)], np.inf))
+        free, signs = np.isfinite(margin), np.append(np.full(self._count - 1, -1.0), 1.0)
+        return (signs * margin)[free], (signs[:, None] * jacobian)[free, :-1]
+
+    def conditions(self, y: Array, found: Answers) -> tuple[tuple[Active, ...], float]:
+        """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
+
+        The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
+        least zero, but for the equality's: the residual is the length of what is left over.
+        """
+        *limits, held = self.limits(y, found)
+        reached = [
+            (rows.name, rows.fall, by)
+            for rows in (*limits, *self._bounds(y))
+            for margin, by in zip(rows.margin, rows.by, strict=True)
+            if margin < ACTIVE
+        ]
+        reached += [(held.name, sign, sign * held.by[0]) for sign in (1.0, -1.0)]
+        multipliers, residual = nnls(np.column_stack([by for _, _, by in reached]), np.eye(len(y))[-1])
+        prices: dict[str, float] = {}
+        for (name, fall, _), multiplier in zip(reached, multipliers, strict=True):
+            prices[name] = prices.get(name, 0.0) + float(fall * multiplier)
+        prices.pop(self.question.objective, None)
+        whole = (2.0 if self.question.objective == CENTRE_SHIFT else 1.0) * y[-1]
+        active = tuple(Active(name, price / whole) for name, price in prices.items() if price)
+        return active, float(residual)
+
+
+class _Held(NamedTuple):
+    """A quantity that is held against a limit: its name, value and limit, and what that is, which may be
+    missed to the sides of these signs; it is told times `factor`, with a unit."""
+
+    name: str
+    got: float
+    limit: float
+    what: str
+    sides: tuple[int, ...]
+    unit: str = ""
+    factor: float = 1.0
+
+    @property
+    def excess(self) -> float:
+        """How far it is beyond the limit, of what is below it by its logarithm; 0 where it is met."""
+        ratio = self.got / self.limit
+        far = ratio - 1.0 if ratio >= 1.0 else -math.log(ratio) if ratio > 0.0 else math.inf
+        return far if (1 if ratio >= 1.0 else -1) in self.sides and far > MET else 0.0
+
+    def __str__(self) -> str:
+        """Return what it is, and how far from its limit."""
+        ratio = self.got / self.limit
+        far = f"{100.0 * abs(ratio - 1.0):.3g} % {'above' if ratio > 1.0 else 'below'}"
+        if ratio >= TIMES:
+            far = f"{ratio:.3g} times"
+        elif 0.0 < ratio <= SMALL:
+            far = f"{1.0 / ratio:.3g} times below"
+        elif ratio < 0.0:
+            far = "of the other sign than"
+        got, limit = (f"{self.factor * value:.4g}{self.unit}" for value in (self.got, self.limit))
+        return f"{self.name} {got}, {far} {self.what} {limit}"
+
+
+def missed(question: Question, values: Array, found: Answers) -> str:
+    """Return a phrase for each constraint that a design with these variables (N,) misses, the worst first."""
+    unit, factor = (" mm", 1e3) if question.held == TRAVEL else (" N m/rad", 1.0)
+    got, stress = float(found.followed[question.held].value[0]), found.largest(STRESS)
+    held = [
+        _Held(question.held, got, question.wanted, "the wanted", (-1, 1), unit, factor),
+        _Held(STRESS, stress, question.allowable_stress, "the allowable", (1,), " MPa", 1e-6),
+    ]
+    for ratio in question.ratios:
+        name, what = ratio.words
+        held.append(_Held(name, values[ratio.top] / values[ratio.bottom], ratio.limit, what, (-ratio.side,)))
+    return "; ".join(str(each) for each in sorted(held, key=lambda each: -each.excess) if each.excess)

@@ -152,29 +152,17 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
         ) from error
 
 
-def local_pool(plan: Plan, workers: int | None = None) -> AbstractContextManager[Pool]:
-    """Return workers on this machine, all cores by default: threads for the batch kernel, else processes."""
-    count = workers or os.cpu_count() or 1
-    return threads(count) if plan.task.batch else processes(count)
-
-
 @contextmanager
-def threads(count: int) -> Iterator[Pool]:
-    """Yield that many threads of this process; an interruption waits for the chunks that are under way."""
-    executor = futures.ThreadPoolExecutor(count)
-    try:
-        yield Pool(executor=executor, workers=count)
-    finally:
-        executor.shutdown(wait=True, cancel_futures=True)
+def local_pool(plan: Plan, workers: int | None = None) -> Iterator[Pool]:
+    """Yield workers on this machine, all cores by default: threads for the batch kernel, else processes.
 
-
-@contextmanager
-def processes(count: int) -> Iterator[Pool]:
-    """Yield that many processes; they end with the context, in the middle of a chunk if need be."""
-    others = set(multiprocessing.active_children())
-    executor = futures.ProcessPoolExecutor(
-        count, mp_context=multiprocessing.get_context("spawn"), initializer=_end_quietly
-    )
+    An interruption waits for the chunks that threads have under way; processes end in the middle of one.
+    """
+    count, others = workers or os.cpu_count() or 1, set(multiprocessing.active_children())
+    executor: futures.Executor = futures.ThreadPoolExecutor(count)
+    if not plan.task.batch:
+        spawn = multiprocessing.get_context("spawn")
+        executor = futures.ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_quietly)
     try:
         yield Pool(executor=executor, workers=count)
     except BaseException:

@@ -16,20 +16,17 @@ def gradient_error(task, values, levels=LEVELS):
     Central differences of halved steps, extrapolated; relative to the largest derivative of the same rows by
     any variable, over the bounds.
     """
-    programme = Programme.of(task)
-    at = (values - task.low) / np.where(task.span == 0.0, 1.0, task.span)
-    y = np.append(at, 1.0)
-    exact = np.vstack((programme.inequality_jacobian(y), programme.equality_jacobian(y)))
+    programme = Programme(question=task)
+    y = np.append(task.scaled(values), 1.0)
+    exact = programme.rows(y)[1]
     errors = np.zeros_like(exact)
     for i, unit in enumerate(np.eye(len(y))):
         found = []
         for step in (STEP / 2**level * unit for level in range(levels)):
-            up, down = (
-                np.concatenate((programme.inequalities(each), programme.equality(each)))
-                for each in (y + step, y - step)
-            )
+            up, down = (programme.rows(each)[0] for each in (y + step, y - step))
             found.append((up - down) / (2.0 * step[i]))
         errors[:, i] = np.abs(exact[:, i] - extrapolated(found))
-    names = np.array([*programme.row_names(), "stiffness"])
+    limits = programme.limits(y, programme.answers(y))
+    names = np.array([name for rows in limits for name in [rows.name] * len(rows.margin)])
     parts = [(errors[names == name].max(), np.abs(exact[names == name]).max()) for name in set(names)]
     return float(max(error / largest for error, largest in parts if largest > 0.0))

@@ -9,7 +9,7 @@ from studies.cases.design import Design, as_toml, named_design, read_design
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
 from studies.design.evaluate import STRESS, VARIATION
-from studies.design.numbers import NumbersTask, by_sides, number_of
+from studies.design.numbers import MechanismQuestion
 from tests import gates
 from tests.design.gradients import gradient_error
 
@@ -23,9 +23,7 @@ SHARED = "strips.left.end_m.y,strips.right.end_m.y=0.09:0.11"
 
 def task(name, texts, **given):
     """The question about a case that comes with the suite."""
-    document = by_sides(parsed(FOLDER / f"{name}.toml"), texts)
-    numbers = tuple(number_of(name, document, text) for text in texts)
-    return NumbersTask(where=name, document=document, numbers=numbers, **given)
+    return MechanismQuestion.of(name, parsed(FOLDER / f"{name}.toml"), texts, **given)
 
 
 @pytest.mark.slow
@@ -39,16 +37,16 @@ def task(name, texts, **given):
 )
 def test_gradients_by_numbers_of_a_file(name, texts, objective):
     """Rows and Jacobian fit together for sections, moduli, places, and values that several keys share."""
-    asked = task(name, texts, objective=objective, stiffness=1.0, allowable_stress=1e9)
+    asked = task(name, texts, objective=objective, wanted=1.0, allowable_stress=1e9)
     gates.hold("sizing_gradients", lambda **steps: gradient_error(asked, asked.own, **steps))
 
 
 def test_a_number_stands_for_the_sections_of_all_strips():
     """The width of all sections, given by A and I, moves area and second moment of each strip."""
-    asked = task("four_bar_of_flexures", ["section.width_m"])
-    (number,) = asked.numbers
+    asked = task("four_bar_of_flexures", ["section.width_m"], objective=STRESS)
+    (number,) = asked.variables
     assert (number.own, number.low, number.high) == pytest.approx((0.01, 0.005, 0.02))
-    wide = asked.problem(np.array([0.02]))
+    wide = asked.design(np.array([0.02]))
     for strip, own in zip(wide.strips, asked.start.strips, strict=True):
         assert strip.second_moment_of_area == pytest.approx(2.0 * own.second_moment_of_area)
 

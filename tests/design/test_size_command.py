@@ -98,6 +98,7 @@ WORDS = {
     f"{ASKED} --width-mm 20:5": "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",
     f"{ASKED} --length-mm 40 --width-mm 30": "got at least 30, expected no more than 20, --aspect",
     f"{ASKED} --thickness-mm 6": "got at least 6, expected no more than 4.998, the case's",
+    f"{ASKED} --stiffness=--": "argument --stiffness: expected one argument",
     f"{ASKED} --crossing-ratio 0.5:1.5": "LOW:HIGH with 0 < LOW <= HIGH < 1",
     f"{ASKED} --safety-factor 2": "--safety-factor: got 2 without a yield strength, expected",
     f"{ASKED} --safety-factor 2 --max-stress-MPa 9": "got 2 beside --max-stress-MPa, expected one of them",
@@ -198,7 +199,7 @@ def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
     case, best = named_case("large_steel_pivot"), named_case(path)
     assert (best.length, best.width) == (pytest.approx(0.3), pytest.approx(0.05))
     assert best.effects == case.effects
-    sized, own = answers(best).measured().quantities(), answers(case).measured().quantities()
+    sized, own = answers(best).measured.quantities(), answers(case).measured.quantities()
     assert sized["centre-shift"] < 0.5 * own["centre-shift"]
     assert sized["stiffness"] == pytest.approx(own["stiffness"], rel=2e-6)
     assert sized["stress"] <= 0.5 * best.yield_strength * (1.0 + 1e-6)

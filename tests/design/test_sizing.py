@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from studies.cases.effects import Effects
-from studies.design import task as questions
-from studies.design.evaluate import CENTRE_SHIFT, STATIONS, VARIATION, answers, by_elements
+from studies.design.evaluate import CENTRE_SHIFT, STATIONS, STIFFNESS, STRESS, VARIATION, answers, by_elements
 from studies.design.optimise import best, numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
-from studies.design.sizing import ANGLE, GRADE, LENGTH, toleranced
-from studies.design.task import OBJECTIVES, variables_of, varied
+from studies.design.question import OF_PIVOT, PivotQuestion, variables_of, varied
+from studies.design.sizing import ANGLE, GRADE, LENGTH, SPRING_STEEL, asked, baseline, toleranced
 from studies.effects.audit import with_sections
 from studies.record.progress import silent
 from tests import gates
@@ -25,8 +24,7 @@ BEST, FAR = 1, 2
 @pytest.fixture(scope="module")
 def own():
     """Table 1's pivot over the range, and its answers."""
-    start = questions.baseline()
-    return start, answers(start)
+    return baseline()
 
 
 @pytest.fixture(scope="module")
@@ -36,9 +34,10 @@ def narrow(own):
     return task, _quick(task)
 
 
-def _task(own, objective=CENTRE_SHIFT, aspect=questions.NARROW, **changes):
-    question = questions.Question(baseline=questions.TABLE_ONE, objective=objective, aspect=aspect)
-    return replace(question.task(*own), **changes)
+def _task(own, objective=CENTRE_SHIFT, aspect=0.5, **changes):
+    start, found = own
+    limits = {"wanted": found.largest(STIFFNESS), "allowable_stress": found.largest(STRESS)} | changes
+    return PivotQuestion.usual(start, aspect=aspect, objective=objective, **limits)
 
 
 def _quick(task):
@@ -48,7 +47,7 @@ def _quick(task):
     return found
 
 
-@pytest.mark.parametrize("objective", list(OBJECTIVES))
+@pytest.mark.parametrize("objective", OF_PIVOT)
 def test_jacobian_agrees_with_differences(own, objective):
     """Rows and Jacobian of the programme fit together at a design that is no optimum."""
     task = _task(own, objective, 1.0)
@@ -76,13 +75,15 @@ def test_price_is_what_another_limit_costs(narrow, name):
     """The price of a constraint foretells the optimum with its limit changed by a thousandth."""
     (task, found), change = narrow, 1e-3
     price = {each.name: each.price for each in found.active}[name]
-    low, high = task.bounds["inclination"]
+    slenderness, aspect = (each._replace(limit=each.limit * (1.0 + change)) for each in task.ratios)
+    length, inclination, *others = task.variables
+    steeper = inclination._replace(high=inclination.high * (1.0 + change))
     changed = {
         "stress": {"allowable_stress": task.allowable_stress * (1.0 + change)},
-        "aspect": {"largest_aspect": task.largest_aspect * (1.0 + change)},
-        "slenderness": {"least_slenderness": task.least_slenderness * (1.0 + change)},
-        "stiffness": {"stiffness": task.stiffness * (1.0 + change)},
-        "inclination at its most": {"bounds": {**task.bounds, "inclination": (low, high * (1.0 + change))}},
+        "aspect": {"ratios": (task.ratios[0], aspect)},
+        "slenderness": {"ratios": (slenderness, task.ratios[1])},
+        "stiffness": {"wanted": task.wanted * (1.0 + change)},
+        "inclination at its most": {"variables": (length, steeper, *others)},
     }[name]
     moved = _quick(replace(task, **changed)).objective / found.objective - 1.0
     assert moved / change == pytest.approx(price, rel=0.02)
@@ -90,13 +91,11 @@ def test_price_is_what_another_limit_costs(narrow, name):
 
 def test_a_start_without_a_path_is_outside(own):
     """A design whose path ends early stands far outside; it is no error of the search."""
-    start = replace(own[0], rotation=3.5, increments=1)
-    task = replace(_task(own), start=start)
-    programme = Programme(task=task, scale={name: 1.0 for name in OBJECTIVES})
+    programme = Programme(question=replace(_task(own), start=replace(own[0], rotation=3.5, increments=1)))
     y = np.array([0.5, 0.9, 0.05, 0.9, 0.5, 1.0])
     assert programme.answers(y) is None
-    assert (programme.inequalities(y) == OUTSIDE).all() and programme.equality(y) == OUTSIDE
-    assert not programme.inequality_jacobian(y).any() and not programme.equality_jacobian(y).any()
+    rows, jacobian = programme.rows(y)
+    assert (rows == OUTSIDE).all() and not jacobian.any()
     assert programme.solved == 1
 
 
@@ -114,9 +113,7 @@ def test_a_start_is_given_up(monkeypatch):
     """Of a stiffness that nothing has a start solves no more than its share of designs, and tells each."""
     share = 100  # of the some 300 that this search would take
     monkeypatch.setattr("studies.design.optimise.MOST_PATHS", share)
-    start = questions.baseline(questions.SPRING_STEEL)
-    question = questions.Question(baseline=questions.SPRING_STEEL, objective=VARIATION)
-    task, told = replace(question.task(start, answers(start)), stiffness=1e4), []
+    task, told = replace(asked(SPRING_STEEL, VARIATION, 1.0), wanted=1e4), []
     found = search(task, task.starts(2)[1:], lambda done, total: told.append((done, total)))
     assert "no design here meets the constraints" in found[0].message
     assert share <= found[0].solved < 1.2 * share
@@ -140,14 +137,14 @@ def test_optimum_holds_in_the_finite_elements(own, narrow):
     those of the answers; splines of fewer control points miss the least variation, which is small."""
     task, found = narrow
     values = [0.080774, 0.767438, 0.9, 0.00174162, 0.0771115]
-    steady = _task(own, VARIATION, 1.0).problem(np.array(values))
+    steady = _task(own, VARIATION, 1.0).design(np.array(values))
 
     def error(**coarse):
-        problem, by_spline = (steady, answers(steady, **coarse)) if coarse else (found.problem, found.answers)
+        problem, by_spline = (steady, answers(steady, **coarse)) if coarse else (found.design, found.answers)
         return _difference(problem, by_spline)
 
     gates.hold("sizing_finite_elements", error)
-    at = variables_of(found.problem)
+    at = variables_of(found.design)
     gates.hold("sizing_gradients", lambda **steps: gradient_error(task, at, **steps))
 
 
@@ -158,15 +155,15 @@ def test_tolerances_take_the_worst_corner(own):
     length, _, _, thickness, _ = values
     sizes = np.array([LENGTH, ANGLE, LENGTH / length, GRADE * thickness, LENGTH])
     signs = product((-1.0, 1.0), repeat=5)
-    corners = [answers(varied(design, values + sizes * sign)).measured().quantities() for sign in signs]
-    as_drawn = found.measured().quantities()
+    corners = [answers(varied(design, values + sizes * sign)).measured.quantities() for sign in signs]
+    as_drawn = found.measured.quantities()
     for name, largest in toleranced(design, found).items():
         assert largest == pytest.approx(max(each[name] for each in corners), rel=1e-9), name
         assert largest > as_drawn[name]
 
 
 def _difference(problem, found):
-    spline, elements = found.measured().quantities(), by_elements(problem).quantities()
+    spline, elements = found.measured.quantities(), by_elements(problem).quantities()
     return max(abs(spline[name] / elements[name] - 1.0) for name in spline)
 
 
@@ -185,8 +182,8 @@ def test_factor_over_table_one(own, objective, gate):
 
     gates.hold(gate, part)
     found = by_start[BEST]
-    gates.check("sizing_finite_elements", _difference(found.problem, found.answers))
-    gates.check("sizing_gradients", gradient_error(task, variables_of(found.problem)))
+    gates.check("sizing_finite_elements", _difference(found.design, found.answers))
+    gates.check("sizing_gradients", gradient_error(task, variables_of(found.design)))
 
 
 @pytest.mark.slow
@@ -199,13 +196,13 @@ def test_gradients_under_a_sideways_load(own):
     )
     start = replace(table_one, effects=force, increments=4, rotation=0.3)
     found = answers(start)
-    assert found.stress.shape == (3 * 4 * len(STATIONS),)
-    assert found.rotation.tolist() == pytest.approx(
+    assert found.followed[STRESS].value.shape == (3 * 4 * len(STATIONS),)
+    assert found.measured.rotation.tolist() == pytest.approx(
         [0.0, *(side * k / 4 for side in (0.3, -0.3) for k in range(1, 5))]
     )
-    assert np.abs(found.square_shift[:4] / found.square_shift[4:] - 1.0).max() > 1e-3
+    shift = found.measured.shift
+    assert np.abs(shift[1:5] / shift[5:] - 1.0).max() > 1e-3
     task = _task((start, found))
-    assert set(Programme(task=task, scale=dict.fromkeys(OBJECTIVES, 1.0)).row_names()) >= {"stress"}
     gates.check("sizing_gradients", gradient_error(task, variables_of(start)))
     gates.check("sizing_finite_elements", _difference(start, found))
 
@@ -223,8 +220,8 @@ def wide(own):
 def test_what_was_sized_as_a_beam_is_off_as_a_plate_and_is_sized_again(wide):
     """With plate effects and supports the former optimum misses what was asked; a new one meets it."""
     task, former = wide
-    there = answers(with_sections(former.problem)).measured().quantities()
-    assert there["stiffness"] > 1.01 * task.stiffness
+    there = answers(with_sections(former.design)).measured.quantities()
+    assert there["stiffness"] > 1.01 * task.wanted
     assert there["stress"] > 1.01 * task.allowable_stress
     new = replace(task, start=with_sections(task.start))
     found = optimise(new, former.at[:-1])
@@ -232,10 +229,10 @@ def test_what_was_sized_as_a_beam_is_off_as_a_plate_and_is_sized_again(wide):
     assert found.objective < 0.5 * there[CENTRE_SHIFT]
 
     def part(roots=True):
-        held = [name for name in found.problem.effects.names if roots or name != "root_compliance"]
-        tables = {name: table for name, table in found.problem.effects.tables.items() if name in held}
+        held = [name for name in found.design.effects.names if roots or name != "root_compliance"]
+        tables = {name: table for name, table in found.design.effects.tables.items() if name in held}
         effects = Effects(names=tuple(held), tables=tables)
-        return _difference(replace(found.problem, effects=effects), found.answers)
+        return _difference(replace(found.design, effects=effects), found.answers)
 
     gates.hold("sizing_with_roots", part)
 
