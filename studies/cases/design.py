@@ -9,7 +9,7 @@ from typing import Any
 
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.effects import refuse_unknown_sides
-from studies.cases.keys import EFFECT_KEYS, KEYS, MOMENTS
+from studies.cases.keys import BODY, DRIVE, EFFECT_KEYS, KEYS, MOMENTS, OWN, STRIP
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import FOLDER, Problem, read_problem
 from studies.cases.rules import FREE, Key
@@ -75,20 +75,28 @@ def as_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
     return "\n".join(lines) + "\n"
 
 
-def document_of(problem: Problem) -> dict[str, dict[str, Any]]:
-    """Return the document of a pivot's case, which is read as the same pivot to the digits that a file has.
+def document_of(design: Design) -> dict[str, Any]:
+    """Return the document of a design's case, which is read as the same design to the digits that a file has.
 
     A section with known sides has these.
     """
-    implied = {key.attribute for key in MOMENTS} if problem.width is not None else set()
-    given = {key: getattr(problem, key.attribute, None) for key in KEYS if key.attribute not in implied}
-    found: dict[str, dict[str, Any]] = {}
-    for key, value in given.items():
-        if value is not None:
-            found.setdefault(key.section, {})[key.name] = _in_file(key, value)
-    found["scene"] = {"effects": problem.effects.names}
-    tables = {name: dict(_parameters(name, own)) for name, own in problem.effects.tables.items()}
-    return found | ({"effects": tables} if tables else {})
+    found: dict[str, Any] = {}
+    if isinstance(design, Problem):
+        for section in dict.fromkeys(key.section for key in KEYS):
+            found[section] = _table([key for key in KEYS if key.section == section], design)
+    else:
+        found["strips"] = [_table((*STRIP, *OWN), strip) for strip in design.strips]
+        found |= {"bodies": [_table(BODY, body) for body in design.bodies], "drive": _table(DRIVE, design)}
+    found["scene"] = {"effects": design.effects.names}
+    tables = {name: dict(_parameters(name, own)) for name, own in design.effects.tables.items()}
+    return {name: own for name, own in found.items() if own} | ({"effects": tables} if tables else {})
+
+
+def _table(keys: Iterable[Key], part: Any) -> dict[str, Any]:
+    """Return the table of a part of a design."""
+    implied = {key.attribute for key in MOMENTS} if getattr(part, "width", None) is not None else set()
+    given = {key: getattr(part, key.attribute, None) for key in keys if key.attribute not in implied}
+    return {key.name: _in_file(key, value) for key, value in given.items() if value is not None}
 
 
 def _parameters(effect: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -1,91 +1,108 @@
-"""What comes into a session: fields of events, each checked, the time they stand for, the hand, and what
-holds the body as it is read off."""
+"""What comes into a session: events and their fields, the clock that counts the steps they stand for, the
+hand, and what holds the body as it is read off."""
 
 import math
 from collections import deque
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from studies.cases.rules import whole
+from studies.cases.rules import TRUTH, Rule, choice, number, text, whole
 from studies.errors import BadInput
-from studies.interactive.mechanics import Mechanics, Snapshot
-from studies.interactive.presets import STEP, STEPS_A_FRAME, finite
+from studies.interactive.design import Snapshot
+from studies.interactive.mechanics import Mechanics
+from studies.interactive.motion import SOLVERS
+from studies.interactive.presets import STEP, STEPS_A_FRAME
 from studies.kinds import Array
 
-#: What an event may do, each a method of the session, and the fields that the page may say of it.
-EVENTS: dict[str, tuple[str, ...]] = {
-    "setup": ("preset", "values", "drive", "solver", "sweeps", "lock_step", "rest"),
-    "pose": ("pose",),
-    "seen": ("marker", "sd", "rms", "state", "plane", "quads", "faults"),
-    "unseen": ("code", "text"),
-    "tick": (),
-    "release": ("speed",),
-    "catch": (),
-    "pause": (),
-    "resume": (),
-    "step": (),
-    "reset": (),
-    "parameter": ("name", "value", "part"),
-    "preset": ("name", "values", "part"),
-    "undo": (),
-    "redo": (),
-    "drive": ("by",),
-    "solver": ("name", "sweeps"),
-    "rest": (),
+#: What the hand holds: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
+#: alone; the whole pose.
+DRIVES = ("grip", "pull", "rotation", "pose")
+#: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told; most
+#: sweeps of a solver.
+MOST_STEPS, FRAMES, MOST_SWEEPS = 20, 25, 1000
+
+Fields = Mapping[str, Rule]
+Events = Mapping[str, Fields]
+NUMBER, _NAME, ANYTHING = number("a finite number"), text("a name"), Rule(expected="anything")
+_MAP = Rule(expected="values by name", admits=lambda value: isinstance(value, Mapping), read=dict)
+_WORDS = Rule(
+    expected="a list of texts",
+    admits=lambda value: isinstance(value, list) and all(isinstance(word, str) for word in value),
+)
+_THREE = Rule(
+    expected="three finite numbers",
+    admits=lambda value: (
+        isinstance(value, list | tuple) and len(value) == 3 and all(map(NUMBER.admits, value))
+    ),
+    read=lambda value: np.array(value, dtype=float),
+)
+_DRIVE, _SOLVER, _SWEEPS = choice(*DRIVES), choice(*SOLVERS), whole(1, MOST_SWEEPS)
+#: What an event may do, each a method of the session, and the fields that go with it; those with a question
+#: mark may be left out.
+EVENTS: Events = {
+    "setup": {
+        **{"preset": _NAME, "values": _MAP, "case?": _MAP, "drive": _DRIVE, "solver": _SOLVER},
+        **{"sweeps": _SWEEPS, "lock_step": TRUTH, "rest": _THREE},
+    },
+    "pose": {"pose": _THREE},
+    "seen": {
+        **{
+            "marker": _THREE,
+            "sd?": _THREE,
+            "rms?": NUMBER,
+            "state?": _NAME,
+            "plane?": ANYTHING,
+            "quads?": ANYTHING,
+        },
+        "faults?": _WORDS,
+    },
+    "unseen": {"code?": _NAME, "text?": ANYTHING},
+    "tick": {},
+    "release": {"speed?": choice("hand", "zero")},
+    "catch": {},
+    "pause": {},
+    "resume": {},
+    "step": {},
+    "reset": {},
+    "parameter": {"name": _NAME, "value": ANYTHING, "part?": TRUTH},
+    "preset": {"name": _NAME, "values?": _MAP, "case?": _MAP, "part?": TRUTH},
+    "undo": {},
+    "redo": {},
+    "drive": {"by": _DRIVE},
+    "solver": {"name": _SOLVER, "sweeps?": _SWEEPS},
+    "rest": {},
+    "critical": {"force": ANYTHING},
 }
+#: What every event may have.
+_ALWAYS: Fields = {"t": NUMBER, "room?": whole(1, MOST_STEPS)}
 
 
-class Event(dict[str, Any]):
-    """An event by the names of its fields, each of which is checked when it is read; BadInput in one line for
-    one that does not fit."""
-
-    def _field(self, key: str, fits: Callable[[Any], bool], expected: str, default: Any = None) -> Any:
-        value = self.get(key, default)
-        if not fits(value):
-            raise BadInput(f"{key}: got {value!r}, expected {expected}")
-        return value
-
-    def number(self, key: str) -> float:
-        """Return a finite number."""
-        return float(self._field(key, finite, "a finite number"))
-
-    def three(self, key: str) -> NDArray[np.float64]:
-        """Return three finite numbers."""
-        values = self._field(
-            key, lambda given: isinstance(given, list | tuple) and len(given) == 3, "three finite numbers"
-        )
-        return np.array([Event({key: value}).number(key) for value in values])
-
-    def choice(self, key: str, choices: Collection[str]) -> str:
-        """Return one of the choices."""
-        expected = f"one of {', '.join(choices)}"
-        return str(self._field(key, lambda value: isinstance(value, str) and value in choices, expected))
-
-    def whole(self, key: str, most: int) -> int:
-        """Return a whole number from 1 to `most`."""
-        return int(self._field(key, whole(1, most).admits, f"a whole number from 1 to {most}"))
-
-    def mapping(self, key: str) -> Mapping[str, Any]:
-        """Return names with their values, none where the key is absent."""
-        found: Mapping[str, Any] = self._field(
-            key, lambda value: isinstance(value, Mapping), "values by name", {}
-        )
-        return found
-
-    def words(self, key: str) -> list[str]:
-        """Return a list of texts, empty where the key is absent."""
-
-        def fits(value: Any) -> bool:
-            return isinstance(value, list) and all(isinstance(word, str) for word in value)
-
-        return list(self._field(key, fits, "a list of texts", []))
+def fields(event: Mapping[str, Any], every: Events = EVENTS, always: Fields = _ALWAYS) -> Fields:
+    """Return the rules of an event's fields; BadInput in one line for an unknown event or field."""
+    do = event.get("do")
+    if not isinstance(do, str) or do not in every:
+        raise BadInput(f"do: got {str(do)[:40]!r}, expected one of {', '.join(every)}")
+    rules = {**every[do], **always}
+    if odd := set(event) - {name.rstrip("?") for name in rules} - {"do"}:
+        expected = sorted(name.rstrip("?") for name in every[do])
+        raise BadInput(f"{min(odd)[:40]!r}: got an unknown field of {do}, expected {expected}")
+    return rules
 
 
-#: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told.
-MOST_STEPS, FRAMES = 20, 25
+def checked(event: Mapping[str, Any], rules: Fields | None = None) -> dict[str, Any]:
+    """Return an event with its fields as they are worked with; BadInput in one line for one that does not
+    fit."""
+    found = {"do": event.get("do")}
+    for name, rule in (fields(event) if rules is None else rules).items():
+        key = name.rstrip("?")
+        if key in event or key == name:
+            try:
+                found[key] = rule.parse(event.get(key))
+            except BadInput as error:
+                raise BadInput(f"{key}: {error}") from None
+    return found
 
 
 class Clock:

@@ -1,102 +1,107 @@
 """One design at work: held statically by its body's pose, released, stepped and caught."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from spline_model.accuracy import FIRST
 from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
-from spline_model.pivot import BODY, STRIPS
-from studies.interactive.design import PLACES, REACH, Curve, build, chosen, read, scales
+from spline_model.solution import Status
+from spline_model.statics import solve_mechanism
+from studies.cases.design import flexural_scale
+from studies.interactive.design import Curve, Placing, Snapshot, Strips, free_stiffness, free_turn, pole
 from studies.interactive.motion import Motion, Pull, motion
-from studies.interactive.presets import STEP
+from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
 
+#: Rotation up to which a design is known [rad], and at how many places; increments of the path to there by
+#: which control points are chosen: 11 ms, 32 ms at most of 60 designs.
+REACH, PLACES, INCREMENTS = 1.8, 25, 4
+#: The same of a mechanism that its case does not turn [rad].
+LITTLE = 1e-3
+#: Load in EI/L^2 above which they are chosen without it: a path that loses its stability takes seconds.
+HEAVY = 10.0
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
 #: branch.
 HAND_STEP = 1e-4
 #: Rotation rate below which a moving body has no instantaneous centre worth drawing, over the step [rad].
 LEAST_TURN = 2e-4
-
 #: Part of a standard deviation over which a stiffness is taken to be linear.
 PART = 1e-3
+#: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
+#: that spread where a pointer shows the place [m].
+FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: A step that the solver cannot take is tried at this part of it, then at the part's part, down to the least.
 SHORTER, SHORTEST = 0.25, 2.0**-10
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Snapshot:
-    """All that is shown of one instant, in SI units.
-
-    Attributes:
-        pose: x, y, theta of the body (3,); velocity (3,), zero while held.
-        shape (2, P, 2) [m], stress (2, P) [Pa]: of the strips, as `design.read` says.
-        force: what holds the body (3,) [N, N, N m], zero when released; tangent (3, 3) its derivative or
-            None.
-        stiffness: rotational, with the body's centre free [N m/rad], None when released.
-        energy: by what has it [J]: strain, kinetic, potential of the load from rest on, dissipated by the
-            strips' damping, lost to the steps' own.
-        centre: the instantaneous centre of rotation, None where the body does not turn.
-        iterations: of Newton's method.
-    """
-
-    pose: Array
-    velocity: Array = field(default_factory=lambda: np.zeros(3))
-    shape: Array
-    stress: Array
-    force: Array = field(default_factory=lambda: np.zeros(3))
-    tangent: Array | None = None
-    stiffness: float | None = None
-    energy: dict[str, float]
-    centre: tuple[float, float] | None
-    iterations: int
-
-
 class Mechanics:
-    """The pivot of some parameters; `snapshot` is always the last good state.
-
-    Args:
-        values: all parameters in SI units, as `presets.checked` returns them.
+    """One design; `snapshot` is always the last good state.
 
     Attributes:
         control_points: of a strip; doubt: what is to be said of the error that they leave, empty if nothing.
-        begun: energy [J] of strips, body and load at the release, or where the solver was changed.
+        strips, placing: its geometry. begun: energy [J] of strips, body and load at the release, or where the
+            solver was changed.
     """
 
-    def __init__(self, values: Mapping[str, float]) -> None:
-        self.values = dict(values)
-        self.control_points, self.doubt = chosen(values)
-        self.pivot = build(values, self.control_points)
-        self.step = STEP * values["time_scale"]
-        self._held = HeldPivot(self.pivot)
-        self._acting = build(values, self.control_points, loaded=True)
+    def __init__(self, piece: Piece, rest: Any = None) -> None:
+        self.piece = piece
+        self.placing = Placing(piece.design) if rest is None else Placing(piece.design, rest)
+        self._load = np.array([0.0, -(piece.values["load"] or 0.0), 0.0])
+        self.control_points, self.doubt = self._chosen()
+        free = piece.modelled(self.control_points, loaded=False)
+        self._held = HeldPivot(free)
+        self.strips = Strips(piece.design, self._held.control_points)
+        self._acting = piece.modelled(self.control_points) if self._load.any() else free
         self._system = compile_scene(self._acting.released())
-        self._load = np.array([0.0, -values["load"], 0.0])
         self._motion: Motion | None = None
-        self._part, self.begun = 1.0, 0.0
+        self.begun = 0.0
         self._unheld: Array | None = None
-        self.snapshot = self._static(self._held.reset())
+        self.pace(piece)
+        self.reset()
+
+    @property
+    def _reach(self) -> float:
+        """Rotation up to which the design is known [rad]."""
+        return LITTLE if self.piece.design.rotation is None else REACH
+
+    def _chosen(self) -> tuple[int, str]:
+        """Return how many control points a strip takes, on the path by a moment alone to `REACH`, and what is
+        to be said of their error; empty if it is below that of all answers."""
+        design = self.piece.design
+        heavy = abs(float(self._load[1])) * max(s.length for s in design.strips) > HEAVY * flexural_scale(
+            design
+        )
+        how: dict[str, Any] = {"increments": INCREMENTS, "raise_on_failure": False}
+        path = solve_mechanism(self.piece.modelled(loaded=not heavy), rotation=self._reach, **how)
+        if path.status is not Status.CONVERGED or path.segments != 1:
+            why = path.message or "its strips want segments, which a body in the hand does not take"
+            return FIRST, f"not estimated: {why}"
+        return path.control_points, path.resolution or "estimated without the load" * heavy
 
     @cached_property
     def longest_step(self) -> float:
         """Longest step [s] that resolves a swing about rest in phase and amplitude."""
-        lowest = natural_frequencies(self.pivot).frequency[0]
+        lowest = natural_frequencies(self.piece.modelled(self.control_points, loaded=False)).frequency[0]
         return 1.0 / (STEPS_PER_PERIOD * float(lowest)) if lowest > 0.0 else math.inf
 
-    def pace(self, time_scale: float) -> None:
-        """From now on so many simulated seconds in one."""
-        self.values["time_scale"], self.step, self._part = time_scale, STEP * time_scale, 1.0
+    def pace(self, piece: Piece) -> None:
+        """From now on as many simulated seconds in one as a design has that differs in this alone."""
+        self.piece, self.step, self._part = piece, STEP * (piece.values["time_scale"] or 1.0), 1.0
 
     @property
     def moving(self) -> bool:
         """Whether the body is released."""
         return self._motion is not None
+
+    def placed(self, rest: Any) -> None:
+        """Markers at `rest` (3,) are those of the design at rest."""
+        self.placing = Placing(self.piece.design, rest)
 
     def reset(self) -> None:
         """Back to rest, held."""
@@ -125,7 +130,7 @@ class Mechanics:
     def turn(self, rotation: float) -> float:
         """Hold the rotation alone; returns as `hold`."""
         if self._load.any():
-            return self.grip(np.array([*self.pivot.centre, rotation]), 0.0)
+            return self.grip(np.array([*self.placing.centre, rotation]), 0.0)
         state = self._held.turn(rotation)
         if state.solved:
             self.snapshot = self._static(state)
@@ -145,13 +150,45 @@ class Mechanics:
             held.restore(known)
             return state.reached
         self._unheld = held.unknowns
-        pull = Pull(pose, stiffness, self.values["length"], turns, self._load)
-        found, work = pull.balanced(held, state, scales(self.values)["force"])
-        if found is None:
+        pull = Pull(pose, stiffness, self.strips.length, turns, self._load)
+        found, work = pull.balanced(held, state, self.strips.scale["force"])
+        if found is None or self.grounded(found.pose):
             held.restore(known)
             return 0.0
         self.snapshot = self._static(found, state.iterations + work)
         return 1.0
+
+    def marker_at(self, rotation: float) -> Array:
+        """Return where marker 1 is in marker 0's frame (3,) once a moment alone holds a rotation."""
+        self.turn(rotation)
+        return self.placing.marker(self.snapshot.pose)
+
+    def softness(self, spread: Array | None) -> float:
+        """Return the stiffness of the spring from the centre to where the hand is seen [N/m].
+
+        It is a finger's, in series with one that turns the columns of the pose's `spread` into no more force
+        than the strips' bending hides.
+        """
+        seen = POINTER if spread is None else float(np.linalg.norm(spread[:2], axis=1).max())
+        return 1.0 / (1.0 / FINGER + seen / (SHARE * self.strips.scale["force"]))
+
+    def ways(self, drive: str, stiffness: float) -> Array:
+        """Return the body's pose over that of the hand (3, 3), as a spring of `stiffness` and a `drive` hold
+        it, to first order."""
+        tangent, rigid = self.snapshot.tangent, np.eye(3)
+        if drive == "pose" or tangent is None:
+            return rigid
+        spring = stiffness * np.diag([1.0, 1.0, 0.0])
+        if drive == "pull":
+            return np.asarray(np.linalg.solve(tangent + spring, spring))
+        spring = spring[:2, :2] if drive == "grip" else np.zeros((2, 2))
+        rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
+        return rigid
+
+    def grounded(self, pose: Array) -> bool:
+        """Whether the centre of a body at `pose` (3,) lies beyond the ground's clamps."""
+        ground, centre = self.placing.clamps[:, 0].mean(axis=0), self.placing.centre
+        return bool((pose[:2] - ground) @ (centre - ground) < 0.0)
 
     def stiffness_spread(self, ways: Array) -> float:
         """Return the standard deviation of the stiffness [N m/rad] where the pose's is the sum of the
@@ -159,21 +196,21 @@ class Mechanics:
         known, here, total = self._held.unknowns, self.snapshot, 0.0
         for way in PART * ways.T:
             state = self._held.hold(*(here.pose + way))
-            change = _free_stiffness(state.tangent) - (here.stiffness or 0.0) if state.solved else math.nan
-            total += (change / PART) ** 2
+            beside = free_stiffness(state.tangent) if state.solved else math.nan
+            total += ((beside - (here.stiffness or 0.0)) / PART) ** 2
             self._held.restore(known)
         return math.sqrt(total)
 
     @cached_property
     def curve(self) -> Curve:
         """What a moment alone does to the design, and its load; without any turn whatever is found."""
-        other = Mechanics(self.values)
+        other = Mechanics(self.piece)
         rows: list[list[float]] = []
-        for angle in np.linspace(0.0, REACH, PLACES):
+        for angle in np.linspace(0.0, self._reach, PLACES):
             if other.turn(float(angle)) < 1.0 and rows:
                 break
             now = other.snapshot
-            shift, stress = now.pose[:2] - self.pivot.centre, now.stress.max()
+            shift, stress = now.pose[:2] - self.placing.centre, now.stress.max()
             rows.append([now.pose[2], *shift, now.force[2], stress])
         table = np.array(rows)
         return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
@@ -192,7 +229,7 @@ class Mechanics:
         """Move from unknowns z and velocities v (Q,) on; energies are counted from there."""
         self._motion, self._part = motion(solver, sweeps, self._acting, z, v), 1.0
         now = self._motion.state()
-        self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(BODY)])
+        self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(self._body)])
         self.snapshot = self._dynamic(self._motion)
 
     @property
@@ -232,55 +269,36 @@ class Mechanics:
             return np.zeros(count)
         return np.asarray((ends[0] - ends[1]) / (2.0 * HAND_STEP))
 
+    @property
+    def _body(self) -> str:
+        return self.piece.design.bodies[0].name
+
     def _potential(self, pose: Array) -> float:
         """Energy of the load [J] from the body's place at rest on."""
-        return float(self._load[:2] @ (self.pivot.centre - pose[:2]))
+        return float(self._load[:2] @ (self.placing.centre - pose[:2]))
 
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
         return Snapshot(
             **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
             tangent=state.tangent,
-            stiffness=_free_stiffness(state.tangent),
-            centre=_pole(state.pose, _free_turn(state.tangent), 0.0),
+            centre=pole(state.pose, free_turn(state.tangent), 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
 
     def _dynamic(self, moving: Motion) -> Snapshot:
         now, layout = moving.state(), self._system.layout
-        pose, velocity = now.z[layout.body(BODY)].copy(), now.v[layout.body(BODY)].copy()
-        points = np.stack([now.z[layout.strip(name)].reshape(-1, 2) for name in STRIPS])
-        known = self._shown(pose, points, now.strain, now.kinetic, now.dissipated)
-        known["energy"]["lost"] = self.begun - sum(known["energy"].values())
-        centre = _pole(pose, velocity, LEAST_TURN / self.step)
+        pose, velocity = (each[layout.body(self._body)].copy() for each in (now.z, now.v))
+        points = np.stack(
+            [now.z[layout.strip(each.name)].reshape(-1, 2) for each in self.piece.design.strips]
+        )
+        known = self._shown(pose, points, now.strain, now.kinetic)
+        known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
+        centre = pole(pose, velocity, LEAST_TURN / self.step)
         return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
 
-    def _shown(
-        self, pose: Array, points: Array, strain: float, kinetic: float = 0.0, dissipated: float = 0.0
-    ) -> dict[str, Any]:
-        """Return what follows from the pose, the control points of the strips (2, n, 2) and the energies."""
-        shape, stress = read(self.values, points)
-        energy = {"strain": strain, "kinetic": kinetic, "potential": self._potential(pose)}
-        energy |= {"dissipated": dissipated, "lost": 0.0}
+    def _shown(self, pose: Array, points: Array, strain: float, kinetic: float = 0.0) -> dict[str, Any]:
+        """Return what follows from the pose, the control points of the strips (S, n, 2) and the energies."""
+        shape, stress = self.strips.read(points)
+        energy = {"strain": strain, "kinetic": kinetic, "potential": self._potential(pose), "dissipated": 0.0}
         return {"pose": pose, "shape": shape, "stress": stress, "energy": energy}
-
-
-def _pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
-    """Return the instantaneous centre of a body at `pose` (3,) with `velocity` (3,) [m], None below `least`
-    rad/s."""
-    vx, vy, omega = velocity
-    if not abs(omega) > least:
-        return None
-    return float(pose[0] - vy / omega), float(pose[1] + vx / omega)
-
-
-def _free_turn(tangent: Array) -> Array:
-    """Return the velocity (3,) of a body that is turned at 1 rad/s by a moment alone, from its tangent (3,
-    3)."""
-    shift = -np.linalg.solve(tangent[:2, :2], tangent[:2, 2])
-    return np.array([shift[0], shift[1], 1.0])
-
-
-def _free_stiffness(tangent: Array) -> float:
-    """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
-    return float(tangent[2] @ _free_turn(tangent))

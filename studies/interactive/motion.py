@@ -4,18 +4,18 @@ integrator."""
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from spline_model.compile import compile_scene
 from spline_model.effects import StripDamping
 from spline_model.held import HeldPivot, HeldState
+from spline_model.mechanism import Mechanism
 from spline_model.motion.energy_consistent import Stepper
-from spline_model.motion.records import DISSIPATED, KINETIC, STRAIN
+from spline_model.motion.records import KINETIC, STRAIN
 from spline_model.motion.start import Start, set_in_motion
 from spline_model.motion.step import NEWTON
-from spline_model.pivot import Pivot
 from spline_model.sequential_impulse import impulse_solver, stability_limit
 from spline_model.solution import Later
 from studies.kinds import Array
@@ -38,14 +38,13 @@ SWEEPS = 30
 
 
 class _Moving(NamedTuple):
-    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], the one that the strips'
-    damping took among them, and the iterations, or sweeps, of the last frame."""
+    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], and the iterations, or
+    sweeps, of the last frame."""
 
     z: Array
     v: Array
     kinetic: float
     strain: float
-    dissipated: float
     iterations: int
 
 
@@ -54,8 +53,8 @@ class _Energy:
 
     longest = math.inf
 
-    def __init__(self, pivot: Pivot, z: Array, v: Array) -> None:
-        system = compile_scene(pivot.released())
+    def __init__(self, design: Mechanism, z: Array, v: Array) -> None:
+        system = compile_scene(design.released())
         known = Later(z[None, : system.layout.size].copy)
         self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
         self._stepper.smallest = SMALLEST_PART
@@ -75,21 +74,19 @@ class _Energy:
     def state(self) -> _Moving:
         """Return the present state."""
         (z,), (v,), (row,) = self._stepper.look()
-        kinetic, strain, dissipated = (float(row[k]) for k in (KINETIC, STRAIN, DISSIPATED))
-        return _Moving(z, v, kinetic, strain, dissipated, self._iterations)
+        return _Moving(z, v, float(row[KINETIC]), float(row[STRAIN]), self._iterations)
 
 
 class _Impulses:
     """Sequential impulses: at once, stable at any step, or as printed by sweeps, in steps that are cut to
     what is stable."""
 
-    def __init__(self, pivot: Pivot, z: Array, v: Array, form: str, sweeps: int) -> None:
+    def __init__(self, design: Mechanism, z: Array, v: Array, form: str, sweeps: int) -> None:
         swept = sweeps if form == "printed" else None
-        self._solver = solver = impulse_solver(pivot, form=form, sweeps=swept)
-        self._out = solver.look(solver.start_at(z, v))
-        self._dissipated, self.longest = 0.0, math.inf
+        self._solver = solver = impulse_solver(design, form=form, sweeps=swept)
+        self._out, self.longest = solver.look(solver.start_at(z, v)), math.inf
         if form == "printed":
-            limit, damping = stability_limit(pivot), solver.system.scene.of(StripDamping)
+            limit, damping = stability_limit(design), solver.system.scene.of(StripDamping)
             time = max((each.relaxation_time for each in damping), default=0.0)
             # damping is explicit too: h^2 + 2 T h < limit^2
             self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
@@ -102,28 +99,27 @@ class _Impulses:
         if not out.complete:
             return 0.0
         self._out = out
-        self._dissipated += out.dissipated
         return steps * step
 
     def state(self) -> _Moving:
         """Return the present state."""
         out = self._out
-        energies = out.kinetic_energy, out.strain_energy, self._dissipated
-        return _Moving(out.state.z, out.state.v, *energies, out.counters["sweeps"])
+        now, sweeps = out.state, out.counters["sweeps"]
+        return _Moving(now.z, now.v, out.kinetic_energy, out.strain_energy, sweeps)
 
 
 #: A solver that was started from a state; `longest`: step [s] that it can take.
 Motion = _Energy | _Impulses
 
 
-def motion(solver: str, sweeps: int, pivot: Pivot, z: Array, v: Array) -> Motion:
-    """Return the motion of the released pivot from unknowns z (N or more,) and velocities v (Q,).
+def motion(solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> Motion:
+    """Return the motion of the released design from unknowns z (N or more,) and velocities v (Q,).
 
     sweeps: most of them for one linear system of the printed form.
     """
     if solver == "energy":
-        return _Energy(pivot, z, v)
-    return _Impulses(pivot, z, v, solver, sweeps)
+        return _Energy(design, z, v)
+    return _Impulses(design, z, v, solver, sweeps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,44 +140,41 @@ class Pull:
         none is found, and the iterations; `least`: the size of forces [N]."""
         work = 0
         for _ in range(MOST_PULLS):
-            force, tangent = self._force(state)
+            force, tangent, _ = self._pulled(state)
             far = self.stiffness * math.dist(self.pose[:2], state.pose[:2])
             if np.linalg.norm(force) <= BALANCED * (least + far):
                 return state, work
             values, ways = np.linalg.eigh(tangent)
             step = -ways @ ((ways.T @ force) / np.abs(values))
             step *= min(1.0, LONGEST_PULL * self.length / max(float(np.linalg.norm(step)), 1e-300))
-            state, used = self._lower(held, state, step)
-            work += used
-            if used == 0:
-                break
+            lower = self._lower(held, state, step)
+            if lower is None:
+                return None, work
+            state = lower
+            work += max(1, state.iterations)
         return None, work
 
-    def _lower(self, held: HeldPivot, state: HeldState, step: Array) -> tuple[HeldState, int]:
+    def _lower(self, held: HeldPivot, state: HeldState, step: Array) -> HeldState | None:
         """Return the state after a step of the pose, or the part of it that lowers the energy, or the force;
-        and the iterations, 0 where no part does."""
-        known, before = held.unknowns, self._energy(state)
-        least = np.linalg.norm(self._force(state)[0])
+        None where no part does."""
+        known, (force, _, before) = held.unknowns, self._pulled(state)
         for halved in range(HALVINGS):
             x, y, turn = 0.5**halved * np.append(step, np.zeros(3 - len(step)))
             pose = state.pose + np.array([x, y, turn / self.length])
             found = held.hold(float(pose[0]), float(pose[1]), float(pose[2]))
-            lower = found.solved and self._energy(found) < before
-            if lower or (found.solved and np.linalg.norm(self._force(found)[0]) < least):
-                return found, max(1, found.iterations)
+            if found.solved:
+                there, _, energy = self._pulled(found)
+                if energy < before or np.linalg.norm(there) < np.linalg.norm(force):
+                    return found
             held.restore(known)
-        return state, 0
+        return None
 
-    def _force(self, state: HeldState) -> tuple[Array, Array]:
-        """Return the force that is out of balance, (2,) or (3,) where the body turns, and its derivative."""
+    def _pulled(self, state: HeldState) -> tuple[Any, Any, float]:
+        """Return the force that is out of balance, (2,) or (3,) where the body turns, its derivative, and the
+        energy of strips, spring and load [J]."""
         unit, spring = np.array([1.0, 1.0, 1.0 / self.length]), self.stiffness * np.array([1.0, 1.0, 0.0])
-        count = 3 if self.turns else 2
-        force = (state.force - self.load + spring * (state.pose - self.pose)) * unit
+        count, away = 3 if self.turns else 2, state.pose - self.pose
+        force = (state.force - self.load + spring * away) * unit
         tangent = (state.tangent + np.diag(spring)) * np.outer(unit, unit)
-        return force[:count], tangent[:count, :count]
-
-    def _energy(self, state: HeldState) -> float:
-        """Return the energy of strips, spring and load [J]."""
-        away = state.pose[:2] - self.pose[:2]
-        stored = state.bending_energy + state.axial_energy + 0.5 * self.stiffness * float(away @ away)
-        return stored - float(self.load[:2] @ away)
+        stored = state.bending_energy + state.axial_energy + 0.5 * float(spring @ away**2)
+        return force[:count], tangent[:count, :count], stored - float(self.load[:2] @ away[:2])

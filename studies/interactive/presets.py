@@ -1,29 +1,31 @@
-"""Designs to start from, and the parameters that a user may change while they run."""
+"""Designs to work on: a case file and the parameters that a user may change while the design runs."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, TypeGuard
+from typing import Any
 
 from spline_model.modes import natural_frequencies
-from studies.cases.design import as_toml, document_of
-from studies.cases.effects import Effects
-from studies.cases.keys import MATERIALS
-from studies.cases.problem import Problem, named_case
+from studies.answers.critical import critical_load
+from studies.answers.models import put
+from studies.answers.settings import SplineSettings
+from studies.cases.design import Design, as_toml, design_of, document_of
+from studies.cases.document import parsed
+from studies.cases.effects import DEFAULT
+from studies.cases.keys import GROUND, MATERIALS
+from studies.cases.problem import FOLDER, Problem
 from studies.cases.section import of_sides
 from studies.errors import BadInput
-from studies.interactive.design import GIVEN, POISSON_RATIO, build, scene
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
 STEPS_A_FRAME = 4
-
-
-def finite(value: object) -> TypeGuard[float]:
-    """Return whether a value is a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+#: In EI/L^2: strips that a hand compresses fold their control points at the smaller default.
+SLIDE_STIFFNESS = 1000.0
+#: Values of a parameter on a logarithmic slider reach from a fifth to five times that of the design.
+SPAN = 5.0
 
 
 @dataclass(frozen=True)
@@ -31,9 +33,8 @@ class _Parameter:
     """One number of a design that the user sets, between low and high in SI units.
 
     Attributes:
-        unit: what the user types it in, and how many of it make one SI unit.
-        logarithmic: whether a slider should run over its decades.
-        least: above nought, from where on it should to either side.
+        unit: in which the user types it; per_si: how many of it make one SI unit.
+        scale: of the slider: "log" about the value of the design, "linear" from low to high, or "load".
     """
 
     name: str
@@ -42,176 +43,268 @@ class _Parameter:
     per_si: float
     low: float
     high: float
-    logarithmic: bool = False
-    least: float = 0.0
+    scale: str = "log"
 
-    def checked(self, value: object) -> float:
-        """Return `value` as a float in SI units.
-
-        Raises:
-            BadInput: not a finite number between low and high; one line.
-        """
-        if finite(value) and self.low <= value <= self.high:
-            return float(value)
+    def checked(self, value: object) -> float | None:
+        """Return `value` as a float in SI units, None for a strength that is not known; else BadInput."""
+        if value is None and self.name == "yield_strength":
+            return None
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if number and self.low <= value <= self.high:  # type: ignore[operator]
+            return float(value)  # type: ignore[arg-type]
+        got = f"{value * self.per_si:g}" if number and math.isfinite(value) else repr(value)  # type: ignore
         low, high = self.low * self.per_si, self.high * self.per_si
-        got = f"{value * self.per_si:g}" if finite(value) else repr(value)
         raise BadInput(f"{self.name}: got {got}, expected {low:g} to {high:g} {self.unit}")
 
 
 _DEGREE = math.radians(1.0)
-#: In the order of the fields; whether the slider is logarithmic, and its least, where that is needed.
+#: In the order of the fields.
 PARAMETERS: dict[str, _Parameter] = {
     row[0]: _Parameter(*row)
     for row in (
-        ("length", "strip length", "mm", 1e3, 0.04, 0.12),
-        ("thickness", "strip thickness", "mm", 1e3, 1e-4, 8e-3, True),
-        ("width", "strip width", "mm", 1e3, 2e-3, 0.05),
-        ("inclination", "inclination", "°", 1.0 / _DEGREE, 25.0 * _DEGREE, 65.0 * _DEGREE),
-        ("crossing_ratio", "crossing", "of L", 1.0, 0.2, 0.8),
-        ("youngs_modulus", "Young's modulus", "GPa", 1e-9, 1e7, 5e11, True),
-        ("yield_strength", "yield strength", "MPa", 1e-6, 1e6, 5e9, True),
-        ("density", "density", "kg/m³", 1.0, 100.0, 2e4, True),
-        ("body_mass", "body mass", "g", 1e3, 1e-3, 2.0, True),
-        ("body_moment_of_inertia", "body inertia", "g·cm²", 1e7, 1e-7, 0.1, True),
-        ("relaxation_time", "strip damping", "ms", 1e3, 0.0, 0.05),
-        ("load", "load, downward", "N", 1.0, -5e4, 5e4, False, 1e-3),
-        ("time_scale", "time scale", "s/s", 1.0, 1e-4, 1.0, True),
+        ("length", "strip length", "mm", 1e3, 1e-5, 10.0),
+        ("thickness", "strip thickness", "mm", 1e3, 1e-7, 1.0),
+        ("width", "strip width", "mm", 1e3, 1e-7, 10.0),
+        ("inclination", "inclination", "°", 1.0 / _DEGREE, 5.0 * _DEGREE, 85.0 * _DEGREE, "linear"),
+        ("crossing_ratio", "crossing", "of L", 1.0, 0.02, 0.98, "linear"),
+        ("youngs_modulus", "Young's modulus", "GPa", 1e-9, 1e4, 1e13),
+        ("yield_strength", "yield strength", "MPa", 1e-6, 1e3, 1e12),
+        ("density", "density", "kg/m³", 1.0, 0.1, 1e5),
+        ("body_mass", "body mass", "g", 1e3, 1e-12, 1e5),
+        ("body_moment_of_inertia", "body inertia", "g·cm²", 1e7, 1e-20, 1e5),
+        ("relaxation_time", "strip damping", "ms", 1e3, 0.0, 0.05, "linear"),
+        ("load", "load, downward", "N", 1.0, -1e9, 1e9, "load"),
+        ("time_scale", "time scale", "s/s", 1.0, 1e-7, 1.0),
     )
 }
+_OF_BODY = {"body_mass": "mass", "body_moment_of_inertia": "moment_of_inertia"}
+_OF_SCENE = ("relaxation_time", "load", "time_scale")
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Preset:
-    """A design by the name of its case or its file, what the case leaves open, and how fast its time runs.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Piece:
+    """One design: a case file, and the values of the parameters that the user sees.
 
     Attributes:
-        yield_strength: of the material [Pa], a choice; relaxation_time: of the strips' damping [s], a choice.
-        load: on the body's centre, downward [N].
-        time_scale: simulated seconds in one second; note: why, in a sentence.
+        name: of the preset that it began from; title, note: for the page.
+        document: the case file, as it is parsed; base: its design.
+        values: of the parameters that it has, in SI units.
     """
 
-    case: str
-    title: str
-    yield_strength: float
-    relaxation_time: float
-    time_scale: float
-    note: str
-    load: float = 0.0
+    name: str
+    title: str = ""
+    note: str = ""
+    document: Mapping[str, Any]
+    base: Design
+    values: Mapping[str, float | None]
 
-    def values(self) -> dict[str, float]:
-        """Return all parameters of the design by name, in SI units."""
-        problem = named_case(self.case)
-        given = problem.rectangle() | asdict(self)
-        return {name: given[name] if name in given else float(getattr(problem, name)) for name in PARAMETERS}
+    def changed(self, values: Mapping[str, object]) -> "Piece":
+        """Return the design with these values, each checked; BadInput for an unknown or a bad one."""
+        for name in values:
+            if name not in self.values:
+                raise BadInput(f"parameter: got {name!r}, expected one of {', '.join(self.values)}")
+        every = dict(self.values) | {name: PARAMETERS[name].checked(value) for name, value in values.items()}
+        made = replace(self, values=every)
+        assert made.design  # or BadInput
+        return made
+
+    def like(self, other: "Piece", *but: str) -> bool:
+        """Whether a design differs from another in its time scale, and these parameters, alone."""
+        mine, theirs = (
+            {name: value for name, value in each.values.items() if name not in ("time_scale", *but)}
+            for each in (self, other)
+        )
+        return mine == theirs and self.document == other.document
+
+    @cached_property
+    def design(self) -> Design:
+        """The design with its load, for any command and either model."""
+        base, values = self.base, self.values
+        own = {name: value for name, value in values.items() if name not in _OF_SCENE}
+        if "thickness" in own:
+            own |= of_sides(own["width"], own["thickness"])
+        tables: dict[str, dict[str, Any]] = {}
+        if values["relaxation_time"]:
+            tables["strip_damping"] = {"relaxation_time": values["relaxation_time"]}
+        if load := values["load"]:
+            of = {} if isinstance(base, Problem) else {"body": base.body}
+            tables["applied_force"] = {"force": (0.0, -load), **of}
+        effects = replace(base.effects, names=(*DEFAULT, *tables), tables=tables)
+        if isinstance(base, Problem):
+            return replace(base, effects=effects, **own)  # type: ignore[arg-type]
+        body = {own_name: own.pop(name) for name, own_name in _OF_BODY.items()}
+        strips = tuple(replace(strip, **own) for strip in base.strips)  # type: ignore[arg-type]
+        bodies = (replace(base.bodies[0], **body),)  # type: ignore[arg-type]
+        return replace(base, strips=strips, bodies=bodies, effects=effects)
+
+    def modelled(self, control_points: int | None = None, *, loaded: bool = True) -> Any:
+        """Return the design as the spline model has it; without a number its control points are left open."""
+        settings = SplineSettings(control_points=control_points, slide_stiffness=SLIDE_STIFFNESS)
+        piece = self if loaded else self.changed({"load": 0.0})
+        return put(piece.design, settings).modelled
+
+    def critical_load(self) -> float | None:
+        """Return the load in its own direction at which the design loses its stability [N], None where none
+        is found."""
+        down = math.copysign(1.0, self.values["load"] or 1.0)
+        try:
+            return critical_load(self.design, SplineSettings(), direction=-down * math.pi / 2.0).force
+        except BadInput:
+            return None
+
+    def as_case(self) -> str:
+        """Return the text of the case file of the design, which the other commands read."""
+        return as_toml(document_of(self.design), ["a design of the interactive environment"])
 
 
-PRESETS: dict[str, _Preset] = {
-    "polymer": _Preset(
-        case="polymer_pivot",
+def _read(document: Mapping[str, Any]) -> Design:
+    """Return the design of a case file; BadInput unless it is one body on strips from the ground."""
+    design = design_of("design.toml", document)
+    if len(design.bodies) != 1:
+        raise BadInput(f"bodies: got {len(design.bodies)}, expected one body on strips from the ground")
+    if odd := [strip.name for strip in design.strips if strip.root != GROUND or strip.tip != design.body]:
+        raise BadInput(f"strips: got {odd[0]}, expected each from the ground to {design.body}")
+    return design
+
+
+def _of_strips(design: Design) -> dict[str, float | None]:
+    """Return the parameters of which all strips have one value, and those of a pivot's outline."""
+    every = [asdict(strip) | ({} if strip.section_depth else strip.rectangle()) for strip in design.strips]
+    if isinstance(design, Problem):
+        every = [
+            every[0]
+            | {name: getattr(design, name) for name in PARAMETERS if hasattr(design, name)}
+            | {name: every[0][name] for name in ("width", "thickness")}
+        ]
+    found = {
+        name: every[0][name]
+        for name in PARAMETERS
+        if len({each.get(name) for each in every}) == 1 and name in every[0] and name not in _OF_BODY
+    }
+    section = found.get("width") is not None and found.get("thickness") is not None
+    return {n: v for n, v in found.items() if section or n not in ("width", "thickness")}
+
+
+def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
+    """Return the design of a parsed case file; its time runs so that it swings once a second.
+
+    Of its scene the damping of the strips acts here, and the upright part of a force on the body.
+
+    Args:
+        known: title, note, and values of parameters that the case leaves open.
+
+    Raises:
+        BadInput: the file cannot be used; one line.
+    """
+    design = _read(document)
+    given = design.effects.parameters()
+    values: dict[str, float | None] = {
+        "relaxation_time": given.get("strip_damping", {}).get("relaxation_time", 0.0),
+        "load": -given.get("applied_force", {}).get("force", (0.0, 0.0))[1],
+        "time_scale": 1.0,
+    }
+    values |= {own: getattr(design.bodies[0], attribute) for own, attribute in _OF_BODY.items()}
+    values |= _of_strips(design)
+    titles = {"title": known.pop("title", name.replace("_", " ")), "note": known.pop("note", "")}
+    ordered = {n: values[n] for n in PARAMETERS if n in values} | known
+    piece = Piece(name=name, document=document, base=design, values=ordered, **titles)
+    if "time_scale" in known:
+        return piece.changed({})
+    frequency = float(natural_frequencies(piece.modelled(loaded=False), count=1).frequency[0])
+    return piece.changed({"time_scale": min(1.0, 1.0 / frequency) if frequency > 0.0 else 1.0})
+
+
+#: Name of the design of one's own, which a command or the page may bring.
+OWN = "own"
+#: Presets that were opened, the first of them the one to begin with; the other cases of the suite by name.
+PRESETS: dict[str, Piece] = {
+    "polymer": opened(
+        "polymer",
+        parsed(FOLDER / "polymer_pivot.toml"),
         title="soft polymer pivot",
+        note="swings about once a second, in real time",
         yield_strength=30e6,
         relaxation_time=2e-3,
         time_scale=1.0,
-        note="swings about once a second, in real time",
     ),
-    "table-1": _Preset(
-        case="cross_axis_pivot",
+    "table-1": opened(
+        "table-1",
+        parsed(FOLDER / "cross_axis_pivot.toml"),
         title="Table 1 of the paper",
-        yield_strength=1.2e9,
-        relaxation_time=0.0,
-        time_scale=1.0 / 200.0,
         note="swings 76 times a second: shown 200 times slower, with steps shorter in proportion",
+        yield_strength=1.2e9,
+        time_scale=1.0 / 200.0,
     ),
 }
+SHIPPED = sorted(
+    path.stem for path in FOLDER.glob("*.toml") if len(parsed(path).get("bodies", ["its own"])) == 1
+)
 
 
-#: Name of the design of one's own, which a command may bring.
-OWN = "own"
-
-
-def own(case: str) -> _Preset:
-    """Return the design of a case file as a preset; its time runs so that it swings once a second.
-
-    Of its scene the damping of the strips acts here and the upright part of a force on the body, nothing else
-    beside what always does.
-
-    Raises:
-        BadInput: the file cannot be used, or a number of the design is beyond what a slider may set.
-    """
-    problem = named_case(case)
-    given = problem.effects.parameters()
-    strength = problem.yield_strength
-    made = _Preset(
-        case=case,
-        title=Path(case).stem.replace("_", " "),
-        yield_strength=PARAMETERS["yield_strength"].high if strength is None else strength,
-        relaxation_time=given.get("strip_damping", {}).get("relaxation_time", 0.0),
-        load=-given.get("applied_force", {}).get("force", (0.0, 0.0))[1],
-        time_scale=1.0,
-        note="of one's own" if strength is not None else "of one's own; its yield strength is not known",
-    )
+def own(case: str) -> Piece:
+    """Return the design of a case file, or of a case of that name; BadInput as of `opened`."""
+    path = FOLDER / f"{case}.toml" if case in SHIPPED else Path(case)
     try:
-        values = checked(made.values())
+        return opened(OWN, parsed(path), title=path.stem.replace("_", " "), note="of one's own")
     except BadInput as error:
-        raise BadInput(f"{case}: {error}") from None
-    frequency = float(natural_frequencies(build(values), rotation=0.0, count=1).frequency[0])
-    slow = PARAMETERS["time_scale"]
-    return replace(made, time_scale=min(max(1.0 / frequency, slow.low), slow.high))
+        raise BadInput(str(error).replace("design.toml", str(path))) from None
 
 
-def values_of(text: str) -> dict[str, float]:
-    """Return the parameters of a design that is given as the text of a case file; BadInput as of `own`."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "design.toml"
-        path.write_text(text, encoding="utf-8")
-        try:
-            return own(str(path)).values()
-        except BadInput as error:
-            raise BadInput(str(error).replace(f"{path}", path.name)) from None
-
-
-def as_case(values: Mapping[str, float]) -> str:
-    """Return the text of the case file of a design, which the other commands read."""
-    names, tables = scene(values)
-    given: dict[str, Any] = {name: values[name] for name in (*GIVEN, "yield_strength")}
-    problem = Problem(
-        **given,
-        **of_sides(values["width"], values["thickness"]),
-        poisson_ratio=POISSON_RATIO,
-        rotation=math.radians(45),
-        increments=45,
-        effects=Effects(names=names, tables=tables),
-    )
-    return as_toml(document_of(problem), ["a design of the interactive environment"])
-
-
-def checked(values: Mapping[str, object]) -> dict[str, float]:
-    """Return all parameters in SI units, each checked; BadInput names an unknown, missing or bad one."""
-    for name in values:
-        if name not in PARAMETERS:
-            raise BadInput(f"parameter: got {name!r}, expected one of {', '.join(PARAMETERS)}")
-    for name in PARAMETERS:
-        if name not in values:
-            raise BadInput(f"parameter: got no {name}, expected all of {', '.join(PARAMETERS)}")
-    return {name: PARAMETERS[name].checked(values[name]) for name in PARAMETERS}
-
-
-def preset(name: object) -> _Preset:
+def preset(name: str) -> Piece:
     """Return the preset of that name; BadInput lists the names."""
+    if name in SHIPPED and name not in PRESETS:
+        PRESETS[name] = opened(name, parsed(FOLDER / f"{name}.toml"), note="a case of the suite")
     if name == OWN and OWN not in PRESETS:
         raise BadInput(f"preset: got {OWN!r}, expected its case file beside the command")
-    if not isinstance(name, str) or name not in PRESETS:
-        raise BadInput(f"preset: got {name!r}, expected one of {', '.join(PRESETS)}")
+    if name not in PRESETS:
+        raise BadInput(f"preset: got {name!r}, expected one of {', '.join((*PRESETS, *SHIPPED))}")
     return PRESETS[name]
+
+
+def chosen(name: str, now: Piece, case: Mapping[str, Any] | None, values: Mapping[str, Any]) -> Piece:
+    """Return the preset of that name with other values, or a design of one's own of a `case` file; without
+    one it is the design `now`, if that is one's own, or the first preset's with all its values."""
+    if name == OWN and case is not None:
+        known = {key: values[key] for key in ("time_scale",) if key in values}
+        return opened(name, case, title="a design of one's own", **known).changed(values)
+    if name == OWN and values:
+        return replace(now if now.name == OWN else preset("polymer"), name=OWN).changed(values)
+    return preset(name).changed(values)
+
+
+class History:
+    """Designs that can be undone, and done again."""
+
+    MOST = 100
+
+    def __init__(self) -> None:
+        self._past, self._future = list[Piece](), list[Piece]()
+
+    def add(self, before: Piece, *, part: bool) -> None:
+        """Keep the design before a change, but for a `part` of a longer one."""
+        if not part:
+            self._past = [*self._past[1 - self.MOST :], before]
+        self._future = []
+
+    def swap(self, now: Piece, *, back: bool) -> Piece | None:
+        """Return the design before, or the one that was undone, in place of the present one; None if there is
+        none."""
+        source, target = (self._past, self._future) if back else (self._future, self._past)
+        if not source:
+            return None
+        target.append(now)
+        return source.pop()
 
 
 def catalogue() -> dict[str, Any]:
     """Return parameters, presets and what each material that yields sets, for whoever shows them."""
-    designs = {name: {"title": p.title, "note": p.note, "values": p.values()} for name, p in PRESETS.items()}
+    every = {name: {"title": name.replace("_", " "), "note": "a case of the suite"} for name in SHIPPED}
+    every = {name: {"title": p.title, "note": p.note} for name, p in PRESETS.items()} | every
     known = {each["title"].partition(",")[0]: each for each in MATERIALS.values() if "yield_strength" in each}
     return {
         "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],
-        "presets": designs,
+        "span": SPAN,
+        "presets": every,
         "materials": {
             title: {n: v for n, v in given.items() if n in PARAMETERS} for title, given in known.items()
         },

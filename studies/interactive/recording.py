@@ -10,7 +10,7 @@ from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from studies.errors import BadInput
-from studies.interactive.input import Event
+from studies.interactive.input import NUMBER, checked
 from studies.interactive.session import Session
 
 #: Characters of the hash that marks a state.
@@ -79,10 +79,9 @@ Say = Callable[[dict[str, Any]], Awaitable[None]]
 
 
 class Player:
-    """Takes files in parts, and plays one session after the other; while it does, nothing else moves."""
+    """Plays one session after the other; while it does, nothing else moves."""
 
     def __init__(self) -> None:
-        self._parts: list[bytes] = []
         self._task: asyncio.Task[None] | None = None
 
     @property
@@ -100,23 +99,9 @@ class Player:
         if self._task is not None:
             self._task.cancel()
 
-    def whole(self, last: bool, data: bytes) -> str | None:
-        """Take a part of a file and return the whole text with its last one.
-
-        Raises:
-            BadInput: more than a recording may hold, or no text.
-        """
-        self._parts.append(data)
-        if sum(map(len, self._parts)) > Recorder.MOST:
-            raise BadInput(f"file: got more than {Recorder.MOST} bytes, expected no more")
-        if not last:
-            return None
-        content, self._parts = b"".join(self._parts), []
-        return content.decode("utf-8", errors="replace")
-
     def play(self, lines: list[str], say: Say, show: Callable[[Session], Awaitable[None]]) -> None:
         """Begin to replay a session file; BadInput for one that is none."""
-        times = [Event(event).number("t") for event in _events(lines)]
+        times = [float(checked(event, {"t": NUMBER})["t"]) for event in _events(lines)]
         self.end()
         self._task = asyncio.create_task(_play(lines, times, say, show))
 

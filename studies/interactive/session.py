@@ -11,34 +11,54 @@ from typing import Any
 import numpy as np
 
 from studies.interactive import presets
-from studies.interactive.bench import DRIVES, SPRUNG, Bench
-from studies.interactive.input import EVENTS, MOST_STEPS, Event
+from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, Readings, checked
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import SOLVERS
-from studies.interactive.presets import STEP
-from studies.interactive.view import SENTENCES, shown
+from studies.interactive.motion import SOLVERS, SWEEPS
+from studies.interactive.presets import STEP, History, Piece
+from studies.interactive.view import SENTENCES, quantity, shown
 from studies.kinds import Array
 
+#: Of what the hand holds, what it holds by a spring.
+SPRUNG = ("grip", "pull")
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
 FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
-#: Pace of a motion below which it is said to be slowed down, and most sweeps of a solver.
-SLOWED, MOST_SWEEPS = 0.9, 1000
+#: Pace of a motion below which it is said to be slowed down.
+SLOWED = 0.9
 
 
-class Session(Bench):
-    """The state machine behind the page.
+class Session:
+    """The state machine behind the page; a design that cannot be built leaves the former one.
 
     Args:
         preset: name of the design to start with.
         lock_step: every frame is four steps (films, replays), not as many as its time asks for (cameras).
+
+    Attributes:
+        mechanics: the design at work. warnings: sentences of what is wrong by their codes.
+        critical: load at which the design loses its stability [N], None where it is not known.
     """
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
-        self.begin(preset, presets.preset(preset).values(), lock_step)
+        self._begin(presets.preset(preset), lock_step)
         self._settle()
+
+    def _begin(self, piece: Piece, lock_step: bool) -> None:
+        """Everything as at the start, with this design."""
+        self._at_rest: Array | None = None
+        self.mechanics = Mechanics(piece)
+        self.critical: float | None = None
+        self.history = History()
+        self.clock, self.hand, self.readings = Clock(lock_step=lock_step), Hand(), Readings()
+        self.warnings: dict[str, str] = {}
+        self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
+        self.sweeps, self.paused, self.time = SWEEPS, False, 0.0
+        self.sight: dict[str, Any] = {"state": "none"}
+        self.spread: Array | None = None
+        self.marker: Array | None = None
+        self.wanted = np.zeros(3)
 
     def feed(self, event: Mapping[str, Any]) -> dict[str, Any]:
         """Take one event and return the state after it.
@@ -46,19 +66,22 @@ class Session(Bench):
         Raises:
             BadInput: an event that is none; the session is as it was.
         """
-        event = Event(event)
-        action, time = getattr(self, f"_{event.choice('do', EVENTS)}"), event.number("t")
+        known = checked(event)
         self.warnings = {}
-        action(event, time)
-        self.time = time
-        self.readings.take(self.mechanics, None if self.spread is None else self.ways @ self.spread)
-        if self.mechanics.doubt:
-            self._warn("coarse", self.mechanics.doubt)
-        if not self.mechanics.resolved:
-            self._warn("under-resolved", f"{self.mechanics.longest_step / STEP:.1g} resolves it")
-        if self.mechanics.moving and not self.paused and self.clock.pace < SLOWED:
-            real = "real time" if self.mechanics.step == STEP else "the time scale"
+        getattr(self, f"_{known['do']}")(known)
+        mechanics, self.time = self.mechanics, known["t"]
+        self.readings.take(
+            mechanics, None if self.spread is None else mechanics.ways(self.drive, self.grip) @ self.spread
+        )
+        if mechanics.doubt:
+            self._warn("coarse", mechanics.doubt)
+        if not mechanics.resolved:
+            self._warn("under-resolved", f"{mechanics.longest_step / STEP:.1g} resolves it")
+        if mechanics.moving and not self.paused and self.clock.pace < SLOWED:
+            real = "real time" if mechanics.step == STEP else "the time scale"
             self._warn("slowed", f"runs at {self.clock.pace:.1g} of {real}")
+        if mechanics.piece.values["load"] and not mechanics.snapshot.stable(mechanics.strips.length):
+            self._unstable()
         return shown(self)
 
     def _warn(self, code: str, detail: str = "") -> None:
@@ -66,81 +89,91 @@ class Session(Bench):
         sentence = SENTENCES.get(code, SENTENCES["lost"])
         self.warnings[code] = f"{sentence[:-1]} ({detail})." if detail else sentence
 
+    def _unstable(self) -> None:
+        """The hand alone holds the body; say from which load on, and how stiff it is."""
+        stiffness = self.mechanics.snapshot.stiffness
+        told = [f"stiffness {quantity(stiffness, 'N m/rad')}"] if (stiffness or 0.0) < 0.0 else []
+        if self.critical:
+            told.insert(0, f"critical load {quantity(self.critical, 'N')}")
+        self._warn("unstable", ", ".join(told))
+
+    @property
+    def grip(self) -> float:
+        """Stiffness of the hand's spring [N/m]."""
+        return self.mechanics.softness(self.spread)
+
     def setup(self) -> dict[str, Any]:
         """Return the event that makes a new session of this one's settings."""
+        piece = self.mechanics.piece
         return {
             "do": "setup",
             "t": self.time,
-            "preset": self.preset,
-            "values": dict(self.mechanics.values),
+            "preset": piece.name,
+            "values": dict(piece.values),
+            "case": dict(piece.document),
             "drive": self.drive,
             "solver": self.solver,
             "sweeps": self.sweeps,
             "lock_step": self.clock.lock_step,
-            "rest": self.placing.rest.tolist(),
+            "rest": self.mechanics.placing.rest.tolist(),
         }
 
-    def _setup(self, event: Event, time: float) -> None:
+    def _setup(self, event: dict[str, Any]) -> None:
         """Begin anew with these settings; the first event of a session file."""
-        drive, solver = event.choice("drive", DRIVES), event.choice("solver", SOLVERS)
-        sweeps = event.whole("sweeps", MOST_SWEEPS)
-        rest, values = event.three("rest"), presets.checked(event.mapping("values"))
-        preset = event.choice("preset", (*presets.PRESETS, presets.OWN))
-        self.begin(preset, values, event.get("lock_step") is not False)
-        self.drive, self.solver, self.sweeps = drive, solver, sweeps
-        if not np.array_equal(rest, self.placing.rest):
-            self.set_rest(rest)
+        self._begin(self._chosen(event["preset"], event), event["lock_step"])
+        self.drive, self.solver, self.sweeps = event["drive"], event["solver"], event["sweeps"]
+        if not np.array_equal(event["rest"], self.mechanics.placing.rest):
+            self._at_rest = event["rest"]
+            self.mechanics.placed(self._at_rest)
         self._settle()
 
     # -- poses ---------------------------------------------------------------------------------------------
 
-    def _pose(self, event: Event, time: float) -> None:
+    def _pose(self, event: dict[str, Any]) -> None:
         """A pose from mouse, touch, keys or sliders: displacement from rest and turn."""
         self.sight, self.spread = {"state": "none"}, None
-        pose = event.three("pose")
-        self._to(pose, time)
+        self._to(event["pose"], event["t"])
 
-    def _seen(self, event: Event, time: float) -> None:
+    def _seen(self, event: dict[str, Any]) -> None:
         """Marker 1 in marker 0's frame, as the camera sees it."""
-        marker = event.three("marker")
+        marker, placing = event["marker"], self.mechanics.placing
         self.sight = {key: event[key] for key in ("state", "rms", "plane", "quads") if key in event}
         self.sight.setdefault("state", "found")
         self.marker = marker
-        for code in event.words("faults"):
+        for code in event.get("faults", []):
             self._warn(code)
-        if self._tick(event, time) or self.paused:
+        if self._tick(event) or self.paused:
             return
-        body = self.placing.body(marker, near=self.wanted[2])
-        pose = np.array([*(body[:2] - self.placing.centre), body[2]])
-        if self.placing.looks_swapped(marker):
+        body = placing.body(marker, near=self.wanted[2])
+        pose = np.array([*(body[:2] - placing.centre), body[2]])
+        if placing.looks_swapped(marker):
             self._warn("swapped")
-        elif not self.hand.believes(time, pose):
+        elif not self.hand.believes(event["t"], pose):
             self._warn("jump")
         else:
-            self.spread = self.placing.spread(event.three("sd"), body[2]) if "sd" in event else None
-            self._to(pose, time)
+            self.spread = placing.spread(event["sd"], body[2]) if "sd" in event else None
+            self._to(pose, event["t"])
 
-    def _unseen(self, event: Event, time: float) -> None:
+    def _unseen(self, event: dict[str, Any]) -> None:
         """A frame without a pose: the last one is held, and why is said."""
-        self.sight = {"state": "lost", **{key: event[key] for key in ("plane", "quads") if key in event}}
-        self._warn(str(event.get("code", "lost")), str(event.get("text", "")))
-        self._tick(event, time)
+        self.sight = {"state": "lost"}
+        self._warn(event.get("code", "lost"), str(event.get("text", "")))
+        self._tick(event)
 
-    def _tick(self, event: Event, time: float) -> bool:
+    def _tick(self, event: dict[str, Any]) -> bool:
         """Advance the released body by a frame, by no more steps than there is room for; False while it is
         held."""
-        room = event.whole("room", MOST_STEPS) if "room" in event else MOST_STEPS
         if not self.mechanics.moving or self.paused:
-            self.clock.wait(time)
+            self.clock.wait(event["t"])
         else:
-            self._advance(self.clock.due(time, room))
+            self._advance(self.clock.due(event["t"], event.get("room", MOST_STEPS)))
         return self.mechanics.moving
 
     def _to(self, pose: Array, time: float) -> None:
         """Drive the body to `pose` (3,), displacement from rest and turn."""
         if self.mechanics.moving:
             return
-        far = math.hypot(pose[0], pose[1]) / self.mechanics.values["length"]
+        far = math.hypot(pose[0], pose[1]) / self.mechanics.strips.length
         if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
             self._warn("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
             return
@@ -151,44 +184,46 @@ class Session(Bench):
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
         mechanics = self.mechanics
-        target = np.array([*(self.wanted[:2] + self.placing.centre), self.wanted[2]])
+        target = np.array([*(self.wanted[:2] + mechanics.placing.centre), self.wanted[2]])
         if self.drive in SPRUNG:
             reached = mechanics.grip(target, self.grip, turns=self.drive == "pull")
         else:
             reached = mechanics.hold(target) if self.drive == "pose" else mechanics.turn(float(target[2]))
         if reached < 1.0:
             self._warn("no-equilibrium", f"{100 * reached:.0f} % of the way")
+            if mechanics.piece.values["load"] and self.drive != "pose":
+                self._unstable()
         elif self.drive == "rotation":
             self._hand_is_here(turn=self.wanted[2])
         elif self.sight["state"] != "none":
             gap = mechanics.curve.gap(self.wanted)
-            if gap > OFF_PATH * mechanics.values["length"]:
+            if gap > OFF_PATH * mechanics.strips.length:
                 self._warn("off-path", f"{1e3 * gap:.1f} mm")
 
     def _settle(self) -> None:
         """A load moves the body from where the strips are at rest."""
-        if self.mechanics.values["load"]:
+        if self.mechanics.piece.values["load"]:
             self._hold()
 
     def _hand_is_here(self, turn: float) -> None:
         """Without a camera the hand is where the body is: a shift that it does not hold is not wanted."""
         if self.sight["state"] == "none":
-            self.wanted = np.array([*(self.mechanics.snapshot.pose[:2] - self.placing.centre), turn])
+            mechanics = self.mechanics
+            self.wanted = np.array([*(mechanics.snapshot.pose[:2] - mechanics.placing.centre), turn])
 
     # -- release and catch ---------------------------------------------------------------------------------
 
-    def _release(self, event: Event, time: float) -> None:
-        if self.mechanics.moving:
-            return
-        velocity = self.hand.velocity if event.get("speed") == "hand" else np.zeros(3)
-        self._let_go(velocity / self.mechanics.values["time_scale"], time)
+    def _release(self, event: dict[str, Any]) -> None:
+        if not self.mechanics.moving:
+            velocity = self.hand.velocity if event.get("speed") == "hand" else np.zeros(3)
+            self._let_go(velocity * STEP / self.mechanics.step, event["t"])
 
     def _let_go(self, velocity: Array, time: float) -> None:
         """Release the held body with a `velocity` (3,)."""
         self.mechanics.release(velocity, self.solver, self.sweeps)
         self.clock.begin(time)
 
-    def _catch(self, event: Event, time: float) -> None:
+    def _catch(self, event: dict[str, Any]) -> None:
         if not self.mechanics.moving:
             return
         if not self.mechanics.catch():
@@ -201,27 +236,32 @@ class Session(Bench):
         self._hold()
 
     def _advance(self, steps: int) -> None:
+        """Take steps; time stands still where they fail, and before the body falls through the ground."""
+        before = self.mechanics.snapshot
         done = self.mechanics.advance(steps) if steps else 0.0
         if steps and not done:
             self._warn("stopped")
-            self.paused = True
-            return
-        self.clock.count(steps, done, self.mechanics.values["time_scale"])
+        else:
+            self.clock.count(steps, done, self.mechanics.step / STEP)
+        if self.mechanics.grounded(self.mechanics.snapshot.pose):
+            self.mechanics.snapshot = before
+            self._warn("grounded")
+        self.paused |= bool({"stopped", "grounded"} & set(self.warnings))
 
-    def _pause(self, event: Event, time: float) -> None:
+    def _pause(self, event: dict[str, Any]) -> None:
         self.paused = True
 
-    def _resume(self, event: Event, time: float) -> None:
+    def _resume(self, event: dict[str, Any]) -> None:
         self.paused = False
-        self.clock.wait(time)
+        self.clock.wait(event["t"])
 
-    def _step(self, event: Event, time: float) -> None:
+    def _step(self, event: dict[str, Any]) -> None:
         """One step of a released body that is paused."""
         self.paused = True
         if self.mechanics.moving:
             self._advance(1)
 
-    def _reset(self, event: Event, time: float) -> None:
+    def _reset(self, event: dict[str, Any]) -> None:
         self.mechanics.reset()
         self.wanted, self.paused = np.zeros(3), False
         self.clock.begin(None)
@@ -230,28 +270,44 @@ class Session(Bench):
 
     # -- settings ------------------------------------------------------------------------------------------
 
-    def _parameter(self, event: Event, time: float) -> None:
-        (preset, values), before = self.design, self.mechanics
-        changed = {**values, str(event.get("name")): event.get("value")}
-        self.change(preset, changed, part=event.get("part") is True)
-        self._rebuilt(before, time)
+    def _parameter(self, event: dict[str, Any]) -> None:
+        self._change(self.mechanics.piece.changed({event["name"]: event["value"]}), event)
 
-    def _preset(self, event: Event, time: float) -> None:
-        before, given, name = self.mechanics, dict(event.mapping("values")), event.get("name")
-        known = {} if name == presets.OWN and given else presets.preset(name).values()
-        self.change(str(name), known | given, part=event.get("part") is True)
-        self._rebuilt(before, time)
+    def _preset(self, event: dict[str, Any]) -> None:
+        self._change(self._chosen(event["name"], event), event)
 
-    def _undo(self, event: Event, time: float) -> None:
-        before, name = self.mechanics, event["do"]
-        self._rebuilt(before, time) if self.swap(back=name == "undo") else self._warn("empty", f"to {name}")
+    def _chosen(self, name: str, event: dict[str, Any]) -> Piece:
+        return presets.chosen(name, self.mechanics.piece, event.get("case"), event.get("values", {}))
+
+    def _change(self, piece: Piece, event: dict[str, Any]) -> None:
+        known = self.mechanics.piece
+        self._rebuild(piece, event["t"])
+        self.history.add(known, part=event.get("part", False))
+
+    def _undo(self, event: dict[str, Any]) -> None:
+        """Back to the design before, or forth to the one that was undone."""
+        piece = self.history.swap(self.mechanics.piece, back=event["do"] == "undo")
+        if piece is None:
+            self._warn("empty", f"to {event['do']}")
+        else:
+            self._rebuild(piece, event["t"])
 
     _redo = _undo
 
-    def _rebuilt(self, before: Mechanics, time: float) -> None:
+    def _rebuild(self, piece: Piece, time: float) -> None:
         """Another design goes on where the former one is, held or swinging; its time begins."""
-        if self.mechanics is before:  # at another pace
+        before = self.mechanics
+        if before.piece.like(piece):
+            before.pace(piece)
             return
+        self.mechanics = Mechanics(piece, self._at_rest)
+        loads = [each.values["load"] or 0.0 for each in (before.piece, piece)]
+        if not before.piece.like(piece, "load", "relaxation_time") or loads[0] * loads[1] < 0.0:
+            self.critical = None
+        if piece.name != before.piece.name:
+            self.wanted[:2] *= self.mechanics.strips.length / before.strips.length
+        if piece.design.rotation is None and self.drive == "rotation":
+            self.drive = "pull"  # its case turns no body
         if before.moving and self.mechanics.hold(before.snapshot.pose) == 1.0:
             self._let_go(before.snapshot.velocity, time)
             return
@@ -260,23 +316,26 @@ class Session(Bench):
         self.clock.begin(None)
         self._hold()
 
-    def _drive(self, event: Event, time: float) -> None:
-        self.drive = event.choice("by", DRIVES)
+    def _critical(self, event: dict[str, Any]) -> None:
+        """What is known of the design's critical load [N]; None: of none."""
+        self.critical = event["force"]
+
+    def _drive(self, event: dict[str, Any]) -> None:
+        self.drive = event["by"]
         if not self.mechanics.moving:
             self._hand_is_here(float(self.mechanics.snapshot.pose[2]))
             self._hold()
 
-    def _solver(self, event: Event, time: float) -> None:
-        solver = event.choice("name", SOLVERS)
-        self.sweeps = event.whole("sweeps", MOST_SWEEPS) if "sweeps" in event else self.sweeps
-        self.solver = solver
+    def _solver(self, event: dict[str, Any]) -> None:
+        self.solver, self.sweeps = event["name"], event.get("sweeps", self.sweeps)
         self.mechanics.change_solver(self.solver, self.sweeps)
         self.clock.forget()
 
-    def _rest(self, event: Event, time: float) -> None:
+    def _rest(self, event: dict[str, Any]) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""
         if self.marker is None or self.sight["state"] == "lost":
             self._warn("no-rest")
             return
-        self.set_rest(self.marker)
-        self._reset(event, time)
+        self._at_rest = self.marker
+        self.mechanics.placed(self.marker)
+        self._reset(event)

@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from studies.answers.quantities import PREFIXES, fixed, power_of
-from studies.interactive.bench import SPRUNG, Bench
-from studies.interactive.design import Curve, scales
+from studies.interactive.presets import OWN
 from studies.kinds import Array
+
+if TYPE_CHECKING:
+    from studies.interactive.session import Session
 
 #: Least spread that is written, over its value.
 FINEST = 1e-4
@@ -49,9 +51,8 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
     force, spread = reading.tolist(), state["force_sd"] or (None, None, None, None)
     stiffness = None if state["stiffness"] is None else force[3]
     (dx, dy, turn), sd = state["displacement"], state["sd"]
+    shifted = state["centre_shift"]
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
-    of_yield = state["stress"]["of_yield"]
-    percent = 100.0 * of_yield if of_yield > ROUND_OFF else 0.0
     energies = [(name, value) for name, value in state["energy"].items() if name != "start"]
     energy = {name: quantity(value, "J", least["energy"]) for name, value in energies}
     return energy | {
@@ -59,27 +60,35 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
         + ("" if sd is None else f" ± {math.degrees(sd[2]):.2f}")
         + " °",
         "shift": f"{fixed(1e3 * dx, 2)}, {fixed(1e3 * dy, 2)}{shift} mm",
-        "centre_shift": f"{fixed(1e3 * state['centre_shift'], 3)} mm",
+        "centre_shift": "–" if shifted is None else f"{fixed(1e3 * shifted, 3)} mm",
         "moment": quantity(force[2], "N m", least["moment"], spread[2]),
         "force_x": quantity(force[0], "N", least["force"], spread[0]),
         "force_y": quantity(force[1], "N", least["force"], spread[1]),
         "stiffness": quantity(stiffness, "N m/rad", least["moment"], spread[3]),
         "grip": quantity(state["grip"], "N/m"),
+        "critical": quantity(state["critical"], "N"),
         "simulated": f"{quantity(state['simulated'], 's')}, {state['steps']} steps",
         "stress": quantity(state["stress"]["max"], "Pa", least["stress"]),
-        "of_yield": f"{float(f'{percent:.3g}'):g} %",
+        "of_yield": _of_yield(state["stress"]),
     }
 
 
-def _sentence(state: Mapping[str, Any], texts: Mapping[str, str]) -> str:
+def _of_yield(stress: Mapping[str, Any], digits: str = ".3g") -> str:
+    """Return the largest stress over the yield strength, or by itself where that is not known."""
+    if stress["of_yield"] is None:
+        return quantity(stress["max"], "Pa")
+    share = 100.0 * stress["of_yield"] if stress["of_yield"] > ROUND_OFF else 0.0
+    return f"{float(format(share, digits)):g} % of yield"
+
+
+def _sentence(state: Mapping[str, Any]) -> str:
     """Return what the picture shows, for the status line and screen readers."""
-    angle = fixed(math.degrees(state["pose"][2]), 1)
-    stress = fixed(100.0 * state["stress"]["of_yield"], 0)
+    texts, angle = state["texts"], fixed(math.degrees(state["pose"][2]), 1)
+    stress = f"stress {_of_yield(state['stress'], '.0f')}"
     pause = ", paused" if state["paused"] else ""
     if state["mode"] == "released":
-        time = quantity(state["simulated"], "s")
-        return f"Released{pause}: {angle}° after {time}, stress {stress} % of yield."
-    return f"Held at {angle}°{pause}: moment {texts['moment']}, stress {stress} % of yield."
+        return f"Released{pause}: {angle}° after {quantity(state['simulated'], 's')}, {stress}."
+    return f"Held at {angle}°{pause}: moment {texts['moment']}, {stress}."
 
 
 #: Fault -> the sentence that explains it and says what to do.
@@ -96,6 +105,9 @@ SENTENCES = {
     "jump": "The pose jumped: waiting for a second picture that agrees.",
     "absurd": "The pose is out of reach and was left out.",
     "no-equilibrium": "No equilibrium was found for this pose: the last good state is kept.",
+    "unstable": "Unstable under this load: only the hand holds the body. Contact with the ground is not "
+    "modelled.",
+    "grounded": "The body fell to the ground: time is paused. Contact with the ground is not modelled.",
     "off-path": "The markers are not where the pivot turns by itself: check their printed size with "
     "the ruler, or take the pose of the unloaded pivot as rest.",
     "swing-ended": "This design cannot take the swing over: it is held.",
@@ -116,66 +128,76 @@ SENTENCES = {
 }
 
 
-def curved(curve: Curve, strength: float) -> dict[str, Any]:
-    """Return what a moment alone does to a design, and where it yields, as plain numbers and a sentence."""
-    at, end = curve.where(strength), math.degrees(curve.rotation[-1])
+def curved(session: "Session") -> dict[str, Any]:
+    """Return what a moment alone does to the design at work, and where it yields, as plain numbers and a
+    sentence; and its case file."""
+    mechanics = session.mechanics
+    curve, piece = mechanics.curve, mechanics.piece
+    at, end = curve.where(piece.values.get("yield_strength")), math.degrees(curve.rotation[-1])
     text = f"yields at ±{math.degrees(at[0]):.1f}° by {quantity(at[1], 'N m')}" if at else ""
+    if piece.values.get("yield_strength") is None:
+        text = "yield strength is not known"
     return {
         "rotation": _plain(curve.rotation),
         "moment": _plain(curve.moment),
         "yields": at,
         "text": text or f"does not yield up to ±{end:.0f}°",
+        "case": piece.document if piece.name == OWN else None,
     }
 
 
-#: What a state tells of the bench, of its clock and of the mechanics as it is.
-OF_BENCH = ("paused", "preset", "drive", "solver", "sweeps", "sight", "wanted")
+#: What a state tells of the session, of its clock and of the mechanics as it is.
+OF_SESSION = ("paused", "drive", "solver", "sweeps", "sight", "wanted", "critical")
 OF_CLOCK = ("steps", "simulated")
 OF_NOW = ("iterations", "pose", "velocity", "centre", "force", "stiffness", "shape")
 
 
-def shown(bench: Bench) -> dict[str, Any]:
+def shown(session: "Session") -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
-    mechanics, placing, now = bench.mechanics, bench.placing, bench.mechanics.snapshot
-    values, moving = mechanics.values, mechanics.moving
-    given = ((bench, OF_BENCH), (bench.clock, OF_CLOCK), (now, OF_NOW))
+    mechanics, now = session.mechanics, session.mechanics.snapshot
+    placing, piece, moving = mechanics.placing, mechanics.piece, mechanics.moving
+    given = ((session, OF_SESSION), (session.clock, OF_CLOCK), (now, OF_NOW))
     state: dict[str, Any] = {name: getattr(source, name) for source, names in given for name in names} | {
-        "t": bench.time,
+        "t": session.time,
         "mode": "released" if moving else "held",
-        "values": values,
+        "preset": piece.name,
+        "values": piece.values,
         "control_points": mechanics.control_points,
-        "scale": scales(values),
+        "scale": mechanics.strips.scale,
         "displacement": [*(now.pose[:2] - placing.centre), now.pose[2]],
         "centre_shift": placing.crossing_shift(now.pose),
-        "grip": bench.grip if bench.drive in SPRUNG and not moving else None,
-        "sd": bench.readings.sd,
-        "force_sd": _force_sd(bench),
-        "stress": _stress(now.stress, values["yield_strength"]),
+        "grip": session.grip if session.drive in ("grip", "pull") and not moving else None,
+        "sd": session.readings.sd,
+        "force_sd": _force_sd(session),
+        "stress": _stress(now.stress, piece.values.get("yield_strength")),
         "energy": now.energy | {"start": mechanics.begun if moving else None},
         "placing": {
             "ground": placing.ground,
             "marker": placing.marker(now.pose),
-            "clamps": mechanics.pivot.clamp_points,
+            "clamps": placing.clamps,
             "centre": placing.centre,
+            "depth": mechanics.strips.depth[:, 0],
+            "length": mechanics.strips.length,
         },
-        "warnings": [{"code": code, "text": text} for code, text in bench.warnings.items()],
+        "warnings": [{"code": code, "text": text} for code, text in session.warnings.items()],
     }
     state = _plain(state)
-    state["texts"] = _readout(state, bench.readings.mean(now))
-    state["status"] = _sentence(state, state["texts"])
+    state["texts"] = _readout(state, session.readings.mean(now))
+    state["status"] = _sentence(state)
     return state
 
 
-def _stress(stress: Array, strength: float) -> dict[str, Any]:
-    """The largest stress (2, P) of the strips, where it is, and all of it, over their strength [Pa]."""
+def _stress(stress: Array, strength: float | None) -> dict[str, Any]:
+    """The largest stress (S, P) of the strips, where it is, and all of it, over their strength [Pa]; over the
+    largest, if that is not known."""
     strip, place = np.unravel_index(int(np.argmax(stress)), stress.shape)
     largest = float(stress[strip, place])
     return {
         "max": largest,
-        "of_yield": largest / strength,
+        "of_yield": None if strength is None else largest / strength,
         "strip": int(strip),
         "place": int(place),
-        "along": np.round(stress / strength, 4),
+        "along": np.round(stress / (strength or max(largest, 1.0)), 4),
     }
 
 
@@ -188,10 +210,10 @@ def _plain(value: Any) -> Any:
     return [_plain(each) for each in value] if isinstance(value, list | tuple) else value
 
 
-def _force_sd(bench: Bench) -> list[float | None] | None:
+def _force_sd(session: "Session") -> list[float | None] | None:
     """Standard deviations of force, moment and stiffness; none of forces that are nought by make."""
-    sd = bench.readings.force_sd
+    sd = session.readings.force_sd
     if sd is None:
         return None
     known: list[float | None] = [value if np.isfinite(value) else None for value in sd.tolist()]
-    return [None, None, *known[2:]] if bench.drive == "rotation" else known
+    return [None, None, *known[2:]] if session.drive == "rotation" else known

@@ -1,6 +1,7 @@
 """Static paths of plain pivots by the compiled kernel of many at once; what it cannot do goes one by one."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from studies.answers.answer import centre_shift, shift_error
 from studies.answers.models import model_of
-from studies.answers.quantities import QUANTITIES, quantities_of
+from studies.answers.quantities import QUANTITIES
 from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
@@ -70,11 +71,14 @@ class _Known(NamedTuple):
     stiffness: Any = 0.0
     strain_energy: Any = 0.0
     max_stress: Any = 0.0
-    gravity_energy: None = None
 
     def quantities(self) -> Columns:
         """Return the quantities that follow from it, by their key."""
-        return {each.key: values for each, values in quantities_of(self)}
+        found: dict[str, Any] = {}
+        for each in QUANTITIES:
+            with suppress(AttributeError):  # of something else
+                found[each.key] = each.of(self)
+        return {key: values for key, values in found.items() if values is not None}
 
 
 def takes(task: Task) -> bool:

@@ -35,5 +35,5 @@ def total(state):
 
 def seen(made, displacement, angle, **more):
     """The event of markers that show a body at a displacement [m] and angle [rad]."""
-    body = np.array([*(made.placing.centre + displacement), angle])
-    return {"do": "seen", "marker": made.placing.marker(body).tolist(), **more}
+    body = np.array([*(made.mechanics.placing.centre + displacement), angle])
+    return {"do": "seen", "marker": made.mechanics.placing.marker(body).tolist(), **more}

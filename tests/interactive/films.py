@@ -8,8 +8,8 @@ from functools import cache, lru_cache
 import numpy as np
 import pytest
 
-from spline_model import HeldPivot
-from studies.interactive.design import SIDE, Placing, build, turned
+from studies.interactive.design import SIDE, turned
+from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
@@ -25,9 +25,8 @@ PERIOD = 40
 def truth(k: int) -> tuple[float, float, float]:
     """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: the soft pivot's own path, 50 degrees to
     either side."""
-    pivot = build(PRESETS["polymer"].values())
     angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
-    x, y, turn = Placing.of(pivot).marker(HeldPivot(pivot).turn(angle).pose)
+    x, y, turn = Mechanics(PRESETS["polymer"]).marker_at(angle)
     return float(x), float(y), float(turn)
 
 

@@ -13,7 +13,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from PIL import Image
 
-from studies.interactive.design import Placing, build
+from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.films import encoded
 from studies.interactive.tracking.painter import Optics
@@ -123,12 +123,14 @@ def test_outlines_lie_on_the_markers(still):
 
 def true_clamps(optics, number):
     """Pictures (2, 2, 2) of the clamps and unit directions (2, 2, 2) of the strips there, by the truth."""
-    pivot = build(PRESETS["polymer"].values())
-    placing = Placing.of(pivot)
+    placing = Mechanics(PRESETS["polymer"]).placing
     body = placing.body(np.array(truth(number)))
     cos, sin = math.cos(body[2]), math.sin(body[2])
     turn = np.array([[cos, -sin], [sin, cos]])
-    points, tangents = pivot.clamp_points.copy(), pivot.clamp_directions.copy()
+    points = placing.clamps.copy()
+    tangents = np.repeat(
+        np.diff(points, axis=1) / np.linalg.norm(np.diff(points, axis=1), axis=2, keepdims=True), 2, axis=1
+    )
     points[:, 1] = (points[:, 1] - placing.centre) @ turn.T + body[:2]
     tangents[:, 1] = tangents[:, 1] @ turn.T
     here = project(optics.plane, points - placing.ground)

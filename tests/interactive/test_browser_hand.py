@@ -135,6 +135,71 @@ def test_solvers_are_chosen_by_their_names(page):
     page.wait("studio.state.solver === 'stable' && !document.getElementById('pace').textContent")
 
 
+#: Elements of the page that take the focus, by what they are.
+FOCUSED = {
+    "slider": "input[aria-label='strip thickness, slider']",
+    "list": "#solver",
+    "box": "#hand",
+    "button": "#csv",
+    "scrubber": "#scrub",
+}
+
+
+@pytest.mark.parametrize("element", FOCUSED)
+def test_keys_work_wherever_the_focus_is(page, element):
+    """Requirement: R releases and catches, and Z takes a change back, while a slider, a list, a box or a
+    button has the focus."""
+    typed(page, "strip width in mm", "12")
+    page.wait("studio.state.values.width === 0.012")
+    page.ask(f'document.querySelector("{FOCUSED[element]}").focus()')
+    page.key("z")
+    page.wait("studio.state.values.width === 0.01")
+    page.key("r")
+    page.wait("studio.state.mode === 'released'")
+    page.key("r")
+    page.wait("studio.state.mode === 'held'")
+    assert page.ask(f'document.activeElement === document.querySelector("{FOCUSED[element]}")')
+
+
+def test_keys_are_letters_in_a_text_field(page):
+    """Requirement: in a box for numbers no key does anything else."""
+    page.ask("document.querySelector(\"input[aria-label='strip width in mm']\").focus()")
+    page.key("r")
+    page.key("ArrowUp")
+    page.ask("new Promise((done) => setTimeout(done, 200))")
+    assert page.ask("studio.state.mode") == "held"
+    assert page.ask("studio.state.displacement[2]") == 0
+
+
+@pytest.mark.parametrize("name", ["silicon_pivot", "large_steel_pivot", "cantilever_with_body"])
+def test_picture_fits_every_design(page, name):
+    """Requirement: a design of 1 mm, of 0.3 m, or with one strip fills the picture, whatever it is; it can be
+    zoomed and fitted again, and no number is infinite."""
+    chosen(page, "preset", name)
+    page.wait(f"studio.state.preset === '{name}' && studio.drawn.t === studio.state.t")
+    size = "Math.hypot(...[0, 1].map((i) => view.to(...ends[0])[i] - view.to(...ends[1])[i])) / view.size[1]"
+    length = (
+        f"(() => {{ const view = studio.view, ends = studio.state.placing.clamps[0]; return {size}; }})()"
+    )
+    fitted = page.ask(length)
+    assert 0.2 < fitted < 0.7
+    page.key("+")
+    assert page.ask(length) == pytest.approx(1.25 * fitted)
+    page.key("h")
+    assert page.ask(length) == pytest.approx(fitted)
+    assert not re.search("Infinity|NaN|undefined|null", page.ask("document.body.textContent"))
+
+
+def test_unstable_load_is_named_on_the_page(page):
+    """Requirement: beyond its critical load the page says so, with the load, the negative stiffness, and that
+    contact is not modelled."""
+    typed(page, "load, downward in N", "0.4")
+    text = page.wait("(t => /critical load/.test(t) && t)(document.getElementById('faults').textContent)")
+    assert re.search(r"Unstable under this load.*Contact.*not modelled.*283 mN.*stiffness -", text)
+    page.key("z")
+    page.wait("studio.state.values.load === 0")
+
+
 def test_parameters_are_typed_in_their_units(page):
     """Requirement: a value typed in its unit reaches the session in SI, undo brings the former one back; one
     beyond the slider's ends is named and taken back."""
@@ -142,9 +207,9 @@ def test_parameters_are_typed_in_their_units(page):
     page.wait("Math.abs(studio.state.values.thickness - 8e-4) < 1e-12")
     page.key("z")
     page.wait("Math.abs(studio.state.values.thickness - 5e-4) < 1e-6")
-    typed(page, "strip thickness in mm", "80")
+    typed(page, "strip thickness in mm", "8000")
     said = page.ask("document.getElementById('note').textContent")
-    assert said == "strip thickness: from 0.1 to 8 mm."
+    assert said == "strip thickness: from 0.0001 to 1000 mm."
     assert page.ask("document.querySelector(\"input[aria-label='strip thickness in mm']\").value") == "0.5"
 
 

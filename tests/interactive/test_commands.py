@@ -49,8 +49,7 @@ WORDS = {
     "--film pyproject.toml": "--film: got pyproject.toml, expected a film that OpenCV reads",
     "--film demo --camera 0": "--camera: got 0 beside --film, expected one of them",
     "--preset rubber": "preset: got 'rubber', expected one of polymer, table-1",
-    "titanium_pivot": "titanium_pivot.toml: length: got 30, expected 40 to 120 mm",
-    "living_hinge": "got a mechanism, expected a cross-axis pivot",
+    "four_bar_of_flexures": "bodies: got 3, expected one body on strips from the ground",
     "polymer_pivot --preset polymer": "--preset: got polymer beside a case, expected one of them",
     "--port 99999": "--port: got 99999, expected 0 (any) to 65535",
     "--camera 77": "--camera: got no picture from camera 77 of this machine, expected one that is",
@@ -112,7 +111,7 @@ def test_sheet_is_read_in_size():
     tracker = Tracker()
     tracker.see(grey, 0.0)  # it learns that these values are light itself, as no camera's are
     event = tracker.see(grey, 0.04)
-    assert event["marker"] == pytest.approx(Session().placing.rest.tolist(), abs=1e-4)
+    assert event["marker"] == pytest.approx(Session().mechanics.placing.rest.tolist(), abs=1e-4)
     for quad in np.array(event["quads"]):
         sides = np.linalg.norm(quad - np.roll(quad, 1, axis=0), axis=1) / 5.0
         assert sides == pytest.approx([60.0] * 4, abs=0.1)

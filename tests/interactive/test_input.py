@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.design import inverse
-from studies.interactive.presets import PARAMETERS, PRESETS
-from studies.interactive.session import EVENTS, Session
+from studies.interactive.design import turned as rotated
+from studies.interactive.input import EVENTS
+from studies.interactive.presets import PARAMETERS, PRESETS, SPAN
+from studies.interactive.session import Session
 from tests.interactive.events import FRAME, codes, seen, session, turned
 
 
@@ -46,26 +47,29 @@ def test_absurd_poses_are_left_out(pose):
 @pytest.mark.parametrize(
     ("event", "message"),
     [
-        ({"do": "pose", "pose": [0, 0, math.nan]}, "pose: got nan, expected a finite number"),
+        (
+            {"do": "pose", "pose": [0, 0, math.nan]},
+            "pose: got \\[0, 0, nan\\], expected three finite numbers",
+        ),
         ({"do": "pose", "pose": [0, 0]}, r"pose: got \[0, 0\], expected three finite numbers"),
-        ({"do": "seen", "marker": "here"}, "marker: got 'here'"),
+        ({"do": "seen", "marker": "here"}, 'marker: got the text "here"'),
         ({"do": "seen", "marker": [0, 0, 0], "faults": 3}, "faults: got 3, expected a list of texts"),
         ({"do": "dance"}, "do: got 'dance', expected one of"),
-        ({}, "do: got None"),
+        ({}, "do: got 'None'"),
         ({"do": "tick", "t": math.inf}, "t: got inf"),
         (
             {"do": "parameter", "name": "thickness", "value": -1.0},
-            "thickness: got -1000, expected 0.1 to 8 mm",
+            "thickness: got -1000, expected 0.0001 to 1000 mm",
         ),
         ({"do": "parameter", "name": "colour", "value": 1.0}, "parameter: got 'colour'"),
         ({"do": "preset", "name": "rubber"}, "preset: got 'rubber', expected one of polymer"),
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
-        ({"do": "drive", "by": "will"}, "by: got 'will'"),
+        ({"do": "drive", "by": "will"}, 'by: got the text "will"'),
         (
             {"do": "solver", "name": "printed", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",
         ),
-        ({"do": "setup", "preset": "polymer"}, "drive: got None"),
+        ({"do": "setup", "preset": "polymer"}, "values: got None"),
     ],
     ids=str,
 )
@@ -125,16 +129,25 @@ def test_markers_keep_their_places_on_another_design(name, value):
         assert state["stress"]["of_yield"] < 1e-9
 
 
+def ends(parameter):
+    """The ends of the slider of a parameter of the soft pivot, in the scale of its load."""
+    if parameter.scale == "linear":
+        return parameter.low, parameter.high
+    if parameter.scale == "load":
+        return -1e3, 1e3
+    return [PRESETS["polymer"].values[parameter.name] * times for times in (1 / SPAN, SPAN)]
+
+
 def test_every_parameter_can_be_set_over_its_range():
     """Requirement: both ends of every slider give a design that is solved or a sentence."""
     for name, parameter in PARAMETERS.items():
-        for value in (parameter.low, parameter.high):
+        for value in ends(parameter):
             made = session()
             turned(made, 20)
             state = made.feed({"do": "parameter", "name": name, "value": value, "t": 1.0})
             assert state["values"][name] == value
-            known = [] if name != "load" else ["no-equilibrium", "coarse"]
-            assert codes(state) in ([], known)
+            known = [] if name != "load" else ["no-equilibrium", "unstable", "coarse"]
+            assert set(codes(state)) <= set(known)
 
 
 @pytest.mark.slow
@@ -143,8 +156,8 @@ def test_camera_faults_are_named_and_never_shown_as_right():
     the first two leave the pose as it was."""
     made = session(drive="pose")
     start = made.feed({**seen(made, np.zeros(2), 0.0), "t": 0.0})
-    rest = made.placing.rest
-    state = made.feed({"do": "seen", "marker": inverse(rest).tolist(), "t": 0.04})
+    rest = made.mechanics.placing.rest
+    state = made.feed({"do": "seen", "marker": [*rotated(-rest[2], -rest[:2]), -rest[2]], "t": 0.04})
     assert codes(state) == ["swapped"]
     assert state["pose"] == start["pose"]
     far = session()
@@ -167,7 +180,7 @@ def test_wrong_print_size_shows_off_the_path(preset, size):
     """Requirement: markers printed 3 % too small or large, which no residual tells, are named in the first
     picture, and no longer when their pose is taken as rest."""
     made = Session(preset)
-    marker = made.placing.rest * np.array([1 / size, 1 / size, 1.0])
+    marker = made.mechanics.placing.rest * np.array([1 / size, 1 / size, 1.0])
     state = made.feed({"do": "seen", "marker": marker.tolist(), "t": 0.0})
     assert "off-path" in codes(state)
     assert any("ruler" in warning["text"] for warning in state["warnings"])
@@ -177,9 +190,9 @@ def test_wrong_print_size_shows_off_the_path(preset, size):
 
 def test_every_action_is_known_to_the_protocol():
     """Requirement: the page can send every event that the session takes."""
-    from studies.interactive.web.protocol import FIELDS
+    from studies.interactive.web.protocol import PAGE_EVENTS
 
-    assert set(EVENTS) <= set(FIELDS)
+    assert set(EVENTS) <= set(PAGE_EVENTS)
 
 
 def test_holding_the_whole_pose_begins_where_the_body_is():

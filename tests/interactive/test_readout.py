@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies.interactive.presets import PRESETS
-from studies.interactive.view import fixed, quantity, scales
+from studies.interactive.view import fixed, quantity
 from tests.interactive.events import seen, session, turned
 
 
@@ -50,7 +50,7 @@ def test_pivot_at_rest_reads_nought(preset, drive):
 def test_scales_are_those_of_bending():
     """Requirement: the scale of moments is EI/L: half of the pivot's stiffness at rest."""
     state = turned(session("table-1"), 0)
-    assert scales(state["values"])["moment"] == pytest.approx(state["stiffness"] / 2.0, rel=1e-3)
+    assert state["scale"]["moment"] == pytest.approx(state["stiffness"] / 2.0, rel=1e-3)
 
 
 @pytest.mark.parametrize("preset", PRESETS)

@@ -11,7 +11,6 @@ from spline_model import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
 from studies.interactive import presets
-from studies.interactive.design import build
 from studies.interactive.recording import Recorder, mark, replay
 from studies.interactive.session import Session
 from studies.record.source import ROOT
@@ -46,9 +45,11 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     monkeypatch.setattr(presets, "PRESETS", dict(presets.PRESETS))
     problem = named_case(FOLDER / "spring_steel_pivot.toml")
     presets.PRESETS[presets.OWN] = presets.own(str(FOLDER / "spring_steel_pivot.toml"))
-    values = presets.preset(presets.OWN).values()
+    values = presets.preset(presets.OWN).values
     assert (values["length"], values["thickness"]) == (problem.length, pytest.approx(1e-3))
-    frequency = natural_frequencies(build(values), rotation=0.0, count=1).frequency[0]
+    frequency = natural_frequencies(presets.preset(presets.OWN).modelled(), rotation=0.0, count=1).frequency[
+        0
+    ]
     assert values["time_scale"] * frequency == pytest.approx(1.0)
     lines = recorded(presets.OWN)
     monkeypatch.undo()

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import secrets
 import socket as sockets
 import time
 
@@ -17,7 +18,7 @@ from websockets.sync.client import connect
 from studies.commands import interactive
 from studies.errors import BadInput
 from studies.interactive.web import protocol
-from studies.interactive.web.server import Server, Settings
+from studies.interactive.web.server import MOST_SOCKETS, Server, Settings
 from tests.interactive.sockets import answer, closing, emptied, get, opened, say, told
 
 
@@ -26,7 +27,7 @@ def test_page_is_served_with_its_headers(server):
     nothing but this server, and run no script from a string."""
     response, body = get(server, "/")
     assert (response.status, b"<!doctype html>" in body) == (200, True)
-    for name, value in protocol.Door(server.port).headers().items():
+    for name, value in protocol.headers([f"127.0.0.1:{server.port}", f"localhost:{server.port}"]).items():
         assert response.getheader(name) == value
     policy = response.getheader("Content-Security-Policy")
     assert "default-src 'none'" in policy and "frame-ancestors 'none'" in policy
@@ -145,7 +146,7 @@ def test_sockets_are_few(server):
     """Requirement: no more than four pages at a time; a closed one makes room."""
     assert emptied(server)  # of pages of the tests before
     with contextlib.ExitStack() as stack:
-        for _ in range(protocol.MOST_SOCKETS):
+        for _ in range(MOST_SOCKETS):
             stack.enter_context(opened(server))
         with opened(server, hello=False) as socket:
             say(socket, do="hello", version=1, token=server.token)
@@ -159,7 +160,7 @@ def test_sockets_are_few(server):
 def test_sockets_without_the_token_take_no_place(server):
     """Requirement: sockets that have not shown the token keep nobody out."""
     with contextlib.ExitStack() as stack:
-        for _ in range(2 * protocol.MOST_SOCKETS):
+        for _ in range(2 * MOST_SOCKETS):
             stack.enter_context(opened(server, hello=False))
         with opened(server) as socket:
             assert told(socket, do="pose", pose=[0, 0, 0.1])["pose"][2] == pytest.approx(0.1)
@@ -209,7 +210,7 @@ def test_page_is_shared_with_a_network_of_ones_own_only(address):
 
 def test_shared_link_is_said_plainly_and_as_a_code(capsys):
     """Requirement: the link is printed with what it opens, and as a code that a phone's camera reads."""
-    link = f"http://{NETWORK}:41234/#token={protocol.Token()}"
+    link = f"http://{NETWORK}:41234/#token={secrets.token_urlsafe(24)}"
     interactive._say_shared(link, "server")
     said = capsys.readouterr().err
     for words in (link, "SEES WHAT THIS MACHINE'S CAMERA SEES", "nothing is encrypted"):

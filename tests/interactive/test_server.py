@@ -20,8 +20,8 @@ from tests.interactive.sockets import answer, opened, say, told
 def test_bad_numbers_are_answered_and_change_nothing(server):
     """Requirement: an event with a number out of range is answered by an error; the socket lives on."""
     with opened(server) as socket:
-        say(socket, do="parameter", name="length", value=7.0)
-        assert "length: got 7000, expected 40 to 120 mm" in answer(socket, "error")["text"]
+        say(socket, do="parameter", name="length", value=70.0)
+        assert "length: got 70000, expected 0.01 to 10000 mm" in answer(socket, "error")["text"]
         assert told(socket, do="pose", pose=[0, 0, 0.2])["pose"][2] == pytest.approx(0.2)
 
 

@@ -19,7 +19,7 @@ def test_state_is_plain_finite_numbers(preset):
     state = turned(session(preset), 10, 20)
     assert json.loads(json.dumps(state, allow_nan=False)) == state
     assert state["status"].startswith("Held at 20.0°: moment ")
-    assert state["values"] == PRESETS[preset].values()
+    assert state["values"] == PRESETS[preset].values
 
 
 def apart(quantity, degrees=40):
@@ -64,9 +64,8 @@ def test_instantaneous_centre_is_that_of_the_path():
 @pytest.mark.parametrize("solver", ["stable", "energy"])
 @pytest.mark.parametrize("preset", PRESETS)
 def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
-    """Requirement: N frames are exactly 4 N steps; the first state is the held one; energy never rises, and
-    what is stored, dissipated by the strips and lost to the steps is what the body had. The soft pivot, whose
-    strips are damped, is resolved: its strips take more than its steps."""
+    """Requirement: N frames are exactly 4 N steps; the first state is the held one; energy never rises. The
+    soft pivot is resolved."""
     made = session(preset)
     made.feed({"do": "solver", "name": solver, "t": 0.0})
     held = turned(made, 15, 30, 40)
@@ -79,13 +78,31 @@ def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
         assert total(state) <= before + 1e-6 * start
         before = total(state)
     assert state["steps"] == 50 * STEPS_A_FRAME
-    assert state["simulated"] == pytest.approx(2.0 * PRESETS[preset].time_scale)
+    assert state["simulated"] == pytest.approx(2.0 * PRESETS[preset].values["time_scale"])
     assert state["pose"][2] != pytest.approx(held["pose"][2], abs=0.01)
-    energy = state["energy"]
-    assert total(state) + energy["dissipated"] + energy["lost"] == pytest.approx(energy["start"], rel=1e-12)
-    if preset == "polymer":
-        assert codes(state) == []
-        assert energy["dissipated"] > abs(energy["lost"])
+    assert preset != "polymer" or codes(state) == []
+
+
+def swung(solver, load, degrees=90, frames=25, finer=1):
+    """Energies, over that at the start, of the soft pivot, a second after it is let go."""
+    made = session()
+    made.feed({"do": "parameter", "name": "load", "value": load, "t": 0.0})
+    made.feed({"do": "solver", "name": solver, "t": 0.0})
+    turned(made, *range(10, degrees + 1, 10))
+    made.feed({"do": "parameter", "name": "time_scale", "value": 1.0 / finer, "t": 0.0})
+    made.feed({"do": "release", "t": 1.0})
+    for k in range(frames * finer):
+        state = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
+    return {name: value / state["energy"]["start"] for name, value in state["energy"].items()}
+
+
+@pytest.mark.parametrize("load", [0.0, 0.1])
+def test_dissipated_energy_is_that_of_another_solver(load):
+    """Requirement: what the default solver shows as dissipated at its default step is that of the
+    energy-consistent motion at steps ten times shorter, to 2 % of the energy at the release."""
+    known = swung("energy", load, finer=10)["dissipated"]
+    assert known > 0.1
+    gates.hold("dissipated_energy", lambda **early: abs(swung("stable", load, **early)["dissipated"] - known))
 
 
 def test_steps_follow_the_clock_of_a_camera():
@@ -167,7 +184,7 @@ def test_uncertainty_is_carried_to_the_force():
     sd = [3e-5, 3e-5, 5e-4]
     state = made.feed({**seen(made, np.zeros(2), 0.0), "sd": sd, "t": 0.0})
     assert state["sd"][2] == sd[2]
-    marker, body = made.placing.marker(made.mechanics.snapshot.pose), made.placing.body
+    marker, body = made.mechanics.placing.marker(made.mechanics.snapshot.pose), made.mechanics.placing.body
     ways = [body(marker + way) - body(marker - way) for way in 1e-5 * np.eye(3)]
     spread = np.array(ways).T / 2e-5 * sd
     assert state["sd"] == pytest.approx(np.linalg.norm(spread, axis=1).tolist(), rel=1e-7)

@@ -194,7 +194,7 @@ def page(pivot):
     from studies.interactive.session import Session
 
     made = Session("polymer")
-    made.feed({"do": "preset", "name": presets.OWN, "values": presets.own(str(pivot)).values(), "t": 0.0})
+    made.feed({"do": "preset", "name": presets.OWN, "values": presets.own(str(pivot)).values, "t": 0.0})
     made.feed({"do": "drive", "by": "rotation", "t": 0.0})
     return made
 

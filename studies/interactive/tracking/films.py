@@ -10,9 +10,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from spline_model.held import HeldPivot
 from studies.errors import BadInput
-from studies.interactive.design import Placing, build, turned
+from studies.interactive.design import turned
+from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.painter import Finger, Marker, Optics, Painter
@@ -87,9 +87,8 @@ class Film:
 def demo_film() -> Film:
     """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
     else."""
-    pivot = build(PRESETS["polymer"].values())
-    placing, solver = Placing.of(pivot), HeldPivot(pivot)
-    poses = [placing.marker(solver.turn(rotation(k)).pose) for k in range(FRAMES)]
+    mechanics = Mechanics(PRESETS["polymer"])
+    poses = [mechanics.marker_at(rotation(k)) for k in range(FRAMES)]
 
     def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:
         moving = Marker(number=1, pose=tuple(poses[k]))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from studies.errors import BadInput
-from studies.interactive.design import PRINTED, SIDE, Placing, build
+from studies.interactive.design import PRINTED, SIDE, Placing
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.painter import MARGIN
@@ -43,9 +43,8 @@ def page() -> Figure:
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0, PAGE[0]), ylim=(0, PAGE[1]), aspect="equal")
     axes.axis("off")
-    pivot = build(PRESETS["polymer"].values())
-    placing = Placing.of(pivot)
-    clamps = 1e3 * pivot.clamp_points + ORIGIN
+    placing = Placing(PRESETS["polymer"].design)
+    clamps = 1e3 * placing.clamps + ORIGIN
     for strip in clamps:
         axes.plot(*strip.T, color="#999999", linewidth=0.8, linestyle=(0, (4, 3)))
     for end, word in ((0, "ground"), (1, "moving body")):

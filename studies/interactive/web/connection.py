@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import time
+import tomllib
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,8 +15,7 @@ from starlette.websockets import WebSocket
 
 from studies.errors import BadInput
 from studies.interactive import presets
-from studies.interactive.bench import DRIVES
-from studies.interactive.input import MOST_STEPS
+from studies.interactive.input import DRIVES, MOST_STEPS, checked
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import SOLVERS
 from studies.interactive.recording import Player, Recorder
@@ -34,8 +34,6 @@ LOG = logging.getLogger(__name__)
 TICK, STILL, IN_FLIGHT = 0.04, 0.2, 2
 #: Part of a frame's time that the steps of a released body may take.
 SHARE = 0.6
-#: Printed sides that are taken [m].
-SIDES = (0.01, 0.3)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,8 +73,9 @@ class Connection:
         self._wake, self._room = asyncio.Event(), asyncio.Semaphore(IN_FLIGHT)
         self._last_picture = -1e9
         self._offset: float | None = None
-        self._player = Player()
+        self._player, self._file = Player(), b""
         self._curved: Mechanics | None = None
+        self._weighed: Mechanics | None = None
         self._costs, self._send_ms = deque[float](maxlen=3), 0.0
 
     async def serve(self) -> None:
@@ -127,8 +126,8 @@ class Connection:
                 continue
             if not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
-            if data is not None and (part := protocol.sent_part(data)) is not None:
-                await self._part(*part)
+            if data is not None and len(data) >= protocol.PART.size and data[0] in protocol.FILES:
+                await self._part(data)
             elif data is not None:
                 self._pending = protocol.sent_picture(data)
                 self._wake.set()
@@ -152,11 +151,12 @@ class Connection:
         elif self._player.on:
             return  # a hand that moves while a session is replayed moves nothing
         elif name == "save":
-            await self._say({"kind": "case", "text": presets.as_case(self.session.mechanics.values)})
+            await self._say({"kind": "case", "text": self.session.mechanics.piece.as_case()})
         elif name == "record":
             await self._record(event.get("on") is True)
         elif name == "size":
-            self._set_side(event.get("side_mm"))
+            side = checked(event, protocol.PAGE_EVENTS["size"])["side_mm"] / 1e3
+            self._tracker = Tracker(side=side, camera=self._settings.calibration)
         elif name == "hello":
             raise BadInput("do: got a second hello, expected one")
         else:
@@ -168,35 +168,54 @@ class Connection:
         await self._socket.send_text(protocol.text(content))
         self._send_ms = 1e3 * (time.perf_counter() - begin)
 
-    async def _part(self, kind: int, last: bool, data: bytes) -> None:
+    async def _part(self, data: bytes) -> None:
         """Take a part of a file; the whole of it is replayed, or opened as a design."""
-        whole = self._player.whole(last, data)
-        if whole is None:
+        kind, version, last = protocol.PART.unpack_from(data)
+        self._file += data[protocol.PART.size :]
+        if version != protocol.VERSION or len(self._file) > Recorder.MOST:
+            raise BadInput(
+                f"file: got version {version}, {len(self._file)} bytes, expected {Recorder.MOST} at most"
+            )
+        if not last:
             return
+        whole, self._file = self._file.decode("utf-8", errors="replace"), b""
         try:
             if kind == protocol.REPLAY:
                 if self.session.mechanics.moving:
                     await self._feed({"do": "pause"}, None)
                 self._player.play(whole.splitlines(), self._say, self._show_curve)
             else:
-                values = await asyncio.to_thread(presets.values_of, whole)
-                await self._text({"do": "preset", "name": presets.OWN, "values": values})
+                await self._open(whole)
         except BadInput as error:
             await self._say({"kind": "error", "text": str(error)})
 
+    async def _open(self, text: str) -> None:
+        """Open the text of a case file as a design."""
+        try:
+            document = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise BadInput(f"design.toml: got no TOML, expected a case file ({error})") from None
+        piece = await asyncio.to_thread(presets.opened, presets.OWN, document)
+        await self._text({"do": "preset", "name": piece.name, "case": document, "values": piece.values})
+
     async def _show_curve(self, session: Session) -> None:
         """Send what a moment alone does to a design that is another one than the last."""
-        mechanics = session.mechanics
-        if self._curved is not mechanics:
-            self._curved = mechanics
+        if self._curved is not session.mechanics:
+            self._curved = session.mechanics
             async with self._lock:
-                curve = await asyncio.to_thread(lambda: mechanics.curve)
-            await self._say({"kind": "curve", **curved(curve, mechanics.values["yield_strength"])})
+                curve = await asyncio.to_thread(curved, session)
+            await self._say({"kind": "curve", **curve})
 
-    def _set_side(self, side_mm: object) -> None:
-        if not presets.finite(side_mm) or not SIDES[0] <= side_mm / 1e3 <= SIDES[1]:
-            raise BadInput(f"side_mm: got {side_mm!r}, expected {SIDES[0] * 1e3:g} to {SIDES[1] * 1e3:g}")
-        self._tracker = Tracker(side=side_mm / 1e3, camera=self._settings.calibration)
+    async def _weigh(self) -> None:
+        """Tell the session under which load its design loses its stability, once for each."""
+        session, mechanics = self.session, self.session.mechanics
+        known = session.critical is not None or self._weighed is mechanics
+        if known or mechanics.moving or not mechanics.piece.values["load"]:
+            return
+        self._weighed = mechanics
+        force = await asyncio.to_thread(mechanics.piece.critical_load)
+        if session.mechanics is mechanics:
+            await self._feed({"do": "critical", "force": force}, None)
 
     async def _record(self, on: bool) -> None:
         """Begin a recording, or end it and send its lines."""
@@ -257,6 +276,7 @@ class Connection:
             await asyncio.sleep(due - time.monotonic())
             await self._catch_up()
             await self._player.over()
+            await self._weigh()
             still = time.monotonic() - self._last_picture > STILL
             if still and self.session.mechanics.moving and not self.session.paused:
                 await self._feed({"do": "tick"}, None)

@@ -1,21 +1,18 @@
 """Messages of the web socket: text events up, pictures up, states down; everything that comes in is checked
 here."""
 
-import hmac
 import json
-import secrets
 import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from studies.cases.rules import TRUTH, number
 from studies.errors import BadInput
-from studies.interactive.input import EVENTS
+from studies.interactive.input import ANYTHING, EVENTS, Events, Fields, fields
 
-VERSION = 1
 #: Longest text and picture that are taken [bytes], and the largest picture [px].
 LONGEST_TEXT = 4096
 LARGEST_PICTURE = 3_000_000
@@ -23,24 +20,26 @@ MOST_WIDTH, MOST_HEIGHT = 1920, 1080
 LEAST_SIDE = 64
 #: Picture: kind, version, seq, width, height, time of capture [ms]; its grey levels follow, row after row.
 HEADER = struct.Struct("<BB2xIHHd")
-PICTURE = 1
-#: Part of a file, kind, version and whether it is the last; of a session to be replayed, or of a design.
-PART = struct.Struct("<BBB")
-REPLAY, DESIGN = 2, 3
+#: First byte of a binary message: a picture, or a part of a file, of a session to be replayed or of a design;
+#: the second byte, the version of all messages. A part says whether it is the last before its bytes follow.
+PICTURE, VERSION = 1, 1
+FILES = REPLAY, DESIGN = 2, 3
+PART = struct.Struct("<BB?")
 
 #: Messages a second that a connection may send, and how many at once; so many of them are kept from poses,
 #: of which only the newest counts: they never use up what a key or a button needs.
 RATE, BURST, KEPT = 120.0, 120.0, 20.0
 
-#: Event -> the fields it may have besides "do" and "seq": those of the session, and the page's own.
-FIELDS: dict[str, tuple[str, ...]] = {
-    "hello": ("version", "token"),
+#: What every event of the page may have, and those of its own.
+_ALWAYS: Fields = {"seq?": ANYTHING}
+PAGE_EVENTS: Events = {
+    "hello": {"version": ANYTHING, "token": ANYTHING},
     **EVENTS,
-    "record": ("on",),
-    "size": ("side_mm",),
-    "shown": (),
-    "save": (),
-    "live": (),
+    "record": {"on": TRUTH},
+    "size": {"side_mm": number("a printed side from 10 to 300 mm", 10.0, 300.0, closed="low and high")},
+    "shown": {},
+    "save": {},
+    "live": {},
 }
 
 
@@ -58,25 +57,8 @@ def event(text: str) -> dict[str, Any]:
         raise BadInput("message: got no JSON, expected an object") from None
     if not isinstance(content, dict):
         raise BadInput(f"message: got {type(content).__name__}, expected an object")
-    fields = FIELDS.get(str(content.get("do")))
-    if fields is None:
-        raise BadInput(f"do: got {str(content.get('do'))[:40]!r}, expected one of {', '.join(FIELDS)}")
-    odd = set(content) - {*fields, "do", "seq"}
-    if odd:
-        raise BadInput(
-            f"{min(odd)[:40]!r}: got an unknown field of {content['do']}, expected {sorted(fields)}"
-        )
+    fields(content, PAGE_EVENTS, _ALWAYS)
     return content
-
-
-def sent_part(data: bytes) -> tuple[int, bool, bytes] | None:
-    """Return kind, whether it is the last, and bytes of a file's part in a binary message, None of others."""
-    if len(data) < PART.size or data[0] not in (REPLAY, DESIGN):
-        return None
-    kind, version, last = PART.unpack_from(data)
-    if version != VERSION or last > 1:
-        raise BadInput(f"file: got version {version}, last {last}, expected {VERSION}, 0 or 1")
-    return kind, bool(last), data[PART.size :]
 
 
 def _refuse(constant: str) -> float:
@@ -132,55 +114,21 @@ class Meter:
         return True
 
 
-#: Bytes of the token that stands in the address behind the #.
-TOKEN_BYTES = 24
-#: Sockets at a time.
-MOST_SOCKETS = 4
-#: Names of this machine; who shares the page adds the one by which its network knows it.
-HOSTS = ("127.0.0.1", "localhost")
-
-
-class Token(str):
-    """What a page must know to be answered; one that cannot be guessed."""
-
-    def __new__(cls) -> Self:
-        """Make another one."""
-        return super().__new__(cls, secrets.token_urlsafe(TOKEN_BYTES))
-
-    def fits(self, given: object) -> bool:
-        """Return whether `given` is the token, in a time that does not depend on where they differ."""
-        return isinstance(given, str) and hmac.compare_digest(self.encode(), given.encode())
-
-
-@dataclass(frozen=True)
-class Door:
-    """Where a server is entered: its port, and the names of its machine that no foreign page can take."""
-
-    port: int
-    names: Sequence[str] = HOSTS
-
-    def good_host(self, host: str | None) -> bool:
-        """Return whether a request's Host is this machine."""
-        return host in {f"{name}:{self.port}" for name in self.names}
-
-    def good_origin(self, origin: str | None) -> bool:
-        """Return whether a socket was opened by a page of this server."""
-        return origin in {f"http://{name}:{self.port}" for name in self.names}
-
-    def headers(self) -> dict[str, str]:
-        """Return the headers of every answer: nothing from elsewhere is loaded, framed, sniffed or kept."""
-        sockets = " ".join(f"ws://{name}:{self.port}" for name in self.names)
-        policy = (
-            "default-src 'none'; script-src 'self'; style-src 'self'; "
-            "img-src 'self' blob: data:; media-src blob:; "
-            f"connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
-        )
-        return {
-            "Content-Security-Policy": policy,
-            "X-Content-Type-Options": "nosniff",
-            "Cross-Origin-Opener-Policy": "same-origin",
-            "Cross-Origin-Resource-Policy": "same-origin",
-            "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
-            "Referrer-Policy": "no-referrer",
-            "Cache-Control": "no-store",
-        }
+def headers(hosts: Sequence[str]) -> dict[str, str]:
+    """Return the headers of every answer of a server that is reached by these hosts with their port: nothing
+    from elsewhere is loaded, framed, sniffed or kept."""
+    policy = (
+        "default-src 'none'; script-src 'self'; style-src 'self'; "
+        "img-src 'self' blob: data:; media-src blob:; "
+        f"connect-src 'self' {' '.join(f'ws://{host}' for host in hosts)}; "
+        "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+    )
+    return {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Permissions-Policy": "camera=(self), microphone=(), geolocation=()",
+        "Referrer-Policy": "no-referrer",
+        "Cache-Control": "no-store",
+    }

@@ -2,9 +2,11 @@
 shares it, at one address of the own network."""
 
 import asyncio
+import hmac
 import ipaddress
 import logging
 import mimetypes
+import secrets
 import socket as sockets
 import threading
 import time
@@ -15,6 +17,7 @@ from typing import Self
 
 import uvicorn
 from starlette.applications import Starlette
+from starlette.datastructures import Headers
 from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
@@ -40,6 +43,8 @@ PAGE = Path(__file__).parent / "page"
 #: Closing codes: bad message, no right, too many.
 BAD, FORBIDDEN, FULL = 4400, 4403, 4429
 LAST_PORT = 65535
+#: Bytes of the token that stands in the address behind the #; sockets at a time; names of this machine.
+TOKEN_BYTES, MOST_SOCKETS, HOSTS = 24, 4, ("127.0.0.1", "localhost")
 #: How long a socket may take to say hello [s].
 PATIENCE = 5.0
 
@@ -49,7 +54,7 @@ class Server:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.token = protocol.Token()
+        self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.port = settings.port
         self.open = 0
         self._listeners: list[sockets.socket] = []
@@ -64,24 +69,21 @@ class Server:
         )
 
     @property
-    def _door(self) -> protocol.Door:
+    def _hosts(self) -> list[str]:
+        """Names of this machine with the port; who shares the page adds the one by which its network knows
+        it."""
         share = self.settings.share
-        return protocol.Door(self.port, (*protocol.HOSTS, *(() if share is None else (share,))))
+        return [f"{name}:{self.port}" for name in (*HOSTS, *(() if share is None else (share,)))]
 
     async def _guarded(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or refuse that of a foreign host or page."""
-        given = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        refusal = None
-        if not self._door.good_host(given.get("host")):
-            refusal = PlainTextResponse("host: expected this machine", status_code=400)
-        elif scope["type"] == "websocket" and not self._door.good_origin(given.get("origin")):
-            refusal = PlainTextResponse("origin: expected this page", status_code=403)
-        if refusal is None:
-            await self._app(scope, receive, send)
-        elif scope["type"] == "http":
-            await refusal(scope, receive, send)
+        """Answer a request, or refuse that of a foreign host (DNS rebinding) or page."""
+        given, hosts = Headers(scope=scope), self._hosts
+        if given.get("host") not in hosts:
+            await PlainTextResponse("host: expected this machine", status_code=400)(scope, receive, send)
+        elif scope["type"] == "websocket" and given.get("origin") not in [f"http://{each}" for each in hosts]:
+            await PlainTextResponse("origin: expected this page", status_code=403)(scope, receive, send)
         else:
-            await WebSocket(scope, receive, send).send_denial_response(refusal)
+            await self._app(scope, receive, send)
 
     @property
     def address(self) -> str:
@@ -138,7 +140,7 @@ class Server:
                 ws_per_message_deflate=False,
                 timeout_graceful_shutdown=1,
                 server_header=False,
-                headers=list(self._door.headers().items()),
+                headers=list(protocol.headers(self._hosts).items()),
             )
         )
         await self._uvicorn.serve(sockets=self._listeners)
@@ -167,16 +169,24 @@ class Server:
         await socket.accept()
         begin, counted = time.monotonic(), False
         try:
-            if not await self._hello(socket):
-                return
-            if self.open >= protocol.MOST_SOCKETS:  # who has no token takes no page's place
+            async with asyncio.timeout(PATIENCE):
+                hello = protocol.event(await socket.receive_text())
+            if hello["do"] != "hello" or hello.get("version") != protocol.VERSION:
+                raise BadInput("do: got no hello of this version, expected one first")
+            if not hmac.compare_digest(str(hello.get("token")).encode(), self.token.encode()):
+                await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
+            elif self.open >= MOST_SOCKETS:  # who has no token takes no page's place
                 await _close(socket, FULL, "too many pages are open")
-                return
-            counted = True
-            self.open += 1
-            await Connection(socket, self.settings, first=self.open == 1).serve()
+            else:
+                counted = True
+                self.open += 1
+                await Connection(socket, self.settings, first=self.open == 1).serve()
         except BadInput as error:
             await _close(socket, BAD, str(error))
+        except TimeoutError:
+            await _close(socket, FORBIDDEN, "no hello")
+        except KeyError:
+            await _close(socket, BAD, "message: got bytes, expected a hello")
         except WebSocketDisconnect:
             pass
         except RuntimeError as error:
@@ -184,23 +194,6 @@ class Server:
         finally:
             self.open -= counted
             LOG.info("a page was open for %.0f s", time.monotonic() - begin)
-
-    async def _hello(self, socket: WebSocket) -> bool:
-        """Whether the first message holds the token; closes the socket if not."""
-        try:
-            message = await asyncio.wait_for(socket.receive(), PATIENCE)
-        except TimeoutError:
-            await _close(socket, FORBIDDEN, "no hello")
-            return False
-        if message["type"] == "websocket.disconnect":
-            return False
-        event = protocol.event(message.get("text") or "")
-        if event["do"] != "hello" or event.get("version") != protocol.VERSION:
-            raise BadInput("do: got no hello of this version, expected one first")
-        if not self.token.fits(event.get("token")):
-            await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
-            return False
-        return True
 
 
 def _is_private(name: str) -> bool:

@@ -10,7 +10,16 @@ import { bindKeys } from "./keys.js";
 import * as files from "./files.js";
 
 const at = (id) => document.getElementById(id);
-const studio = { state: null, picture: null, welcome: null, curve: null, ghost: null, shown: 0, errors: [], trips: [] };
+const studio = {
+  state: null,
+  picture: null,
+  welcome: null,
+  curve: null,
+  ghost: null,
+  shown: 0,
+  errors: [],
+  trips: [],
+};
 window.studio = studio;
 
 const view = new View(at("stage"));
@@ -20,7 +29,7 @@ Object.assign(studio, { view, ring });
 const socket = new Socket(received, lost);
 const camera = new Camera(socket, say);
 const controls = new Controls(send, say);
-const pointer = new Pointer(at("stage"), view, studio, send, controls);
+const pointer = new Pointer(at("stage"), view, studio, send, controls, redraw);
 
 function send(event) {
   if (event.do !== "pose") pointer.forget();
@@ -28,21 +37,36 @@ function send(event) {
   if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
   socket.send(event);
 }
-function say(text) { at("note").textContent = text; }
+function say(text) {
+  at("note").textContent = text;
+}
 
 function received(message, picture) {
   if (message.kind === "welcome") return welcome(message);
-  if (message.kind === "error") { studio.errors.push(message.text); camera.answered(message.seq); controls.answered(message.seq); return say(message.text); }
+  if (message.kind === "error") {
+    studio.errors.push(message.text);
+    camera.answered(message.seq);
+    controls.answered(message.seq);
+    return say(message.text);
+  }
   if (message.kind === "skipped") return camera.skipped(message.seq);
   if (message.kind === "curve") return curve(message);
   if (message.kind === "case") return files.save("pivot.toml", message.text, "application/toml");
-  if (message.kind === "replayed") { replaying(false); say(message.text); return send({ do: "tick" }); }
+  if (message.kind === "replayed") {
+    replaying(false);
+    say(message.text);
+    return send({ do: "tick" });
+  }
   if (message.kind === "recording") return recorded(message);
   const bitmap = picture ?? camera.picture(message.seq);
   camera.answered(message.seq);
   studio.state = message;
-  if (bitmap) { studio.picture?.close?.(); studio.picture = bitmap; }
-  if (message.seq !== null && message.seq === pointer.seq) studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
+  if (bitmap) {
+    studio.picture?.close?.();
+    studio.picture = bitmap;
+  }
+  if (message.seq !== null && message.seq === pointer.seq)
+    studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
   controls.answered(message.seq);
   if (message.replay) replaying(true);
   else keep();
@@ -79,26 +103,34 @@ function curve(message) {
   if (ring.live && studio.state) show(studio.state, studio.picture);
 }
 
-function replaying(on) { at("replay").textContent = on ? "End the replay" : "Replay a file"; studio.replaying = on; }
+function replaying(on) {
+  at("replay").textContent = on ? "End the replay" : "Replay a file";
+  studio.replaying = on;
+}
 
 let soon = 0;
 function keep() {
-  soon ||= setTimeout(() => { soon = 0; if (!studio.state.replay) files.keep(studio.state); }, 300);
+  soon ||= setTimeout(() => {
+    soon = 0;
+    if (!studio.state.replay) files.keep(studio.state);
+  }, 300);
 }
 
 function welcome(message) {
   studio.welcome = message;
   controls.build(message);
-  studio.source = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[message.camera];
+  studio.source = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[
+    message.camera
+  ];
   studio.shared = message.shared ? ", open to the network" : "";
   at("source").textContent = studio.source + studio.shared;
   at("camera-box").hidden = message.camera === "none";
   at("camera-row").hidden = message.camera !== "browser";
   if (message.camera === "browser") camera.start(noCamera);
   if (message.camera === "none") noCamera("");
-  const known = files.kept();  // of a page that is loaded again, or of a server that was away
+  const known = files.kept(); // of a page that is loaded again, or of a server that was away
   if (!known) return;
-  send({ do: "preset", name: known.preset, values: known.values });
+  send({ do: "preset", name: known.preset, values: known.values, ...(known.case ? { case: known.case } : {}) });
   send({ do: "drive", by: known.drive });
   if (message.camera === "none") send({ do: "pose", pose: known.pose });
 }
@@ -126,7 +158,12 @@ function recorded(message) {
 }
 
 const actions = {
-  release: () => send(studio.state?.mode === "released" ? { do: "catch" } : { do: "release", speed: at("hand").checked ? "hand" : "zero" }),
+  release: () =>
+    send(
+      studio.state?.mode === "released"
+        ? { do: "catch" }
+        : { do: "release", speed: at("hand").checked ? "hand" : "zero" },
+    ),
   pause: () => send({ do: studio.state?.paused ? "resume" : "pause" }),
   step: () => send({ do: "step" }),
   reset: () => send({ do: "reset" }),
@@ -135,26 +172,58 @@ const actions = {
   record: () => send({ do: "record", on: !at("record").classList.contains("on") }),
   rest: () => send({ do: "rest" }),
   csv: () => files.save("pivot.csv", files.csv(ring.states), "text/csv"),
-  png: () => { captioned(true); at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png")); captioned(false); },
+  png: () => {
+    captioned(true);
+    at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png"));
+    captioned(false);
+  },
   video: () => {
     if (studio.video) return studio.video.stop();
-    studio.video = files.video(at("stage"), (good) => { studio.video = null; filming(false); if (!good) say("Too short: nothing was recorded yet."); });
+    studio.video = files.video(at("stage"), (good) => {
+      studio.video = null;
+      filming(false);
+      if (!good) say("Too short: nothing was recorded yet.");
+    });
     if (!studio.video) return say("This browser records no videos.");
     filming(true);
     say("Recording a video of the picture.");
   },
-  shape: () => { at("shape").checked = !at("shape").checked; shape(); },
+  shape: () => {
+    at("shape").checked = !at("shape").checked;
+    shape();
+  },
   save: () => send({ do: "save" }),
   open: () => at("case").click(),
-  live: () => { ring.goLive(); if (studio.state) show(studio.state, studio.picture); },
+  live: () => {
+    ring.goLive();
+    if (studio.state) show(studio.state, studio.picture);
+  },
   help: () => at("shortcuts").showModal(),
   replay: () => (studio.replaying ? send({ do: "live" }) : at("file").click()),
   back: () => scrub(ring.place - 5),
   forth: () => scrub(ring.place + 5),
-  drive: () => { const all = studio.welcome.drives; send({ do: "drive", by: all[(all.indexOf(studio.state.drive) + 1) % all.length] }); },
+  drive: () => {
+    const all = studio.welcome.drives;
+    send({ do: "drive", by: all[(all.indexOf(studio.state.drive) + 1) % all.length] });
+  },
   turn: (angle) => pointer.nudge([0, 0, angle]),
-  move: (x, y) => (studio.state?.drive === "rotation" ? say("The hand holds the rotation alone: M lets it hold the whole pose.") : pointer.nudge([x, y, 0])),
+  move: (x, y) =>
+    studio.state?.drive === "rotation"
+      ? say("The hand holds the rotation alone: M lets it hold the whole pose.")
+      : pointer.nudge([x, y, 0].map((way) => 1e-3 * way * studio.state.placing.length)),
+  zoom: (factor) => {
+    view.zoom(factor);
+    redraw();
+  },
+  home: () => {
+    view.home();
+    redraw();
+  },
 };
+
+function redraw() {
+  if (studio.state) view.draw(studio.state, ring.live ? studio.picture : null, ring.centres);
+}
 
 // What leaves the page has its words with it.
 function captioned(on) {
@@ -175,7 +244,8 @@ function shape() {
 
 async function scrub(place) {
   ring.go(place);
-  const state = ring.current, kept = ring.small;
+  const state = ring.current,
+    kept = ring.small;
   if (!state) return;
   if (ring.live || !kept) return show(state, ring.live ? studio.picture : null);
   const picture = Object.assign(await createImageBitmap(kept.blob), { size: kept.size });
@@ -183,16 +253,44 @@ async function scrub(place) {
   picture.close();
 }
 
-for (const id of ["release", "pause", "step", "reset", "undo", "redo", "record", "rest", "csv", "png", "video", "save", "open", "live", "help", "replay"]) {
+for (const id of [
+  "release",
+  "pause",
+  "step",
+  "reset",
+  "undo",
+  "redo",
+  "record",
+  "rest",
+  "csv",
+  "png",
+  "video",
+  "save",
+  "open",
+  "live",
+  "help",
+  "replay",
+  "home",
+]) {
   at(id).addEventListener("click", actions[id]);
 }
 at("scrub").addEventListener("input", () => scrub(Number(at("scrub").value)));
 at("shape").addEventListener("change", shape);
 at("mirror").addEventListener("change", () => at("stage").classList.toggle("mirrored", at("mirror").checked));
-at("side").addEventListener("change", () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }));
+at("side").addEventListener(
+  "change",
+  () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }),
+);
 at("camera").addEventListener("change", () => camera.start(noCamera, at("camera").value));
-for (const [id, kind] of [["file", files.REPLAY], ["case", files.DESIGN]]) {
-  at(id).addEventListener("change", async () => { const file = at(id).files[0]; if (file) await files.upload(file, kind, send); at(id).value = ""; });
+for (const [id, kind] of [
+  ["file", files.REPLAY],
+  ["case", files.DESIGN],
+]) {
+  at(id).addEventListener("change", async () => {
+    const file = at(id).files[0];
+    if (file) await files.upload(file, kind, send);
+    at(id).value = "";
+  });
 }
 bindKeys(actions, at("keys"), at("shortcuts"));
 window.addEventListener("error", (event) => studio.errors.push(String(event.message)));

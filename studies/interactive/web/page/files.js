@@ -5,16 +5,25 @@ export function save(name, content, type) {
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  window.studio.saved = { name, size: content.size ?? content.length, text: typeof content === "string" ? content : null };
+  window.studio.saved = {
+    name,
+    size: content.size ?? content.length,
+    text: typeof content === "string" ? content : null,
+  };
 }
 
 // Record a canvas as a video until the recorder that is returned is stopped; null where the browser cannot.
 export function video(canvas, done) {
-  const type = ["video/webm", "video/mp4"].find((name) => window.MediaRecorder?.isTypeSupported(name)), parts = [];
+  const type = ["video/webm", "video/mp4"].find((name) => window.MediaRecorder?.isTypeSupported(name)),
+    parts = [];
   if (!type) return null;
-  const stream = canvas.captureStream(), recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 4e6 });
+  const stream = canvas.captureStream(),
+    recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 4e6 });
   recorder.kept = 0;
-  recorder.ondataavailable = (event) => { parts.push(event.data); recorder.kept += event.data.size; };
+  recorder.ondataavailable = (event) => {
+    parts.push(event.data);
+    recorder.kept += event.data.size;
+  };
   recorder.onstop = () => {
     for (const track of stream.getTracks()) track.stop();
     if (recorder.kept) save(`pivot.${type.slice(6)}`, new Blob(parts, { type }), type);
@@ -25,14 +34,27 @@ export function video(canvas, done) {
 }
 
 const COLUMNS = [
-  ["time_s", (s) => s.t], ["mode", (s) => s.mode], ["simulated_s", (s) => s.simulated],
-  ["x_m", (s) => s.pose[0]], ["y_m", (s) => s.pose[1]], ["rotation_rad", (s) => s.pose[2]],
-  ["force_x_N", (s) => s.force[0]], ["force_y_N", (s) => s.force[1]], ["moment_Nm", (s) => s.force[2]],
-  ["stiffness_Nm_per_rad", (s) => s.stiffness], ["stress_max_Pa", (s) => s.stress.max],
-  ["strain_energy_J", (s) => s.energy.strain], ["kinetic_energy_J", (s) => s.energy.kinetic], ["potential_of_load_J", (s) => s.energy.potential], ["dissipated_J", (s) => s.energy.dissipated],
-  ["lost_to_steps_J", (s) => s.energy.lost],
-  ["centre_x_m", (s) => s.centre?.[0]], ["centre_y_m", (s) => s.centre?.[1]],
-  ["sd_x_m", (s) => s.sd?.[0]], ["sd_y_m", (s) => s.sd?.[1]], ["sd_rotation_rad", (s) => s.sd?.[2]], ["solve_ms", (s) => s.solve_ms],
+  ["time_s", (s) => s.t],
+  ["mode", (s) => s.mode],
+  ["simulated_s", (s) => s.simulated],
+  ["x_m", (s) => s.pose[0]],
+  ["y_m", (s) => s.pose[1]],
+  ["rotation_rad", (s) => s.pose[2]],
+  ["force_x_N", (s) => s.force[0]],
+  ["force_y_N", (s) => s.force[1]],
+  ["moment_Nm", (s) => s.force[2]],
+  ["stiffness_Nm_per_rad", (s) => s.stiffness],
+  ["stress_max_Pa", (s) => s.stress.max],
+  ["strain_energy_J", (s) => s.energy.strain],
+  ["kinetic_energy_J", (s) => s.energy.kinetic],
+  ["potential_of_load_J", (s) => s.energy.potential],
+  ["dissipated_J", (s) => s.energy.dissipated],
+  ["centre_x_m", (s) => s.centre?.[0]],
+  ["centre_y_m", (s) => s.centre?.[1]],
+  ["sd_x_m", (s) => s.sd?.[0]],
+  ["sd_y_m", (s) => s.sd?.[1]],
+  ["sd_rotation_rad", (s) => s.sd?.[2]],
+  ["solve_ms", (s) => s.solve_ms],
 ];
 
 export function csv(states) {
@@ -41,18 +63,34 @@ export function csv(states) {
 }
 
 // What a page that is loaded again goes on with.
-export const keep = (state) => sessionStorage.setItem("design", JSON.stringify({ preset: state.preset, values: state.values, drive: state.drive, pose: state.displacement }));
+export const keep = (state) =>
+  sessionStorage.setItem(
+    "design",
+    JSON.stringify({
+      preset: state.preset,
+      values: state.values,
+      case: window.studio.curve?.case ?? undefined,
+      drive: state.drive,
+      pose: state.displacement,
+    }),
+  );
 export function kept() {
-  try { return JSON.parse(sessionStorage.getItem("design")); } catch { return null; }
+  try {
+    return JSON.parse(sessionStorage.getItem("design"));
+  } catch {
+    return null;
+  }
 }
 
 // A file goes up in parts, so that no message is too long: 2 is a session to be replayed, 3 a design.
-export const REPLAY = 2, DESIGN = 3;
+export const REPLAY = 2,
+  DESIGN = 3;
 const PART = 500000;
 export async function upload(file, kind, send) {
   const data = new Uint8Array(await file.arrayBuffer());
   for (let start = 0; start === 0 || start < data.length; start += PART) {
-    const piece = data.subarray(start, start + PART), message = new Uint8Array(3 + piece.length);
+    const piece = data.subarray(start, start + PART),
+      message = new Uint8Array(3 + piece.length);
     message.set([kind, 1, start + PART >= data.length ? 1 : 0]);
     message.set(piece, 3);
     send(message);

@@ -1,7 +1,8 @@
 // The web socket: hello with the token, events up, states and pictures down; it comes back by itself.
 const WAITS = [500, 1000, 2000, 5000];
 // Refusals of what the page sends, in this time [ms], after which it does not come back.
-const MOST_REFUSED = 3, WITHIN = 30000;
+const MOST_REFUSED = 3,
+  WITHIN = 30000;
 
 function token() {
   const found = /(?:^#|&)token=([\w-]+)/.exec(location.hash);
@@ -30,9 +31,13 @@ export class Socket {
     this.socket.onclose = (event) => this.closed(event);
   }
 
-  get ready() { return this.socket?.readyState === WebSocket.OPEN; }
+  get ready() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
 
-  send(event) { if (this.ready) this.socket.send(event instanceof Uint8Array ? event : JSON.stringify(event)); }
+  send(event) {
+    if (this.ready) this.socket.send(event instanceof Uint8Array ? event : JSON.stringify(event));
+  }
 
   async take(data) {
     this.tries = 0;
@@ -47,8 +52,12 @@ export class Socket {
   closed(event) {
     if (event.code === 4403) return this.lost("The token does not fit: open the address that the command printed.");
     if (event.code === 4429) return this.lost("Too many pages are open: close one and load this one again.");
-    if (event.code === 4400) this.refused = [...this.refused.filter((time) => performance.now() - time < WITHIN), performance.now()];
-    if (this.refused.length >= MOST_REFUSED) return this.lost(`The server refuses what this page sends (${event.reason}): open the address that the command printed.`);
+    if (event.code === 4400)
+      this.refused = [...this.refused.filter((time) => performance.now() - time < WITHIN), performance.now()];
+    if (this.refused.length >= MOST_REFUSED)
+      return this.lost(
+        `The server refuses what this page sends (${event.reason}): open the address that the command printed.`,
+      );
     const why = event.code === 4400 ? ` (${event.reason})` : "";
     this.lost(`The server does not answer${why}: the last state is kept, trying again.`);
     setTimeout(() => this.open(), WAITS[Math.min(this.tries++, WAITS.length - 1)]);
