@@ -14,16 +14,7 @@ from spline_model.modes import natural_frequencies
 from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
-from studies.interactive.design import (
-    PRINTED,
-    Curve,
-    Placing,
-    Snapshot,
-    Strips,
-    free_stiffness,
-    free_turn,
-    pole,
-)
+from studies.interactive.design import PRINTED, Curve, Placing, Snapshot, Strips
 from studies.interactive.motion import Motion, Pull, motion
 from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
@@ -180,7 +171,7 @@ class Mechanics:
         known, here, total = self._held.unknowns, self.snapshot, 0.0
         for way in PART * ways.T:
             state = self._held.hold(*(here.pose + way))
-            beside = free_stiffness(state.tangent) if state.solved else math.nan
+            beside = Snapshot.free_stiffness(state.tangent) if state.solved else math.nan
             total += ((beside - (here.stiffness or 0.0)) / PART) ** 2
             self._held.restore(known)
         return math.sqrt(total)
@@ -262,7 +253,7 @@ class Mechanics:
             **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
             tangent=state.tangent,
-            centre=pole(state.pose, free_turn(state.tangent), 0.0),
+            centre=Snapshot.pole(state.pose, Snapshot.free_turn(state.tangent), 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
 
@@ -274,7 +265,7 @@ class Mechanics:
         )
         known = self._shown(pose, points, now.strain, now.kinetic)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
-        centre = pole(pose, velocity, LEAST_TURN / self.step)
+        centre = Snapshot.pole(pose, velocity, LEAST_TURN / self.step)
         return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
 
     def _shown(self, pose: Array, points: Array, strain: float, kinetic: float = 0.0) -> dict[str, Any]:

@@ -66,12 +66,13 @@ class Session:
         Raises:
             BadInput: an event that is none; the session is as it was.
         """
-        known = checked(event)
+        fields = checked(event)
         self.warnings = {}
-        getattr(self, f"_{known['do']}")(known)
-        mechanics, self.time = self.mechanics, known["t"]
-        held = ways(mechanics.snapshot.tangent, self.drive, self.grip)
-        self.readings.take(mechanics, None if self.spread is None else held @ self.spread)
+        getattr(self, f"_{fields['do']}")(fields)
+        mechanics, self.time = self.mechanics, fields["t"]
+        spread, tangent = self.spread, mechanics.snapshot.tangent
+        known = None if spread is None else ways(tangent, self.drive, self.grip) @ spread
+        self.readings.take(mechanics, known)
         if mechanics.doubt:
             self._warn("coarse", mechanics.doubt)
         if not mechanics.resolved:
