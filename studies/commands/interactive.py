@@ -8,11 +8,13 @@
     python -m studies interactive --camera none --share
 
 Two printed markers (`python -m studies markers`) before the browser's camera drive the pivot; without a
-camera mouse, touch and keys do. A case file of one's own joins the presets; its dimensions must be those that
-the sliders reach; of its loads an upright force on the body acts here. The server is open to this machine
-only, but for `--share`: then a phone or another machine of the own network drives a pivot of its own with the
-link that is printed, over a connection that is not encrypted. It needs the extra `interactive`, which
-`make interactive` installs. Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded states; 1: a
+camera mouse, touch and keys do. A case file of one's own, or a case of the suite by its name, joins the
+presets: a pivot, or any mechanism with one body on strips from the ground. Of its loads an upright force on
+the body acts here. The server is open to this machine only, but for `--share`: then a phone or another
+machine of the own network drives a pivot of its own with the link that is printed, over a connection that is
+not encrypted. It needs the extra `interactive`, which `make interactive` installs.
+
+Exit code 0: stopped with Ctrl-C, or a replay that gave the recorded states; 1: a
 replay that did not; 2: bad input.
 """
 
@@ -55,7 +57,7 @@ EXTRA = {
         default="browser",
     ),
     Argument("--calibration FILE", "the camera's constants as JSON (default: none)", Path),
-    Argument("--preset NAME", "design to start with: polymer (default) or table-1"),
+    Argument("--preset NAME", "design to start with: polymer (default), table-1, or a case of the suite"),
     Argument("--record FILE", "store the session's events (default: none)", Path),
     Argument("--replay FILE", "replay a stored session and compare (default: none)", Path),
 )

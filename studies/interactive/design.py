@@ -104,10 +104,30 @@ class Snapshot:
     centre: tuple[float, float] | None
     iterations: int
 
+    @staticmethod
+    def pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
+        """Return the instantaneous centre [m] of a body at `pose` (3,) with `velocity` (3,), None below
+        `least` rad/s."""
+        vx, vy, omega = velocity
+        if not abs(omega) > least:
+            return None
+        return float(pose[0] - vy / omega), float(pose[1] + vx / omega)
+
+    @staticmethod
+    def free_stiffness(tangent: Array) -> float:
+        """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
+        return float(tangent[2] @ Snapshot.free_turn(tangent))
+
+    @staticmethod
+    def free_turn(tangent: Array) -> Array:
+        """Return the velocity (3,) of a body that a moment alone turns at 1 rad/s; tangent (3, 3)."""
+        shift = -np.linalg.solve(tangent[:2, :2], tangent[:2, 2])
+        return np.array([shift[0], shift[1], 1.0])
+
     @cached_property
     def stiffness(self) -> float | None:
         """Rotational stiffness with the body's centre free [N m/rad] (Eq 20), None when released."""
-        return None if self.tangent is None else free_stiffness(self.tangent)
+        return None if self.tangent is None else self.free_stiffness(self.tangent)
 
     def stable(self, length: float) -> bool:
         """Whether the body would stay if its pose, or its turn alone, were no longer held."""
@@ -208,24 +228,3 @@ class Placing:
 
         other = np.array([*turned(-marker[2], -marker[:2]), -marker[2]])
         return strangeness(marker) > 0.8 and strangeness(other) < 0.5 * strangeness(marker)
-
-
-def pole(pose: Array, velocity: Array, least: float) -> tuple[float, float] | None:
-    """Return the instantaneous centre of a body at `pose` (3,) with `velocity` (3,) [m], None below `least`
-    rad/s."""
-    vx, vy, omega = velocity
-    if not abs(omega) > least:
-        return None
-    return float(pose[0] - vy / omega), float(pose[1] + vx / omega)
-
-
-def free_stiffness(tangent: Array) -> float:
-    """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
-    return float(tangent[2] @ free_turn(tangent))
-
-
-def free_turn(tangent: Array) -> Array:
-    """Return the velocity (3,) of a body that is turned at 1 rad/s by a moment alone, from its tangent (3,
-    3)."""
-    shift = -np.linalg.solve(tangent[:2, :2], tangent[:2, 2])
-    return np.array([shift[0], shift[1], 1.0])

@@ -13,7 +13,7 @@ from studies.errors import BadInput
 from studies.interactive.design import Snapshot
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import SOLVERS
-from studies.interactive.presets import STEP, STEPS_A_FRAME
+from studies.interactive.presets import STEP, STEPS_A_FRAME, Piece
 from studies.kinds import Array
 
 #: What the hand holds: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
@@ -59,21 +59,13 @@ EVENTS: Events = {
         "faults?": _WORDS,
     },
     "unseen": {"code?": _NAME, "text?": ANYTHING},
-    "tick": {},
     "release": {"speed?": choice("hand", "zero")},
-    "catch": {},
-    "pause": {},
-    "resume": {},
-    "step": {},
-    "reset": {},
     "parameter": {"name": _NAME, "value": ANYTHING, "part?": TRUTH},
     "preset": {"name": _NAME, "values?": _MAP, "case?": _MAP, "part?": TRUTH},
-    "undo": {},
-    "redo": {},
     "drive": {"by": _DRIVE},
     "solver": {"name": _SOLVER, "sweeps?": _SWEEPS},
-    "rest": {},
     "critical": {"force": ANYTHING},
+    **{do: {} for do in ("tick", "catch", "pause", "resume", "step", "reset", "undo", "redo", "rest")},
 }
 #: What every event may have.
 _ALWAYS: Fields = {"t": NUMBER, "room?": whole(1, MOST_STEPS)}
@@ -211,6 +203,30 @@ class Hand:
 def _close(pose: Array, other: Array, frames: float) -> bool:
     shift, turn = math.hypot(*(pose[:2] - other[:2])), abs(pose[2] - other[2])
     return shift <= frames * JUMP_SHIFT and turn <= frames * JUMP_TURN
+
+
+class History:
+    """Designs that can be undone, and done again."""
+
+    MOST = 100
+
+    def __init__(self) -> None:
+        self._past, self._future = list[Piece](), list[Piece]()
+
+    def add(self, before: Piece, *, part: bool) -> None:
+        """Keep the design before a change, but for a `part` of a longer one."""
+        if not part:
+            self._past = [*self._past[1 - self.MOST :], before]
+        self._future = []
+
+    def swap(self, now: Piece, *, back: bool) -> Piece | None:
+        """Return the design before, or the one that was undone, in place of the present one; None if there is
+        none."""
+        source, target = (self._past, self._future) if back else (self._future, self._past)
+        if not source:
+            return None
+        target.append(now)
+        return source.pop()
 
 
 #: Readings that are averaged while they agree, within so many standard deviations.

@@ -14,7 +14,7 @@ from spline_model.modes import natural_frequencies
 from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
-from studies.interactive.design import Curve, Placing, Snapshot, Strips, free_stiffness, free_turn, pole
+from studies.interactive.design import PRINTED, Curve, Placing, Snapshot, Strips
 from studies.interactive.motion import Motion, Pull, motion
 from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
@@ -33,9 +33,6 @@ HAND_STEP = 1e-4
 LEAST_TURN = 2e-4
 #: Part of a standard deviation over which a stiffness is taken to be linear.
 PART = 1e-3
-#: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
-#: that spread where a pointer shows the place [m].
-FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: A step that the solver cannot take is tried at this part of it, then at the part's part, down to the least.
 SHORTER, SHORTEST = 0.25, 2.0**-10
 
@@ -49,9 +46,9 @@ class Mechanics:
             solver was changed.
     """
 
-    def __init__(self, piece: Piece, rest: Any = None) -> None:
-        self.piece = piece
-        self.placing = Placing(piece.design) if rest is None else Placing(piece.design, rest)
+    def __init__(self, piece: Piece, rest: Any = PRINTED) -> None:
+        self.piece, self._body = piece, piece.design.bodies[0].name
+        self.placed(rest)
         self._load = np.array([0.0, -(piece.values["load"] or 0.0), 0.0])
         self.control_points, self.doubt = self._chosen()
         free = piece.modelled(self.control_points, loaded=False)
@@ -163,28 +160,6 @@ class Mechanics:
         self.turn(rotation)
         return self.placing.marker(self.snapshot.pose)
 
-    def softness(self, spread: Array | None) -> float:
-        """Return the stiffness of the spring from the centre to where the hand is seen [N/m].
-
-        It is a finger's, in series with one that turns the columns of the pose's `spread` into no more force
-        than the strips' bending hides.
-        """
-        seen = POINTER if spread is None else float(np.linalg.norm(spread[:2], axis=1).max())
-        return 1.0 / (1.0 / FINGER + seen / (SHARE * self.strips.scale["force"]))
-
-    def ways(self, drive: str, stiffness: float) -> Array:
-        """Return the body's pose over that of the hand (3, 3), as a spring of `stiffness` and a `drive` hold
-        it, to first order."""
-        tangent, rigid = self.snapshot.tangent, np.eye(3)
-        if drive == "pose" or tangent is None:
-            return rigid
-        spring = stiffness * np.diag([1.0, 1.0, 0.0])
-        if drive == "pull":
-            return np.asarray(np.linalg.solve(tangent + spring, spring))
-        spring = spring[:2, :2] if drive == "grip" else np.zeros((2, 2))
-        rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
-        return rigid
-
     def grounded(self, pose: Array) -> bool:
         """Whether the centre of a body at `pose` (3,) lies beyond the ground's clamps."""
         ground, centre = self.placing.clamps[:, 0].mean(axis=0), self.placing.centre
@@ -196,7 +171,7 @@ class Mechanics:
         known, here, total = self._held.unknowns, self.snapshot, 0.0
         for way in PART * ways.T:
             state = self._held.hold(*(here.pose + way))
-            beside = free_stiffness(state.tangent) if state.solved else math.nan
+            beside = Snapshot.free_stiffness(state.tangent) if state.solved else math.nan
             total += ((beside - (here.stiffness or 0.0)) / PART) ** 2
             self._held.restore(known)
         return math.sqrt(total)
@@ -269,10 +244,6 @@ class Mechanics:
             return np.zeros(count)
         return np.asarray((ends[0] - ends[1]) / (2.0 * HAND_STEP))
 
-    @property
-    def _body(self) -> str:
-        return self.piece.design.bodies[0].name
-
     def _potential(self, pose: Array) -> float:
         """Energy of the load [J] from the body's place at rest on."""
         return float(self._load[:2] @ (self.placing.centre - pose[:2]))
@@ -282,7 +253,7 @@ class Mechanics:
             **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
             tangent=state.tangent,
-            centre=pole(state.pose, free_turn(state.tangent), 0.0),
+            centre=Snapshot.pole(state.pose, Snapshot.free_turn(state.tangent), 0.0),
             iterations=state.iterations if iterations is None else iterations,
         )
 
@@ -294,7 +265,7 @@ class Mechanics:
         )
         known = self._shown(pose, points, now.strain, now.kinetic)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
-        centre = pole(pose, velocity, LEAST_TURN / self.step)
+        centre = Snapshot.pole(pose, velocity, LEAST_TURN / self.step)
         return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
 
     def _shown(self, pose: Array, points: Array, strain: float, kinetic: float = 0.0) -> dict[str, Any]:

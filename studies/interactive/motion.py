@@ -27,6 +27,9 @@ STABLE_PART, MOST_PARTS = 0.8, 1000
 #: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and
 #: the force that is none, over EI / L^2.
 MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
+#: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
+#: that spread where a pointer shows the place [m].
+FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: Solvers by the name that the user chooses. The first is what one begins with.
 SOLVERS = {
     "stable": "impulses at once (Eq 30), stable form",
@@ -178,3 +181,27 @@ class Pull:
         tangent = (state.tangent + np.diag(spring)) * np.outer(unit, unit)
         stored = state.bending_energy + state.axial_energy + 0.5 * float(spring @ away**2)
         return force[:count], tangent[:count, :count], stored - float(self.load[:2] @ away[:2])
+
+
+def softness(spread: Array | None, force: float) -> float:
+    """Return the stiffness of the spring from the centre to where the hand is seen [N/m].
+
+    It is a finger's, in series with one that turns the columns of the pose's `spread` into no more force than
+    the strips' bending hides; `force`: EI / L^2 [N].
+    """
+    seen = POINTER if spread is None else float(np.linalg.norm(spread[:2], axis=1).max())
+    return 1.0 / (1.0 / FINGER + seen / (SHARE * force))
+
+
+def ways(tangent: Array | None, drive: str, stiffness: float) -> Array:
+    """Return the body's pose over that of the hand (3, 3), as a spring of `stiffness` and a `drive` hold it,
+    to first order."""
+    rigid = np.eye(3)
+    if drive == "pose" or tangent is None:
+        return rigid
+    spring = stiffness * np.diag([1.0, 1.0, 0.0])
+    if drive == "pull":
+        return np.asarray(np.linalg.solve(tangent + spring, spring))
+    spring = spring[:2, :2] if drive == "grip" else np.zeros((2, 2))
+    rigid[:2] = np.linalg.solve(tangent[:2, :2] + spring, np.hstack((spring, -tangent[:2, 2:])))
+    return rigid

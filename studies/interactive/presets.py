@@ -24,7 +24,7 @@ STEP = 0.01
 STEPS_A_FRAME = 4
 #: In EI/L^2: strips that a hand compresses fold their control points at the smaller default.
 SLIDE_STIFFNESS = 1000.0
-#: Values of a parameter on a logarithmic slider reach from a fifth to five times that of the design.
+#: Logarithmic sliders reach from a fifth to five times the value of the design.
 SPAN = 5.0
 
 
@@ -168,21 +168,11 @@ def _read(document: Mapping[str, Any]) -> Design:
 
 
 def _of_strips(design: Design) -> dict[str, float | None]:
-    """Return the parameters of which all strips have one value, and those of a pivot's outline."""
+    """Return the parameters of which all strips have one value."""
     every = [asdict(strip) | ({} if strip.section_depth else strip.rectangle()) for strip in design.strips]
-    if isinstance(design, Problem):
-        every = [
-            every[0]
-            | {name: getattr(design, name) for name in PARAMETERS if hasattr(design, name)}
-            | {name: every[0][name] for name in ("width", "thickness")}
-        ]
-    found = {
-        name: every[0][name]
-        for name in PARAMETERS
-        if len({each.get(name) for each in every}) == 1 and name in every[0] and name not in _OF_BODY
-    }
-    section = found.get("width") is not None and found.get("thickness") is not None
-    return {n: v for n, v in found.items() if section or n not in ("width", "thickness")}
+    found = {n: every[0][n] for n in PARAMETERS if n in every[0] and len({each[n] for each in every}) == 1}
+    section = found.get("width") and found.get("thickness")
+    return found if section else {n: v for n, v in found.items() if n not in ("width", "thickness")}
 
 
 def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
@@ -205,6 +195,8 @@ def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
     }
     values |= {own: getattr(design.bodies[0], attribute) for own, attribute in _OF_BODY.items()}
     values |= _of_strips(design)
+    if isinstance(design, Problem):
+        values |= {n: getattr(design, n) for n in ("length", "inclination", "crossing_ratio")}
     titles = {"title": known.pop("title", name.replace("_", " ")), "note": known.pop("note", "")}
     ordered = {n: values[n] for n in PARAMETERS if n in values} | known
     piece = Piece(name=name, document=document, base=design, values=ordered, **titles)
@@ -265,35 +257,11 @@ def chosen(name: str, now: Piece, case: Mapping[str, Any] | None, values: Mappin
     """Return the preset of that name with other values, or a design of one's own of a `case` file; without
     one it is the design `now`, if that is one's own, or the first preset's with all its values."""
     if name == OWN and case is not None:
-        known = {key: values[key] for key in ("time_scale",) if key in values}
-        return opened(name, case, title="a design of one's own", **known).changed(values)
+        known = {"time_scale": values["time_scale"]} if "time_scale" in values else {}
+        return opened(name, case, **known).changed(values)
     if name == OWN and values:
         return replace(now if now.name == OWN else preset("polymer"), name=OWN).changed(values)
     return preset(name).changed(values)
-
-
-class History:
-    """Designs that can be undone, and done again."""
-
-    MOST = 100
-
-    def __init__(self) -> None:
-        self._past, self._future = list[Piece](), list[Piece]()
-
-    def add(self, before: Piece, *, part: bool) -> None:
-        """Keep the design before a change, but for a `part` of a longer one."""
-        if not part:
-            self._past = [*self._past[1 - self.MOST :], before]
-        self._future = []
-
-    def swap(self, now: Piece, *, back: bool) -> Piece | None:
-        """Return the design before, or the one that was undone, in place of the present one; None if there is
-        none."""
-        source, target = (self._past, self._future) if back else (self._future, self._past)
-        if not source:
-            return None
-        target.append(now)
-        return source.pop()
 
 
 def catalogue() -> dict[str, Any]:

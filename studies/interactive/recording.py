@@ -48,6 +48,17 @@ def replay(lines: Iterable[str], session: Session | None = None) -> Iterator[tup
         yield state, known == mark(state)
 
 
+def _setup(session: Session) -> dict[str, Any]:
+    """Return the event that makes a new session of this one's settings."""
+    piece, placing = session.mechanics.piece, session.mechanics.placing
+    return {
+        **{name: getattr(session, name) for name in ("drive", "solver", "sweeps")},
+        **{"do": "setup", "t": session.time, "lock_step": session.clock.lock_step},
+        **{"preset": piece.name, "values": dict(piece.values), "case": dict(piece.document)},
+        "rest": placing.rest.tolist(),
+    }
+
+
 class Recorder:
     """Gives a session's events as lines to `keep`, or keeps them up to a number of characters; begins with a
     session made anew."""
@@ -57,7 +68,7 @@ class Recorder:
     def __init__(self, session: Session, keep: Callable[[str], object] | None = None) -> None:
         self.lines: list[str] = []
         self._keep, self._size = keep, 0
-        start = session.setup()
+        start = _setup(session)
         self.write(start, session.feed(start))
 
     @property

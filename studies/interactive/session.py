@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from studies.interactive import presets
-from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, Readings, checked
+from studies.interactive.design import PRINTED
+from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, History, Readings, checked
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import SOLVERS, SWEEPS
-from studies.interactive.presets import STEP, History, Piece
-from studies.interactive.view import SENTENCES, quantity, shown
+from studies.interactive.motion import SOLVERS, SWEEPS, softness, ways
+from studies.interactive.presets import STEP, Piece
+from studies.interactive.view import SENTENCES, shown, unstable
 from studies.kinds import Array
 
 #: Of what the hand holds, what it holds by a spring.
@@ -45,10 +46,9 @@ class Session:
         self._begin(presets.preset(preset), lock_step)
         self._settle()
 
-    def _begin(self, piece: Piece, lock_step: bool) -> None:
-        """Everything as at the start, with this design."""
-        self._at_rest: Array | None = None
-        self.mechanics = Mechanics(piece)
+    def _begin(self, piece: Piece, lock_step: bool, rest: Any = PRINTED) -> None:
+        """Everything as at the start, with this design and marker 1 at `rest`."""
+        self._at_rest, self.mechanics = rest, Mechanics(piece, rest)
         self.critical: float | None = None
         self.history = History()
         self.clock, self.hand, self.readings = Clock(lock_step=lock_step), Hand(), Readings()
@@ -66,13 +66,13 @@ class Session:
         Raises:
             BadInput: an event that is none; the session is as it was.
         """
-        known = checked(event)
+        fields = checked(event)
         self.warnings = {}
-        getattr(self, f"_{known['do']}")(known)
-        mechanics, self.time = self.mechanics, known["t"]
-        self.readings.take(
-            mechanics, None if self.spread is None else mechanics.ways(self.drive, self.grip) @ self.spread
-        )
+        getattr(self, f"_{fields['do']}")(fields)
+        mechanics, self.time = self.mechanics, fields["t"]
+        spread, tangent = self.spread, mechanics.snapshot.tangent
+        known = None if spread is None else ways(tangent, self.drive, self.grip) @ spread
+        self.readings.take(mechanics, known)
         if mechanics.doubt:
             self._warn("coarse", mechanics.doubt)
         if not mechanics.resolved:
@@ -81,7 +81,7 @@ class Session:
             real = "real time" if mechanics.step == STEP else "the time scale"
             self._warn("slowed", f"runs at {self.clock.pace:.1g} of {real}")
         if mechanics.piece.values["load"] and not mechanics.snapshot.stable(mechanics.strips.length):
-            self._unstable()
+            self._warn("unstable", unstable(self))
         return shown(self)
 
     def _warn(self, code: str, detail: str = "") -> None:
@@ -89,45 +89,16 @@ class Session:
         sentence = SENTENCES.get(code, SENTENCES["lost"])
         self.warnings[code] = f"{sentence[:-1]} ({detail})." if detail else sentence
 
-    def _unstable(self) -> None:
-        """The hand alone holds the body; say from which load on, and how stiff it is."""
-        stiffness = self.mechanics.snapshot.stiffness
-        told = [f"stiffness {quantity(stiffness, 'N m/rad')}"] if (stiffness or 0.0) < 0.0 else []
-        if self.critical:
-            told.insert(0, f"critical load {quantity(self.critical, 'N')}")
-        self._warn("unstable", ", ".join(told))
-
     @property
     def grip(self) -> float:
         """Stiffness of the hand's spring [N/m]."""
-        return self.mechanics.softness(self.spread)
-
-    def setup(self) -> dict[str, Any]:
-        """Return the event that makes a new session of this one's settings."""
-        piece = self.mechanics.piece
-        return {
-            "do": "setup",
-            "t": self.time,
-            "preset": piece.name,
-            "values": dict(piece.values),
-            "case": dict(piece.document),
-            "drive": self.drive,
-            "solver": self.solver,
-            "sweeps": self.sweeps,
-            "lock_step": self.clock.lock_step,
-            "rest": self.mechanics.placing.rest.tolist(),
-        }
+        return softness(self.spread, self.mechanics.strips.scale["force"])
 
     def _setup(self, event: dict[str, Any]) -> None:
         """Begin anew with these settings; the first event of a session file."""
-        self._begin(self._chosen(event["preset"], event), event["lock_step"])
+        self._begin(self._chosen(event["preset"], event), event["lock_step"], event["rest"])
         self.drive, self.solver, self.sweeps = event["drive"], event["solver"], event["sweeps"]
-        if not np.array_equal(event["rest"], self.mechanics.placing.rest):
-            self._at_rest = event["rest"]
-            self.mechanics.placed(self._at_rest)
         self._settle()
-
-    # -- poses ---------------------------------------------------------------------------------------------
 
     def _pose(self, event: dict[str, Any]) -> None:
         """A pose from mouse, touch, keys or sliders: displacement from rest and turn."""
@@ -174,12 +145,12 @@ class Session:
         if self.mechanics.moving:
             return
         far = math.hypot(pose[0], pose[1]) / self.mechanics.strips.length
-        if not (far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN):
+        if far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN:
+            self.wanted = pose
+            self._hold()
+            self.hand.add(time, self.wanted)
+        else:
             self._warn("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
-            return
-        self.wanted = pose
-        self._hold()
-        self.hand.add(time, self.wanted)
 
     def _hold(self) -> None:
         """Static solve at the wanted pose; on failure the last good state stays."""
@@ -192,7 +163,7 @@ class Session:
         if reached < 1.0:
             self._warn("no-equilibrium", f"{100 * reached:.0f} % of the way")
             if mechanics.piece.values["load"] and self.drive != "pose":
-                self._unstable()
+                self._warn("unstable", unstable(self))
         elif self.drive == "rotation":
             self._hand_is_here(turn=self.wanted[2])
         elif self.sight["state"] != "none":
@@ -211,8 +182,6 @@ class Session:
             mechanics = self.mechanics
             self.wanted = np.array([*(mechanics.snapshot.pose[:2] - mechanics.placing.centre), turn])
 
-    # -- release and catch ---------------------------------------------------------------------------------
-
     def _release(self, event: dict[str, Any]) -> None:
         if not self.mechanics.moving:
             velocity = self.hand.velocity if event.get("speed") == "hand" else np.zeros(3)
@@ -227,8 +196,7 @@ class Session:
         if not self.mechanics.moving:
             return
         if not self.mechanics.catch():
-            self._warn("no-catch")
-            return
+            return self._warn("no-catch")
         self.hand.forget()
         turn = float(self.mechanics.snapshot.pose[2])
         self._hand_is_here(turn)
@@ -249,11 +217,10 @@ class Session:
         self.paused |= bool({"stopped", "grounded"} & set(self.warnings))
 
     def _pause(self, event: dict[str, Any]) -> None:
-        self.paused = True
-
-    def _resume(self, event: dict[str, Any]) -> None:
-        self.paused = False
+        self.paused = event["do"] == "pause"
         self.clock.wait(event["t"])
+
+    _resume = _pause
 
     def _step(self, event: dict[str, Any]) -> None:
         """One step of a released body that is paused."""
@@ -267,8 +234,6 @@ class Session:
         self.clock.begin(None)
         self.hand.forget()
         self._settle()
-
-    # -- settings ------------------------------------------------------------------------------------------
 
     def _parameter(self, event: dict[str, Any]) -> None:
         self._change(self.mechanics.piece.changed({event["name"]: event["value"]}), event)
@@ -287,10 +252,7 @@ class Session:
     def _undo(self, event: dict[str, Any]) -> None:
         """Back to the design before, or forth to the one that was undone."""
         piece = self.history.swap(self.mechanics.piece, back=event["do"] == "undo")
-        if piece is None:
-            self._warn("empty", f"to {event['do']}")
-        else:
-            self._rebuild(piece, event["t"])
+        self._rebuild(piece, event["t"]) if piece else self._warn("empty", f"to {event['do']}")
 
     _redo = _undo
 
@@ -298,8 +260,7 @@ class Session:
         """Another design goes on where the former one is, held or swinging; its time begins."""
         before = self.mechanics
         if before.piece.like(piece):
-            before.pace(piece)
-            return
+            return before.pace(piece)
         self.mechanics = Mechanics(piece, self._at_rest)
         loads = [each.values["load"] or 0.0 for each in (before.piece, piece)]
         if not before.piece.like(piece, "load", "relaxation_time") or loads[0] * loads[1] < 0.0:
@@ -309,8 +270,7 @@ class Session:
         if piece.design.rotation is None and self.drive == "rotation":
             self.drive = "pull"  # its case turns no body
         if before.moving and self.mechanics.hold(before.snapshot.pose) == 1.0:
-            self._let_go(before.snapshot.velocity, time)
-            return
+            return self._let_go(before.snapshot.velocity, time)
         if before.moving:
             self._warn("swing-ended")
         self.clock.begin(None)
@@ -335,7 +295,7 @@ class Session:
         """The markers, as they are seen now, are those of the pivot at rest."""
         if self.marker is None or self.sight["state"] == "lost":
             self._warn("no-rest")
-            return
-        self._at_rest = self.marker
-        self.mechanics.placed(self.marker)
-        self._reset(event)
+        else:
+            self._at_rest = self.marker
+            self.mechanics.placed(self.marker)
+            self._reset(event)

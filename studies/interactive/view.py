@@ -2,16 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from studies.answers.quantities import PREFIXES, fixed, power_of
 from studies.interactive.presets import OWN
 from studies.kinds import Array
-
-if TYPE_CHECKING:
-    from studies.interactive.session import Session
 
 #: Least spread that is written, over its value.
 FINEST = 1e-4
@@ -128,7 +125,15 @@ SENTENCES = {
 }
 
 
-def curved(session: "Session") -> dict[str, Any]:
+def unstable(session: Any) -> str:
+    """Return from which load on the body is held by the hand alone, and how stiff it is, if that is known."""
+    stiffness = session.mechanics.snapshot.stiffness or 0.0
+    load = f"critical load {quantity(session.critical, 'N')}" if session.critical else ""
+    stiff = f"stiffness {quantity(stiffness, 'N m/rad')}" if stiffness < 0.0 else ""
+    return ", ".join(filter(None, (load, stiff)))
+
+
+def curved(session: Any) -> dict[str, Any]:
     """Return what a moment alone does to the design at work, and where it yields, as plain numbers and a
     sentence; and its case file."""
     mechanics = session.mechanics
@@ -152,7 +157,7 @@ OF_CLOCK = ("steps", "simulated")
 OF_NOW = ("iterations", "pose", "velocity", "centre", "force", "stiffness", "shape")
 
 
-def shown(session: "Session") -> dict[str, Any]:
+def shown(session: Any) -> dict[str, Any]:
     """Return the state of a session: equal sessions give equal states, digit by digit."""
     mechanics, now = session.mechanics, session.mechanics.snapshot
     placing, piece, moving = mechanics.placing, mechanics.piece, mechanics.moving
@@ -210,7 +215,7 @@ def _plain(value: Any) -> Any:
     return [_plain(each) for each in value] if isinstance(value, list | tuple) else value
 
 
-def _force_sd(session: "Session") -> list[float | None] | None:
+def _force_sd(session: Any) -> list[float | None] | None:
     """Standard deviations of force, moment and stiffness; none of forces that are nought by make."""
     sd = session.readings.force_sd
     if sd is None:

@@ -115,3 +115,11 @@ def test_sheet_is_read_in_size():
     for quad in np.array(event["quads"]):
         sides = np.linalg.norm(quad - np.roll(quad, 1, axis=0), axis=1) / 5.0
         assert sides == pytest.approx([60.0] * 4, abs=0.1)
+
+
+def test_scripts_have_short_lines():
+    """Requirement: no line of the page's scripts has 120 characters or more."""
+    scripts = sorted((ROOT / "studies" / "interactive" / "web" / "page").glob("*.js"))
+    assert len(scripts) > 5
+    for path in scripts:
+        assert max(map(len, path.read_text(encoding="utf-8").splitlines())) < 120, path.name

@@ -135,7 +135,8 @@ def ends(parameter):
         return parameter.low, parameter.high
     if parameter.scale == "load":
         return -1e3, 1e3
-    return [PRESETS["polymer"].values[parameter.name] * times for times in (1 / SPAN, SPAN)]
+    value = PRESETS["polymer"].values[parameter.name]
+    return value / SPAN, min(value * SPAN, parameter.high)
 
 
 def test_every_parameter_can_be_set_over_its_range():

@@ -5,8 +5,6 @@ import logging
 import time
 import tomllib
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
@@ -22,10 +20,10 @@ from studies.interactive.recording import Player, Recorder
 from studies.interactive.session import Session
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.films import Shot, Source
-from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.view import curved
 from studies.interactive.web import protocol
+from studies.interactive.web.protocol import Settings
 
 LOG = logging.getLogger(__name__)
 
@@ -34,26 +32,6 @@ LOG = logging.getLogger(__name__)
 TICK, STILL, IN_FLIGHT = 0.04, 0.2, 2
 #: Part of a frame's time that the steps of a released body may take.
 SHARE = 0.6
-
-
-@dataclass(frozen=True, kw_only=True)
-class Settings:
-    """What one server serves.
-
-    Attributes:
-        port: 0 for any; share: the address of this machine by which its network reaches the page too.
-        camera: "browser", "none", "film" or "server", which the page is told.
-        source: of every page's pictures, None where the page's camera or nothing sends them; keep: takes the
-            lines of a recording, of the first page that is open.
-    """
-
-    port: int = 0
-    share: str | None = None
-    camera: str = "browser"
-    source: Source | None = None
-    calibration: Camera | None = None
-    preset: str = "polymer"
-    keep: Callable[[str], None] | None = None
 
 
 class Connection:

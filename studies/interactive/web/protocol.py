@@ -1,10 +1,11 @@
-"""Messages of the web socket: text events up, pictures up, states down; everything that comes in is checked
-here."""
+"""What a server serves, and the messages of its web sockets: text events up, pictures up, states down;
+everything that comes in is checked here."""
 
 import json
 import struct
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,10 @@ from numpy.typing import NDArray
 from studies.cases.rules import TRUTH, number
 from studies.errors import BadInput
 from studies.interactive.input import ANYTHING, EVENTS, Events, Fields, fields
+
+if TYPE_CHECKING:  # a replay needs no pictures
+    from studies.interactive.tracking.films import Source
+    from studies.interactive.tracking.planar import Camera
 
 #: Longest text and picture that are taken [bytes], and the largest picture [px].
 LONGEST_TEXT = 4096
@@ -37,9 +42,7 @@ PAGE_EVENTS: Events = {
     **EVENTS,
     "record": {"on": TRUTH},
     "size": {"side_mm": number("a printed side from 10 to 300 mm", 10.0, 300.0, closed="low and high")},
-    "shown": {},
-    "save": {},
-    "live": {},
+    **{do: {} for do in ("shown", "save", "live")},
 }
 
 
@@ -132,3 +135,23 @@ def headers(hosts: Sequence[str]) -> dict[str, str]:
         "Referrer-Policy": "no-referrer",
         "Cache-Control": "no-store",
     }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What one server serves.
+
+    Attributes:
+        port: 0 for any; share: the address of this machine by which its network reaches the page too.
+        camera: "browser", "none", "film" or "server", which the page is told.
+        source: of every page's pictures, None where the page's camera or nothing sends them; keep: takes the
+            lines of a recording, of the first page that is open.
+    """
+
+    port: int = 0
+    share: str | None = None
+    camera: str = "browser"
+    source: "Source | None" = None
+    calibration: "Camera | None" = None
+    preset: str = "polymer"
+    keep: Callable[[str], object] | None = None

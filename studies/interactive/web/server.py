@@ -32,7 +32,8 @@ from studies.interactive.session import Session
 from studies.interactive.tracking.films import demo_film
 from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
-from studies.interactive.web.connection import Connection, Settings
+from studies.interactive.web.connection import Connection
+from studies.interactive.web.protocol import Settings
 
 LOG = logging.getLogger(__name__)
 # a machine may know scripts by another kind, which browsers refuse
