@@ -149,7 +149,7 @@ def answer_modes(
     how: dict[str, Any] = {"count": count, "held": held, "rotation": 0.0 if still else rotation}
     how |= {} if accuracy is None else {"accuracy": accuracy}
     solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
-    state: dict[str, Any] = {"turned": rotation or 0.0, "held": held}
+    state: dict[str, Any] = {"turned": rotation or 0.0, "held": held, "count": count}
     try:
         with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)

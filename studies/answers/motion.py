@@ -219,7 +219,7 @@ class Spectrum(Answer):
     """Natural modes of small motion about a static state, F modes, the lowest first.
 
     Attributes:
-        turned: rotation of the static state [rad]; held: whether it is held.
+        turned: rotation of the static state [rad]; held: whether it is held. count: of modes that were asked.
         frequency: (F,) [Hz]; negative where the state is unstable.
         mode_shape: (F, G, P, 2) of the strips at unit modal mass.
         slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
@@ -230,6 +230,7 @@ class Spectrum(Answer):
 
     turned: float
     held: bool
+    count: int = 0
     frequency = own("frequency")
     mode_shape = own("shapes")
     slide_frequency = own("slide_frequency")

@@ -54,10 +54,7 @@ def main(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> Spectrum:
         return answer_modes(design, settings, rotation=arguments.rotation, **how)
 
-    def table(answers: list[Spectrum]) -> Iterator[str]:
-        return _readable(answers[0], arguments.count)
-
-    return tell.asked(arguments, ask, _document, table, stopped=_stopped)
+    return tell.asked(arguments, ask, _document, _readable, stopped=_stopped)
 
 
 def _stopped(answer: Spectrum) -> str:
@@ -75,8 +72,9 @@ def _document(answer: Spectrum) -> dict[str, Any]:
     }
 
 
-def _readable(answer: Spectrum, count: int) -> Iterator[str]:
+def _readable(answers: list[Spectrum]) -> Iterator[str]:
     """Yield the lines of a short table."""
+    (answer,) = answers
     yield tell.described(answer)
     yield "displacement of the body at unit modal mass"
     shapes = zip(("x", "y", "rotation"), SHAPE_UNITS, answer.body_shapes.T, strict=True)
@@ -94,8 +92,8 @@ def _readable(answer: Spectrum, count: int) -> Iterator[str]:
     yield from tell.estimated(answer)
     if answer.resolution:
         yield answer.resolution
-    if answer.converged and len(answer.frequency) < count:
-        yield f"{len(answer.frequency)} of {count} modes: the discretisation has no more"
+    if answer.converged and len(answer.frequency) < answer.count:
+        yield f"{len(answer.frequency)} of {answer.count} modes: the discretisation has no more"
     yield tell.ending(answer)
 
 

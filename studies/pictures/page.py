@@ -253,16 +253,16 @@ def plot(
         design: the pivot or mechanism of the model that was solved; None of an answer, which knows its own.
             Sections of a model's own are taken as rectangles of their area and second moment.
         name: heading; the model's name where none is given.
-        yield_strength: drawn across the stress [Pa].
+        yield_strength: drawn across the stress [Pa]; None for that of the case, if it has one.
 
     Raises:
         BadInput: a solution and a design that do not go together, or a path of one state; one line.
     """
-    return Picture(picture([_shown_of(solution, design, name, yield_strength)]))
+    return overlay({name: (solution, design)}, yield_strength=yield_strength)
 
 
 def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -> Picture:
-    """Return the picture of two to five paths, motions or modes over one another; arguments as of `plot`.
+    """Return the picture of up to five paths, motions or modes over one another; arguments as of `plot`.
 
     Args:
         solved: solution and design, or an answer, by their name.
@@ -271,10 +271,7 @@ def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -
     shown = []
     for name, each in solved.items():
         solution, design = each if isinstance(each, tuple) else (each, None)
-        shown.append(_shown_of(solution, design, name, yield_strength))
+        answer = solution if isinstance(solution, Answer) else answer_of(solution, design)
+        name = name or shapes.NAMES[answer.model]
+        shown.append(Shown(name=name, answer=answer, yield_strength=yield_strength))
     return Picture(picture(shown))
-
-
-def _shown_of(solution: Any, design: Any, name: str, yield_strength: float | None) -> Shown:
-    answer = solution if isinstance(solution, Answer) else answer_of(solution, design)
-    return Shown(name=name or shapes.NAMES[answer.model], answer=answer, yield_strength=yield_strength)
