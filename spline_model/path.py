@@ -59,7 +59,8 @@ def follow(
     settled = not message
     while track.states < len(track.factors) and not message:
         message = track.advance()
-    return replace(track.path(message), settled=settled)
+    path = track.path(message)
+    return path if settled else replace(path, settled=False)
 
 
 def follow_arc(
