@@ -30,7 +30,7 @@ from spline_model.confirmed import (
 )
 from spline_model.design import Design
 from spline_model.discretisation import Discretisation
-from spline_model.errors import InvalidParameter, Unsettled, require_positive
+from spline_model.errors import InvalidParameter, require_positive
 from spline_model.path import Progress
 from spline_model.solution import ErrorEstimate, Status, largest, named
 from spline_model.static_answers import StaticSolution
@@ -192,11 +192,8 @@ def answered(
         return solve(own, progress, False)
 
     @cache
-    def outcome(trial: Grid) -> StaticSolution | Unsettled:
-        try:
-            return solve(trial, progress if chosen is None and trial == own else None, chosen is not None)
-        except Unsettled as error:
-            return error
+    def outcome(trial: Grid) -> StaticSolution:
+        return solve(trial, progress if chosen is None and trial == own else None, chosen is not None)
 
     if chosen is None:
         return confirmed(outcome, own)
@@ -220,6 +217,8 @@ def _solve_accurately(
     if outcome.found is None:
         return confirmed(solved, outcome.trials[-1])
     answer, errors = outcome.found
+    if not answer.settled:
+        return answer
     segments, points = outcome.best
     estimate = ErrorEstimate(
         accuracy=accuracy, **errors, segments=segments, control_points=points, trials=outcome.tried
@@ -239,9 +238,8 @@ def _attempt(
     coarse, fine = solved(fewer), solved(more)
     if not ends_alike(coarse, fine):
         return None
-    if isinstance(coarse, Unsettled):
-        raise coarse
-    assert not isinstance(fine, Unsettled), "it ends alike"
+    if not coarse.settled:
+        return 0.0, (coarse, {})
     if coarse.status is not Status.CONVERGED and not in_step(coarse, fine):
         return None
     errors = distances(design, coarse, fine)

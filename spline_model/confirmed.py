@@ -14,15 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import Design, StripDesign
-from spline_model.errors import Unsettled
 from spline_model.solution import CriticalPoint, Status, largest, named
 from spline_model.static_answers import StaticSolution
 
 Array = NDArray[np.float64]
 Grid = tuple[int, int]
 """Segments of a strip and control points of each."""
-Outcome = Callable[[Grid], StaticSolution | Unsettled]
-"""The answer of a discretisation, or why there is none under weight and pre-strain; each is solved once."""
+Outcome = Callable[[Grid], StaticSolution]
+"""The answer of a discretisation; each is solved once."""
 
 MORE = 3
 """Control points that a segment gets more for the estimate. With two more the estimated error of
@@ -67,12 +66,12 @@ def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> floa
     return apart
 
 
-def ends_alike(one: StaticSolution | Unsettled, other: StaticSolution | Unsettled) -> bool:
+def ends_alike(one: StaticSolution, other: StaticSolution) -> bool:
     """Whether two paths met the same critical points and ended at the same one, or both reached their end."""
-    if spread(one.critical_points, other.critical_points) > SAME_PLACE:
+    if spread(one.critical_points, other.critical_points) > SAME_PLACE or one.settled is not other.settled:
         return False
-    if isinstance(one, Unsettled) or isinstance(other, Unsettled):
-        return type(one) is type(other) and bool(one.critical_points)
+    if not (one.settled or one.critical_points):
+        return False
     return one.status is other.status and _at_limit(one) == _at_limit(other)
 
 
@@ -83,36 +82,22 @@ def _at_limit(path: StaticSolution) -> bool:
 
 
 def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
-    """The answer of a discretisation; what is critical on it, or stops it, only as a finer one has it too.
-
-    Raises Unsettled where there is no equilibrium under weight and pre-strain.
-    """
+    """The answer of a discretisation; what is critical on it, or stops it, only as a finer one has it too."""
     answer = outcome(grid)
-    if (
-        isinstance(answer, StaticSolution)
-        and answer.status is Status.CONVERGED
-        and not answer.critical_points
-    ):
+    if answer.status is Status.CONVERGED and not answer.critical_points:
         return answer
     more = finer(*grid)
     better = outcome(more)
-    same = ends_alike(answer, better)
-    if isinstance(answer, Unsettled):
-        if same:
-            raise answer
-        raise Unsettled(f"not resolved with {named(*grid)}; {remedy(grid)}", ())
-    if same and (answer.status is Status.CONVERGED or _at_limit(answer)):
+    if ends_alike(answer, better) and (answer.status is Status.CONVERGED or _at_limit(answer)):
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
     return _cut(answer, better, grid, more)
 
 
-def _cut(
-    answer: StaticSolution, better: StaticSolution | Unsettled, grid: Grid, more: Grid
-) -> StaticSolution:
+def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid) -> StaticSolution:
     """The part of a path that is resolved, and what is not."""
-    kept = 1 if isinstance(better, Unsettled) else _agreeing(answer, better)
+    kept = _agreeing(answer, better)
     known = 0
     while spread(answer.critical_points[: known + 1], better.critical_points[: known + 1]) <= SAME_PLACE:
         known += 1
@@ -147,9 +132,9 @@ def _place(load_factor: float, rotation: float) -> str:
     return f"load factor {load_factor:.6g}{turn}"
 
 
-def _end(path: StaticSolution | Unsettled) -> str:
+def _end(path: StaticSolution) -> str:
     """Where a path ends, in words."""
-    if isinstance(path, Unsettled):
+    if not path.settled:
         return "its weight finds no equilibrium"
     if path.status is Status.CONVERGED:
         return "it reaches its end"

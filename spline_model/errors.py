@@ -20,19 +20,6 @@ class InvalidParameter(ValueError):
         return f"{name}: got {got!r}, expected {expected}"
 
 
-class Unsettled(InvalidParameter):
-    """A scene without an equilibrium under all of its weight and pre-strain.
-
-    Attributes
-    ----------
-    critical_points : met while they grew, the last one where they could not go on, if that was found.
-    """
-
-    def __init__(self, message: str, critical_points: tuple[Any, ...]) -> None:
-        super().__init__("scene", message, "an equilibrium under all of its weight and pre-strain")
-        self.critical_points = critical_points
-
-
 class ConvergenceError(RuntimeError):
     """A path that could not be followed to its end.
 

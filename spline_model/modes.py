@@ -113,7 +113,9 @@ def _accurate_modes(
     def modes(grid: Grid) -> Modes | None:
         try:
             return solve(pivot.on(*grid).in_motion())
-        except ConvergenceError:  # more control points may reach the state
+        except ConvergenceError as error:  # more control points may reach the state
+            if not getattr(error.solution, "settled", True):
+                raise
             return None
 
     def attempt(fewer: Grid, more: Grid) -> tuple[float, Modes] | None:

@@ -18,7 +18,7 @@ from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.follower import LARGEST_STEP, ArcFollower, Follower
 from spline_model.continuation.point import reached, stand
 from spline_model.continuation.watch import BRANCHES, Watch
-from spline_model.errors import InvalidParameter, Unsettled, require_choice
+from spline_model.errors import InvalidParameter, require_choice
 from spline_model.newton import Newton, solve
 from spline_model.reduced.elements import Elements, followed
 from spline_model.reduced.model import at_rest
@@ -55,11 +55,12 @@ def follow(
     work = followed(system, method)
     watch = Watch(work, leaves=branch == "follow", by_load=True)
     track = _Track(watch, np.array([0.0, *load_factors]), progress)
-    track.begin(start)
-    message = ""
+    message = track.begin(start)
+    settled = not message
     while track.states < len(track.factors) and not message:
         message = track.advance()
-    return track.path(message)
+    path = track.path(message)
+    return path if settled else replace(path, settled=False)
 
 
 def follow_arc(
@@ -79,7 +80,10 @@ def follow_arc(
     """
     require_choice("branch", branch, BRANCHES)
     watch = Watch(followed(system, method), leaves=branch == "follow", by_load=False)
-    point, norms = first_point(watch)
+    point, norms, message = first_point(watch)
+    if message:
+        rows = _first_rows(watch.work, point, message)
+        return replace(_path(watch, rows, message, [norms]), settled=False)
     way = abs(end - point.load_factor) / increments
     follower, message = ArcFollower(watch, point, norms, end, way), ""
     follower.first = follower.step = min(LARGEST_STEP, follower.step)
@@ -110,8 +114,8 @@ class _Track:
         self.history: list[tuple[float, ...]] = []
         self.given: Array | None = None
 
-    def begin(self, start: Array | None) -> None:
-        """The first state, and on the elements all those up to where something happens."""
+    def begin(self, start: Array | None) -> str:
+        """The first state, and on the elements all those up to where something happens; why it is none."""
         if isinstance(self.work, Elements):
             if start is not None:
                 newton = equilibrium(self.work, start)
@@ -123,11 +127,13 @@ class _Track:
             elif (y := self.work.grown()) is not None:
                 self._run(self.work, y)
         if self.states == 0:
-            point, norms = first_point(self.watch, start)
+            point, norms, message = first_point(self.watch, start)
             self.follower = Follower(self.watch, point, norms)
-            self._keep(self.work.rows([point], [0.0]), 0.0)
-            if isinstance(self.work, Elements):
+            self._keep(_first_rows(self.work, point, message), 0.0)
+            if isinstance(self.work, Elements) and not message:
                 self._run(self.work, self.work.y(point.z))
+            return message
+        return ""
 
     def advance(self) -> str:
         """One increment in steps, and on the elements on from there; returns why it failed, or nothing."""
@@ -217,6 +223,11 @@ def _unknowns(work: Followed, z: Array, given: Array | None) -> Array:
     return states
 
 
+def _first_rows(work: Followed, point: Point, message: str) -> dict[str, Any]:
+    """What is known of a first state; with a message it is one without weight."""
+    return (replace(work, grows=True) if message else work).rows([point], [0.0])
+
+
 def equilibrium(work: Followed, unknowns: Array) -> Newton:
     """The equilibrium at load factor 0 that Newton finds from the scene's unknowns, if its checks pass.
 
@@ -229,14 +240,27 @@ def equilibrium(work: Followed, unknowns: Array) -> Newton:
     return newton
 
 
-def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...]]:
+def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...], str]:
     """The point where a path begins, and the residual norms: rest, or the unknowns that are given.
 
-    Raises InvalidParameter where there is none, or where nothing holds the scene.
+    Weight and pre-strain grow from nothing, watched like any path. Where they cannot, the point is the shape
+    at rest without them, and the last value the reason. Raises InvalidParameter where there is no point, or
+    where nothing holds the scene.
     """
-    work = watch.work
-    newton = _settle(watch) if start is None else equilibrium(work, start)
-    return _held(work, newton), newton.norms
+    work, message = watch.work, ""
+    if start is not None:
+        newton = equilibrium(work, start)
+        return _held(work, newton), newton.norms, ""
+    z = work.state(work.system.rest)
+    if work.system.is_preloaded:
+        grown, message = _grown(watch)
+        if message:
+            return grown.points[0], grown.history[0], message
+        z = grown.here.z
+    newton = solve(work, z, 0.0)
+    if newton.reason:
+        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
+    return _held(work, newton), newton.norms, ""
 
 
 def _held(work: Followed, newton: Newton) -> Point:
@@ -247,33 +271,16 @@ def _held(work: Followed, newton: Newton) -> Point:
     return point
 
 
-def _settle(watch: Watch) -> Newton:
-    """Equilibrium at load factor 0: weight and pre-strain grow from nothing, watched like any path.
-
-    Raises InvalidParameter where they cannot grow to their full size.
-    """
-    work = watch.work
-    z = _grown(watch) if work.system.is_preloaded else work.state(work.system.rest)
-    newton = solve(work, z, 0.0)
-    if newton.reason:
-        raise InvalidParameter("scene", newton.reason, "an equilibrium at load factor 0, near rest")
-    return newton
-
-
-def _grown(watch: Watch) -> Array:
-    """The unknowns (N,) under full weight and pre-strain; what was met on the way is told to ``watch``."""
+def _grown(watch: Watch) -> tuple[Follower, str]:
+    """The path to full weight and pre-strain, and why it stopped; what it met is told to ``watch``."""
     growing = replace(watch.work, grows=True)
     own = Watch(growing, leaves=watch.leaves, by_load=True)
     newton = solve(growing, growing.state(growing.system.rest), 0.0)
-    begin = _held(growing, newton)
-    follower = Follower(own, begin, newton.norms)
+    follower = Follower(own, _held(growing, newton), newton.norms)
     message = follower.advance(1.0)
-    shared = (
+    watch.settled = tuple(
         replace(each, load_factor=0.0, rotation=0.0 * each.rotation, preload=each.load_factor)
         for each in own.critical
     )
-    watch.settled = tuple(shared)
-    if message:
-        raise Unsettled(message, watch.settled)
     watch.leaves, watch.before = own.leaves, own.remark()
-    return follower.here.z
+    return follower, message

@@ -100,7 +100,8 @@ class Path:
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
     stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
     strips' moments differ from balance by, relative (``continuation.resolution``);
-    critical_points in the order of the path.
+    critical_points in the order of the path; settled: whether it begins under all of its weight and
+    pre-strain; if not, its one state is the shape at rest without them.
     """
 
     status: Status
@@ -117,6 +118,7 @@ class Path:
     critical_points: tuple[CriticalPoint, ...]
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
+    settled: bool = True
 
     @property
     def states(self) -> Array:

@@ -110,13 +110,11 @@ class _Question:
         return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
 
     def path(self, asked: Asked) -> Any:
-        """Return the path of a model, or its refusal where weight and pre-strain find no equilibrium."""
+        """Return the path of a model, which stops at rest where weight and pre-strain find no equilibrium."""
         how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "raise_on_failure": False}
         try:
             return asked.model.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
         except asked.model.InvalidParameter as error:
-            if hasattr(error, "critical_points"):
-                return error
             raise BadInput(f"{asked.settings.model}: {error}") from None
 
     def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
@@ -204,17 +202,16 @@ def _fineness(settings: Settings) -> tuple[str, str]:
 
 
 def _of(question: _Question, settings: Settings) -> CriticalLoad:
-    """Return the critical load with one discretisation, or that of a refusal that takes the path's place."""
+    """Return the critical load with one discretisation."""
     for tried in question.paths(settings):
         size, asked, path = tried
-        settled, lost = hasattr(path, "status"), [each for each in path.critical_points if each.inertia > 0]
-        if lost or not settled or path.status.value != "converged":
+        lost = [each for each in path.critical_points if each.inertia > 0]
+        if lost or path.status.value != "converged":
             break
-    last = float(path.load_factor[-1]) if settled else 0.0
-    there = float(path.bodies[question.body][-1, 2]) if settled else math.nan
+    last, there = float(path.load_factor[-1]), float(path.bodies[question.body][-1, 2])
     found: dict[str, Any] = {
-        "status": str(path.status.value) if settled else "not_converged",
-        "message": "" if settled and last == 1.0 else str(getattr(path, "message", path)),
+        "status": str(path.status.value),
+        "message": "" if last == 1.0 else str(path.message),
         "reached": size * last,
         "force": None,
         "turned": there,

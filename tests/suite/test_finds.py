@@ -33,3 +33,15 @@ def test_an_arc_that_the_splines_do_not_take(command):
     outcome = command("solve", FINDS / "half_circle.toml", "--model", "spline")
     assert outcome.code == 2
     assert "rise of beam: got 1.0, expected less than half the chord, 1, or two strips" in outcome.err
+
+
+@pytest.mark.parametrize("model", ACCURATE)
+@pytest.mark.parametrize("asked", [["solve"], ["modes"]], ids=" ".join)
+def test_weight_that_buckles_the_strips_is_no_bad_input(asked, model, command, tmp_path):
+    """An arch that snaps under 43 % of its weight ends every command with exit code 3, in both models."""
+    arch = (FINDS / "shallow_arch.toml").read_text().partition("[scene]")[0]
+    heavy = tmp_path / "heavy_arch.toml"
+    heavy.write_text(arch.replace("mass_kg = 0", "mass_kg = 1.5") + '[scene]\neffects = ["+gravity"]\n')
+    outcome = command(*asked, heavy, "--model", model)
+    assert outcome.code == 3
+    assert "limit point" in outcome.err and "of weight" in outcome.err.replace("the weight", "weight")
