@@ -5,8 +5,7 @@ Data flow one way, and so do the imports:
     effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
     control (with Newton's method) -> response -> critical -> path -> statics
     structure -> mass, loads -> actions -> motion -> schemes -> dynamics
-    statics -> modes; all -> solution, trajectory
-    solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
+    statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
@@ -24,13 +23,13 @@ from .loads import DrivenRotation
 from .mechanism import compliant_mechanism, cross_axis_pivot
 from .model import ELEMENTS, BodyDesign, Model, StripDesign
 from .modes import Modes, natural_frequencies
+from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
 from .section_forces import StripFields, strip_fields
 from .solid import SolidStrip
 from .solid_path import SolidPath, solve_solids
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 from .statics import solve_mechanism, solve_statics
-from .trajectory import Trajectory
 
 __all__ = [
     "DEFAULT_EFFECTS",

@@ -18,8 +18,18 @@ from .law import FORCES, MATERIAL, Written, elements
 from .loads import Pull, applied
 from .mass import body_blocks
 from .matrix import Symmetric
-from .mesh import RESULTANTS, Pair, body_forces, carry, carry_velocity, gravity_energy, spring_forces, turned
-from .structure import Structure, Tables
+from .mesh import (
+    RESULTANTS,
+    Pair,
+    Tables,
+    body_forces,
+    carry,
+    carry_velocity,
+    gravity_energy,
+    spring_forces,
+    turned,
+)
+from .structure import Structure
 
 #: Loads while time passes, as `_load_tables` makes them.
 Histories = tuple[Indices, Array, Indices, Array, Array]
@@ -107,7 +117,7 @@ class Actions:
         s, (relaxation, drag, grip) = self.structure, self.dissipative
         local = np.zeros((len(s.numbers), 8, 8))
         if len(relaxation):
-            local[:, :6, :6] += relaxation[:, None, None] * s.element_matrices(y, MATERIAL)
+            local += relaxation[:, None, None] * s.evaluate(y, asked=MATERIAL).matrices
         if len(drag):
             half = 0.5 * self.drag_rate * s.elements.linear_density * s.elements.length
             local[:, [0, 1, 3, 4], [0, 1, 3, 4]] += half[:, None]

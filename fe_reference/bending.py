@@ -125,15 +125,9 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
     u_1, m_1, s_1 = section(curl, row[8], row[9], row[11], even - odd)
     u_2, m_2, s_2 = section(curl, row[8], row[10], row[11], even + odd)
     equal, unlike = 0.5 * (m_2 + m_1), 0.5 * ROOT_3 * (m_2 - m_1)
-    k_11, k_12, k_22 = _slopes(rate, s_1, s_2)
-    return 0.5 * row[2] * (u_1 + u_2), unlike - equal, unlike + equal, k_11, k_12, k_22
-
-
-@inlined(fastmath={"contract"})
-def _slopes(rate: float, one: float, two: float) -> Shares:
-    """Return the slopes 11, 12, 22 of the end moments for the tangent rigidities at the two points."""
-    both, apart = rate * (two + one), ROOT_3 * rate * (two - one)
-    return 2.0 * both - apart, both, 2.0 * both + apart
+    both, apart = rate * (s_2 + s_1), ROOT_3 * rate * (s_2 - s_1)
+    energy = 0.5 * row[2] * (u_1 + u_2)
+    return energy, unlike - equal, unlike + equal, 2.0 * both - apart, both, 2.0 * both + apart
 
 
 @kernel()

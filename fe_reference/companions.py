@@ -10,7 +10,7 @@ half the step.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,11 +19,11 @@ from .arrays import Array
 from .errors import ConvergenceError, InvalidParameter
 from .mass import about_mass_centre
 from .model import FREE, Model
+from .motion import Trajectory
 from .refined import finer
 from .schemes import critical_step
 from .solution import Status
 from .structure import structure_of
-from .trajectory import Trajectory
 
 #: Estimated error over the swing that is not remarked on.
 UNRESOLVED = 0.05
@@ -41,13 +41,8 @@ OF_ORDER = 0.75
 SHARED = 1.5
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Level:
-    """A companion: its model, its step over that of the motion, and its longest one [s]."""
-
-    model: Model
-    ratio: float
-    longest: float
+#: A companion: its model, its step over that of the motion, and its longest one [s].
+_Level = tuple[Model, float, float]
 
 
 def with_companions(model: Model, motion: Trajectory, run: Callable[..., Trajectory]) -> Trajectory:
@@ -76,17 +71,17 @@ def _compared(
 ) -> Trajectory:
     """Return the motion with what companions say of its errors, or raise what they were refused for."""
     spacing = float(motion.time[1])
-    stride = math.ceil(max(level.longest for level in levels) / spacing * (1.0 - 1e-9))
+    stride = math.ceil(max(longest for _, _, longest in levels) / spacing * (1.0 - 1e-9))
     samples, spacing = (len(motion.time) - 2) // stride, stride * spacing  # the last may be shorter
     found = [moves(model, motion, stride)]
-    for level in levels:
-        step = spacing / math.ceil(spacing / level.longest * (1.0 - 1e-9))
-        other = run(level.model, duration=samples * spacing, step=step, samples=samples)
+    for mesh, _, longest in levels:
+        step = spacing / math.ceil(spacing / longest * (1.0 - 1e-9))
+        other = run(mesh, duration=samples * spacing, step=step, samples=samples)
         if other.message or len(other.time) != samples + 1:
             reached = other.message or f"{len(other.time)} instants"
             raise InvalidParameter("step", step, f"one that reaches the end: {reached}")
-        found.append(moves(level.model, other, 1))
-    ratios = [level.ratio for level in levels]
+        found.append(moves(mesh, other))
+    ratios = [ratio for _, ratio, _ in levels]
     turns, places = (
         _errors([mine[: samples + 1] for mine in each], ratios) for each in zip(*found, strict=True)
     )
@@ -141,7 +136,8 @@ def _coarse(model: Model, motion: Trajectory) -> list[_Level]:
         _level(model, replace(model, elements=elements // k), float(k), motion) for k in (first, second)
     ]
     if "critical_step_s" not in motion.settings:
-        levels.append(replace(levels[0], longest=levels[0].longest / first))
+        mesh, ratio, longest = levels[0]
+        levels.append((mesh, ratio, longest / first))
     return levels
 
 
@@ -151,7 +147,7 @@ def _level(model: Model, other: Model, ratio: float, motion: Trajectory) -> _Lev
     if "critical_step_s" in motion.settings:
         stable = SAFETY * float(motion.settings["critical_step_s"]) * _stable(other) / _stable(model)
         longest = min(longest, stable)
-    return _Level(model=other, ratio=ratio, longest=longest)
+    return other, ratio, longest
 
 
 def _stable(model: Model) -> float:

@@ -1,5 +1,9 @@
 """How a structure is led along an equilibrium path, what is held and loaded, and Newton's method to it.
 
+Parts of a model that hang on no clamp can move rigidly along x, along y and about the origin. What their held
+coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones that
+the null space moves, make a path determinate. In equilibrium they bear nothing.
+
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
 values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
 span says otherwise. The residual is r = f(y) - a F, with f the gradient of the potential. While a scene
@@ -7,15 +11,19 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import null_space
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from .arrays import Array, Flags, Indices
-from .freedom import loose_coordinates
+from .errors import InvalidParameter
 from .matrix import Factors, Singular
+from .model import FREE, GROUND, Model
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -108,11 +116,6 @@ class Control:
         return self.structure.flags(self.held)
 
     @cached_property
-    def free(self) -> Indices:
-        """The coordinates that are not held."""
-        return np.flatnonzero(~self.is_held)
-
-    @cached_property
     def slope(self) -> Array:
         """Rate of the held coordinates in p, (H,)."""
         rate: Array = (self.values[1] - self.values[0]) / (self.span[1] - self.span[0])
@@ -136,12 +139,6 @@ class Control:
         return State(
             y=y, parameter=parameter, residual=residual, at=here, potential=potential, load_work=work
         )
-
-    def is_round_off(self, balance: State) -> bool:
-        """Return whether every residual is below `TOLERANCE`, or below the round-off of its own terms."""
-        structure = self.structure
-        least = TOLERANCE * structure.scale + structure.round_off(balance.at.tangent)
-        return bool((np.abs(balance.residual) <= least)[self.free].all())
 
     def rates(self, y: Array, parameter: float, load_work: float) -> tuple[Array | None, float, float]:
         """Return what p changes at fixed y: r (size,) or None; the potential, once and twice [J]."""
@@ -172,25 +169,21 @@ def spans(
     *,
     body: int | None = None,
     rotations: Sequence[float] | None = None,
-    displacement: Sequence[float | None] | None = None,
-    led: int | None = None,
     load: Array | None = None,
     first: bool = False,
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
-    The displacement [m] of the centre of that body, or of the `led` one, None where it is free, and the load
-    grow with the load factor over all legs, or `first`: in a leg of their own before the rotation, and then
-    they stay.
+    The driven displacement of the scene and the load grow with the load factor over all legs, or `first`: in
+    a leg of their own before the rotation, and then they stay.
     """
-    at = structure.body_slice(0 if body is None else body).start
-    centre = structure.body_slice(led).start if led is not None else at
+    turn = structure.body_slice(0 if body is None else body).stop - 1
     legs = max(len(rotations or ()), 1) + first
     parameters = [leg / legs for leg in range(legs + 1)]
     shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if first else parameters
-    ways = {centre + k: np.multiply(shares, d) for k, d in enumerate(displacement or ()) if d is not None}
+    ways = {at: np.multiply(shares, d) for at, d in structure.led(body).items()}
     if rotations is not None:
-        ways[at + 2] = np.array([0.0] * (1 + first) + [*rotations])
+        ways[turn] = np.array([0.0] * (1 + first) + [*rotations])
     props = loose_coordinates(structure, ways)
     ways |= {int(k): np.zeros(legs + 1) for k in props}
     values = np.reshape([*ways.values()], (-1, legs + 1)).T
@@ -201,7 +194,7 @@ def spans(
             values=values[leg : leg + 2],
             span=(parameters[leg], parameters[leg + 1]),
             load=load,
-            watched=None if rotations is None else at + 2,
+            watched=None if rotations is None else turn,
             shares=(shares[leg], shares[leg + 1]),
             props=props,
         )
@@ -215,12 +208,13 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
     One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
     After a failure there are none.
     """
-    y, norms, before, done = start.copy(), [], np.inf, False
+    structure, y, norms, before, done = control.structure, start.copy(), [], np.inf, False
     while not done:
         y[control.held] = control.prescribed(parameter)
         counters.update(residual_evaluations=1, tangent_evaluations=1)
         found, factors = control.balance(y, parameter), None
-        norms.append(float(np.abs(found.residual / control.structure.scale)[control.free].max(initial=0.0)))
+        residual = np.where(control.is_held, 0.0, found.residual)
+        norms.append(float(np.abs(residual / structure.scale).max(initial=0.0)))
         failure = "" if np.isfinite(norms[-1]) else "the residual is not finite"
         if not failure:
             counters["factorisations"] += 1
@@ -231,8 +225,11 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         if factors is None:
             break
         last = factors.solve(found.residual)
-        size = float(np.abs(control.structure.measure * last).max(initial=0.0))
-        done = (size <= LAST or size > 0.5 * before) and control.is_round_off(found)
+        size = structure.extent(last)
+        done = size <= LAST or size > 0.5 * before
+        if done:
+            least = TOLERANCE * structure.scale + structure.round_off(found.at.tangent)
+            done = bool((np.abs(residual) <= least).all())
         if size <= LAST or not done:
             y = y - last
         before = size
@@ -241,3 +238,59 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         if not done:
             counters["newton_iterations"] += 1
     return replace(found, y=y, norms=tuple(norms), failure=failure, factors=factors)
+
+
+#: Largest part of a row of unit size that is round-off.
+RIGID = 1e-9
+#: Largest force over EI/L^2, or moment over EI/L, that is none, beside that part of the largest load.
+NONE = 1e-8
+WAYS = ("in the direction x", "in the direction y", "against turning")
+UNITS = ("N", "N", "N m")
+
+
+class NothingHolds(InvalidParameter):
+    """A load along a rigid motion that nothing resists."""
+
+    def __init__(self, body: str, axis: int, load: float) -> None:
+        expected = f"none, or a clamp or a drive that bears it: nothing holds body {body} {WAYS[axis]}"
+        super().__init__(f"load on body {body}", f"{load:.4g} {UNITS[axis]}", f"{expected} [{UNITS[axis]}]")
+
+
+def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
+    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
+    chosen: list[int] = []
+    for bodies in _parts(structure.model):
+        places = np.concatenate([np.arange(3) + structure.body_slice(b).start for b in bodies])
+        motions = np.vstack([_motions(structure, b) for b in bodies])
+        free = null_space(motions[np.isin(places, list(held))], rcond=RIGID) if len(bodies) else np.eye(3)
+        for place, row in zip(places.tolist(), motions, strict=True):
+            if np.abs(row @ free).max(initial=0.0) > RIGID:
+                chosen.append(place)
+                free = free @ null_space((row @ free)[None], rcond=RIGID)
+    return np.array(sorted(chosen), dtype=np.int64)
+
+
+def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
+    """Refuse a state in which coordinates that are held for want of anything else bear something."""
+    largest = 0.0 if load is None else float(np.abs(load).max())
+    for k in props:
+        if abs(residual[k]) > NONE * (structure.scale[k] + largest):
+            body, axis = divmod(int(k) - structure.first_body, 3)
+            raise NothingHolds(structure.model.body_names[body], axis, abs(float(residual[k])))
+
+
+def _parts(model: Model) -> list[Indices]:
+    """Return the bodies of each part that hangs together by strips but not with the ground."""
+    count = len(model.bodies)
+    joined = np.where(model.ends == GROUND, count, model.ends)
+    rows, columns = joined[(joined != FREE).all(axis=1)].T
+    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
+    label = connected_components(graph, directed=False)[1]
+    loose = sorted(set(label[:count].tolist()) - {int(label[count])})
+    return [np.flatnonzero(label[:count] == each) for each in loose]
+
+
+def _motions(structure: Structure, body: int) -> Array:
+    """Return the rates of a body's coordinates in the rigid motions of its part (3, 3), lengths over L."""
+    x, y = structure.points[body] / structure.length
+    return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])

@@ -108,22 +108,15 @@ def _between(before: State, after: State, part: float) -> tuple[Array, float]:
 
 def _point(control: Control, kind: str, y: Array, parameter: float, inertia: int, what: str) -> CriticalPoint:
     """Return the critical point at a state; its text tells what happens there, if that is to be told."""
+    turns = y[control.structure.turns] if control.watched is None else y[[control.watched]]
     return CriticalPoint(
         kind=kind,
         load_factor=0.0 if control.settling else control.share(parameter),
-        rotation=_rotation(control, y),
+        rotation=float(turns[0]) if len(turns) == 1 else np.nan,
         inertia=inertia,
         text=f"{what} at {', '.join(_places(control, y, parameter))}" if what else "",
         preload=parameter if control.settling else 1.0,
     )
-
-
-def _rotation(control: Control, y: Array) -> float:
-    """Return the turn of the watched body, or of the only one [rad]; nan if there is no such."""
-    turns = control.structure.turns
-    if control.watched is not None:
-        return float(y[control.watched])
-    return float(y[turns[0]]) if len(turns) == 1 else np.nan
 
 
 def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:

@@ -10,20 +10,19 @@ import numpy as np
 
 from .arrays import Array
 from .companions import with_companions
+from .control import loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
-from .freedom import loose_coordinates
 from .loads import DrivenRotation, drive_spans
 from .mass import about_mass_centre, carried_over
 from .model import GROUND, Model, require_model
 from .modes import natural_frequencies
-from .motion import ENERGIES, Progress, Samples, course
+from .motion import ENERGIES, Progress, Samples, Trajectory, course, trajectory
 from .refined import limit_of
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
-from .statics import state_at_start
+from .statics import settled_state
 from .structure import structure_of
-from .trajectory import Trajectory, trajectory
 
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
@@ -155,10 +154,13 @@ def _moved(model: Model, run: Run) -> Trajectory:
     """Return the motion of a model, however it ended."""
     model.effects.require_inertia()
     watch = Stopwatch()
-    y, remarks = _start(model, run) if run.settled else (np.zeros(structure_of(model).size), [])
+    y, remark = np.zeros(structure_of(model).size), ""
+    if run.settled:
+        y, remark = settled_state(model, run.start, run.body, run.increments, starts=True)
     watch.stop("start")
     samples, settings = _integrate(model, y, run, watch)
     begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
+    remarks = [f"the way to the start: {remark}"] if remark else []
     return trajectory(samples, begin | settings, remarks, watch)
 
 
@@ -179,12 +181,6 @@ def checked(
     settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
     settings |= {"start": start, "body": body, "drive": drive, "check": False, "raise_on_failure": False}
     return with_companions(model, motion, partial(solve_motion, **settings))
-
-
-def _start(model: Model, run: Run) -> tuple[Array, list[str]]:
-    """Return the coordinates of the start about the bodies' centres, and what is to be said of them."""
-    y, remark = state_at_start(model, run.start, run.body, run.increments)
-    return y, [f"the way to the start: {remark}"] if remark else []
 
 
 def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samples, dict[str, float | str]]:

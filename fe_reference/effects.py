@@ -14,6 +14,7 @@ from .errors import (
     History,
     InvalidParameter,
     Pair,
+    choice,
     finite,
     not_negative,
     optional,
@@ -221,8 +222,7 @@ def _known(name: str) -> None:
         raise InvalidParameter(
             "effects", name, f"{there}: these elements stretch, and a penalty would only hide that"
         )
-    if name not in KNOWN:
-        raise InvalidParameter("effects", name, there)
+    choice("effects", name, tuple(KNOWN))
 
 
 def _made(name: str, parameters: Mapping[str, Any]) -> _Effect:

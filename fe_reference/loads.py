@@ -16,11 +16,11 @@ from typing import Annotated
 
 import numpy as np
 
-from .arrays import Array, Flags
+from .arrays import Array, Flags, rotation_matrix
 from .effects import ALWAYS_FULL, AppliedForce, AppliedMoment, DrivenDisplacement, TipForce, factor_of
 from .errors import Checked, History, InvalidParameter, finite, read_history
 from .mass import RigidBodies
-from .model import Model, rotation_matrix
+from .model import Model
 from .structure import Structure
 
 
@@ -36,34 +36,23 @@ class Pull:
 
     target: int
     row: Array
-    history: History = ALWAYS_FULL
+    history: History
 
 
 def applied(structure: Structure) -> list[Pull]:
-    """Return the named loads of a scene."""
-    effects, pulls = structure.model.effects, []
-    if (force := effects.find(AppliedForce)) is not None:
-        pulls.append(_on_body(structure, force.body, force=force.force, history=force.history))
-    if (moment := effects.find(AppliedMoment)) is not None:
-        pulls.append(_on_body(structure, moment.body, moment=moment.moment, history=moment.history))
-    if (tip := effects.find(TipForce)) is not None:
-        node = (structure.model.strip_index(tip.strip) + 1) * structure.stations - 1
-        row = np.array([*tip.force, 0.0, 0.0, 0.0])
-        pulls.append(Pull(target=-1 - node, row=row, history=tip.history))
+    """Return the named loads of a scene: at free ends, and at the centres of bodies."""
+    pulls, model = [], structure.model
+    for effect in model.effects.named.values():
+        if isinstance(effect, TipForce):
+            node, row = (model.strip_index(effect.strip) + 1) * structure.stations - 1, np.zeros(5)
+            row[:2] = effect.force
+            pulls.append(Pull(target=-1 - node, row=row, history=effect.history))
+        elif isinstance(effect, AppliedForce | AppliedMoment):
+            k = model.body_index(effect.body)
+            pull = (*effect.force, 0.0) if isinstance(effect, AppliedForce) else (0.0, 0.0, effect.moment)
+            row = np.array([*pull, *(model.bodies[k].centre - structure.points[k])])
+            pulls.append(Pull(target=k, row=row, history=effect.history))
     return pulls
-
-
-def _on_body(
-    structure: Structure,
-    name: str | None,
-    force: Sequence[float] = (0.0, 0.0),
-    moment: float = 0.0,
-    history: History = ALWAYS_FULL,
-) -> Pull:
-    """Return a dead force [N] at the centre of a body (None: the only one) and a moment [N m] on it."""
-    k = structure.model.body_index(name)
-    offset = structure.model.bodies[k].centre - structure.points[k]
-    return Pull(target=k, row=np.array([*force, moment, *offset]), history=history)
 
 
 def full_load(structure: Structure, *, time: float | None = None) -> Array | None:

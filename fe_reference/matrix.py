@@ -30,7 +30,7 @@ class Singular(ArithmeticError):
 
 
 @kernel()
-def _assemble(
+def assemble(
     matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
 ) -> None:
     """Add element matrices (E, 8, 8) to the entries of a matrix.
@@ -151,12 +151,6 @@ class Envelope:
     def zero(self) -> "Symmetric":
         """Return a matrix of zeros."""
         return Symmetric(self, np.zeros(len(self.rows)))
-
-    def assembled(self, matrices: Array, ends: Indices, carried: Carried, turns: Array) -> "Symmetric":
-        """Return the sum of element matrices (E, 8, 8), the ends on bodies reduced: see `_assemble`."""
-        whole = self.zero()
-        _assemble(matrices, ends, carried, turns, self.places, whole.data)
-        return whole
 
 
 def _pairs(numbers: Indices) -> tuple[Indices, Indices]:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, rotation_matrix
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import finite, pair, positive, within
-from .model import BodyDesign, Model, StripDesign, rotation_matrix
+from .model import BodyDesign, Model, StripDesign
 
 
 def compliant_mechanism(

@@ -22,6 +22,7 @@ from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
 from .arrays import Array, Flags, Indices, kernel
 from .effects import CURL, PreStrain, RootCompliance
+from .law import Energies, Given, Written, elements
 from .model import FREE, Model
 from .plate import left_by_clamps, shares
 
@@ -38,6 +39,8 @@ Springs = tuple[Indices, Indices, Array]
 #: [m].
 Weights = tuple[Array, Array]
 Pair = tuple[Array, Array]
+#: What is known of a structure where all its elements are run through.
+Tables = tuple[Given, Carried, Weights, Springs]
 
 
 @kernel()
@@ -154,6 +157,18 @@ def spring_forces(
         if relaxation > 0.0:
             loss += stiffness[k] * rate * rate / relaxation
     return energy, loss
+
+
+@kernel()
+def potential(
+    tables: Tables, share: float, asked: int, u: Array, bodies: Array, written: Written, resultants: Array
+) -> tuple[Energies, float]:
+    """Write forces and resultants; return energies of the strips and of the full weight."""
+    (given, carried, weights, springs), force = tables, written[0]
+    bending, axial, shear = elements(given, share, asked, u, written)
+    body_forces(share, bodies, carried, weights, force, resultants)
+    bending += spring_forces(springs, 0.0, (bodies, bodies), (u, u), force, resultants)[0]
+    return (bending, axial, shear), gravity_energy(weights, bodies, u)
 
 
 #: One-point rule: what the shear-deformable element is free of locking by.

@@ -48,12 +48,6 @@ NOT_GIVEN = math.nan
 ROUNDING = 1e-3
 
 
-def rotation_matrix(angle: float) -> Array:
-    """Return the matrix (2, 2) that turns a vector counter-clockwise by `angle` [rad]."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])
-
-
 @dataclass(frozen=True, kw_only=True)
 class StripDesign(Checked):
     """A strip: its axis at rest, what its ends are on, and a linear elastic, homogeneous beam section.

@@ -8,15 +8,15 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
+from .control import NothingHolds, loose_coordinates
 from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
-from .freedom import NothingHolds, loose_coordinates
 from .mass import MASSES, mass_matrix
 from .model import Model, require_model
-from .refined import Quantities, refine
+from .refined import Quantities, missed, refine
 from .solution import ErrorEstimate
-from .statics import settled_state, state_at_start
+from .statics import settled_state
 from .structure import Structure, structure_of
 
 #: Stiffness of a rigid motion over the sum of the terms that cancel in it.
@@ -99,18 +99,17 @@ def natural_frequencies(
         try:
             y, _ = settled_state(model, rotation, body, increments)
         except NothingHolds:  # under the loads in full
-            y, _ = state_at_start(model, rotation, body, increments)
+            y, _ = settled_state(model, rotation, body, increments, starts=True)
         modes = _modes(structure_of(model), y, _held(model, body, held), kind, count)
         count = len(modes.frequency)  # of finer meshes as many as of the first
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
     if accuracy is None:
         return solve(pivot)
-    refined = refine(pivot, accuracy, solve, _frequencies)
-    limits = np.array(list(refined.limits.values()))
-    modes = replace(refined.answer, frequency=limits, estimate=refined.estimate)
-    if refined.message:
-        raise ConvergenceError(refined.message, solution=modes, load_factor=1.0, history=())
+    answer, limits, estimate = refine(pivot, accuracy, solve, _frequencies)
+    modes = replace(answer, frequency=np.array([*limits.values()]), estimate=estimate)
+    if estimate is not None and (told := missed(estimate)):
+        raise ConvergenceError(told, solution=modes, load_factor=1.0, history=())
     return modes
 
 
@@ -143,8 +142,7 @@ def _held(model: Model, body: str | None, turn: bool) -> Flags:
         held[structure.turns[model.body_index(body)]] = True
     led = model.effects.find(DrivenDisplacement)
     if led is not None and led.history is not None:
-        place = structure.body_slice(model.body_index(led.body if led.body is not None else body))
-        held[place.start : place.start + 2] |= [part is not None for part in led.displacement]
+        held[[*structure.led(None if body is None else model.body_index(body))]] = True
     return held
 
 

@@ -1,8 +1,10 @@
-"""A motion from span to span, whatever the scheme: its samples, and where the energy of each comes from."""
+"""A motion from span to span, whatever the scheme: its samples, where their energy comes from, its report."""
 
+import math
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +12,8 @@ from .actions import Actions, Instant
 from .arrays import Array, Flags
 from .loads import Piece, Span
 from .mass import RigidBodies, carried_over
-from .structure import Structure
+from .solution import Answer, ErrorEstimate, Status, Stopwatch
+from .structure import Structure, structure_of
 
 Progress = Callable[[int, int], None]
 #: Relative gain of energy above which a motion is called unstable: a sound one keeps within a thousandth.
@@ -63,10 +66,10 @@ class Scheme:
 
 @dataclass(kw_only=True, eq=False)
 class Samples:
-    """States of a motion in the reduced coordinates at the sampled instants, the start first.
+    """States of a motion in the coordinates of its model at the sampled instants, the start first.
 
     Attributes:
-        home: the scheme in whose coordinates they are.
+        home: the scheme where no centre of a body is led, in whose coordinates the motion starts.
         time [s], y (size,), v (size,), energy (5,): instants, coordinates, velocities, `ENERGIES`.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
@@ -109,10 +112,8 @@ class Samples:
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
         do the work of what is beside the scheme's energy as well, which was `begun` as the span began.
         """
-        work, kinetic = (
-            float(self.books[0]) + self.beside(scheme, at) - begun,
-            self.kinetic(scheme, at.y, at.v),
-        )
+        work = float(self.books[0]) + self.beside(scheme, at) - begun
+        kinetic = self.kinetic(scheme, at.y, at.v)
         energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
         self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
@@ -125,7 +126,7 @@ class Samples:
                 f" between {self.time[-1]:.6g} s and {at.time:.6g} s"
             )
             return False
-        places = (scheme.structure, at.y, self.home.structure)
+        places = (scheme.structure, at.y, structure_of(scheme.structure.model))
         self.time.append(at.time)
         self.y.append(carried_over(*places))
         self.v.append(carried_over(*places, at.v))
@@ -180,3 +181,112 @@ def course(
         samples.books[0] += samples.beside(scheme, now) - begun
         y, v = now.y, now.v
     return samples
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trajectory(Answer):
+    """A motion at T sampled instants, the start first; G strips, P nodes a strip.
+
+    Attributes:
+        status, message: how the run ended; why and when it stopped ("" if it did not).
+        time (T,): [s].
+        bodies, rates: by name, place of the centre and turn (T, 3) [m, rad], and their rates.
+        kinetic_energy, strain_energy (T,): [J].
+        gravity_energy (T,): of the weight, zero in the shape at rest [J].
+        work, dissipated (T,): by loads and dampers since the start [J].
+        shape (T, G, P, 2): positions of the nodes [m].
+        states (T, size): reduced coordinates, for `section_forces`.
+        effects: names of the effects of the scene.
+        counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
+        history: residual norms of implicit steps.
+        settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
+        seconds: by part (`Stopwatch`), "start" the static state that is let go.
+        starts_still: whether it starts at rest in equilibrium, to round-off.
+        resolution: empty, or what elements and steps leave unresolved.
+        rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the
+            places of all bodies and free ends [m], by companions with fewer elements and longer steps, or by
+            the meshes of an accuracy; nan without.
+        estimate: of the error, where an accuracy was asked for: then all but `states` are limits of meshes,
+            at the nodes of the coarsest.
+
+    Clamps and attachments are eliminated exactly, not enforced: there are no residuals of constraints.
+    """
+
+    status: Status
+    message: str
+    time: Array
+    bodies: Mapping[str, Array]
+    rates: Mapping[str, Array]
+    kinetic_energy: Array
+    strain_energy: Array
+    gravity_energy: Array
+    work: Array
+    dissipated: Array
+    shape: Array
+    states: Array
+    effects: tuple[str, ...]
+    counters: Mapping[str, int]
+    settings: Mapping[str, float | str]
+    history: tuple[tuple[float, ...], ...]
+    seconds: Mapping[str, float]
+    starts_still: bool = False
+    resolution: str = ""
+    rotation_error: float = math.nan
+    displacement_error: float = math.nan
+    estimate: ErrorEstimate | None = None
+
+    @property
+    def reached(self) -> float:
+        """Part of the duration that the motion went on [1]."""
+        return float(self.time[-1] / float(self.settings["duration_s"]))
+
+    @property
+    def energy_error(self) -> float:
+        """Largest deviation of kinetic + strain + gravity energy - work + dissipated from its start [1].
+
+        It is measured against the largest of: strain and kinetic energy of the start, change of gravity
+        energy, work, dissipated energy.
+        """
+        stored, gravity = self.kinetic_energy + self.strain_energy, self.gravity_energy
+        balance = stored + gravity - self.work + self.dissipated
+        parts = (stored[:1], gravity - gravity[0], self.work, self.dissipated)
+        scale = max(float(np.abs(part).max()) for part in parts)
+        return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
+
+    def columns(self) -> dict[str, Array]:
+        """Return what is one number at every instant, by names with units: the columns of a frame."""
+        return {
+            "time_s": self.time,
+            **self.body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
+            **self.body_columns(self.rates, ("x_rate_m_per_s", "y_rate_m_per_s", "rotation_rate_rad_per_s")),
+            **{f"{name}_J": getattr(self, name) for name in ENERGIES},
+        }
+
+
+def trajectory(
+    motion: Samples, settings: Mapping[str, float | str], remarks: list[str], watch: Stopwatch
+) -> Trajectory:
+    """Turn samples in the reduced coordinates into the motion of all bodies; remarks: on its start."""
+    model = motion.home.structure.model
+    own, states = structure_of(model), np.array(motion.y)
+    places, rates = own.body_places(states), own.bodies(np.array(motion.v))
+    moved = np.array([own.displacement(y)[:, :2] for y in states])
+    energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
+    status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
+    return Trajectory(
+        status=Status.UNSTABLE if motion.unstable else status,
+        message=motion.message,
+        time=np.array(motion.time),
+        bodies={name: places[:, k] for k, name in enumerate(model.body_names)},
+        rates={name: rates[:, k] for k, name in enumerate(model.body_names)},
+        **energies,
+        shape=model.rest + moved.reshape(-1, *model.rest.shape),
+        states=states,
+        effects=model.effects.names,
+        counters=dict(motion.counters),
+        history=tuple(motion.history),
+        settings=settings,
+        seconds=watch.stop("recover"),
+        starts_still=motion.still,
+        resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
+    )

@@ -166,18 +166,15 @@ class Path:
         if crossed and abs(step) > SMALLEST:
             return "the stability changes"
         first, last = step * before.rate, step * after.rate
-        size = self._size(moved)
-        off = self._size(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
+        size_of = self.control.structure.extent
+        size = size_of(moved)
+        off = size_of(moved - 0.5 * (first + last)) > OFF_THE_PATH * size
         one = size <= (APART if abs(step) <= SMALLEST else 10.0 * LAST)  # or nothing moves but round-off
-        if not one and (off or self._size(last - first) > SHARPEST * size):
+        if not one and (off or size_of(last - first) > SHARPEST * size):
             return "the state lies on another branch (it is not where the path leads)"
         if crossed:
             self.critical.append(critical_point(self.control, before, after))
         return ""
-
-    def _size(self, change: Array) -> float:
-        """Return the largest component of a change of the coordinates, in strip lengths and rad."""
-        return float(np.abs(self.control.structure.measure * change).max(initial=0.0))
 
     def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: State) -> str:
         return (

@@ -3,19 +3,21 @@
 Every quantity errs by even powers of the element, so that two meshes give the limit f + (f - f_coarse) / 3,
 and a third one takes the next power away as well. The estimate is the last of these corrections: the error of
 what it was applied to, which is larger than that of the limit.
+
+What is critical on a path, or ends it, is told as two meshes have it: otherwise it belongs to the mesh.
 """
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Any, Generic, TypeVar
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from .arrays import Array
 from .errors import positive
 from .model import Model
-from .solution import ErrorEstimate, StaticSolution, Status
-from .trajectory import Trajectory
+from .motion import Trajectory
+from .solution import ENERGIES, CriticalPoint, ErrorEstimate, StaticSolution, Status
 
 Answer = TypeVar("Answer")
 Solved = TypeVar("Solved", StaticSolution, Trajectory)
@@ -23,28 +25,14 @@ Solved = TypeVar("Solved", StaticSolution, Trajectory)
 Quantities = Mapping[str, tuple[Array, float]]
 #: Elements of a strip at which the refinement ends.
 MOST = 640
-#: Part of its unit below which a quantity is none but round-off.
+#: Part of its unit below which a quantity is none but round-off, and difference of parameters of the same
+#: increment.
 NOTHING = 1e-9
 
 
 def finer(model: Model) -> Model:
     """Return the model on twice as many elements."""
     return replace(model, elements=2 * model.elements)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Refined(Generic[Answer]):
-    """How a refinement ended.
-
-    Attributes:
-        answer: of the finest mesh. limits: of all quantities by name. estimate: of their errors; None, and no
-            limits, where a mesh had no answer. message: why the accuracy was not reached, "" if it was.
-    """
-
-    answer: Answer
-    limits: dict[str, Array]
-    estimate: ErrorEstimate | None
-    message: str = ""
 
 
 def refine(
@@ -54,8 +42,11 @@ def refine(
     quantities: Callable[[Answer], Quantities],
     judged: Collection[str] | None = None,
     relative: bool = True,
-) -> _Refined[Answer]:
+) -> tuple[Answer, dict[str, Array], ErrorEstimate | None]:
     """Double the elements until the estimated errors are below the accuracy or fall no more.
+
+    Returns the answer of the best mesh, the limits of all quantities by name and the estimate of their
+    errors; without limits and estimate the answer of a mesh that is not whole.
 
     Args:
         model: the coarsest mesh. solve: answers a model. quantities: of an answer, none if it is not whole.
@@ -65,8 +56,7 @@ def refine(
     positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
     meshes: list[int] = []
-    best = _Refined(answer=solve(model), limits={}, estimate=None)
-    answer = best.answer
+    answer, best = solve(model), None
     while here := quantities(answer):
         meshes.append(model.elements)
         known.append([values for values, _ in here.values()])
@@ -78,18 +68,18 @@ def refine(
                 if judged is None or name in judged
             }
             estimate = ErrorEstimate(accuracy=accuracy, meshes=tuple(meshes), errors=errors)
-            if best.estimate is None or estimate.largest < best.estimate.largest:
-                best = _Refined(answer=answer, limits=dict(zip(here, limits, strict=True)), estimate=estimate)
-            if estimate is not best.estimate or estimate.largest <= accuracy or 2 * meshes[-1] > MOST:
-                return replace(best, message=_missed(best.estimate))
+            if best is None or estimate.largest < best[2].largest:
+                best = answer, dict(zip(here, limits, strict=True)), estimate
+            if estimate is not best[2] or estimate.largest <= accuracy or 2 * meshes[-1] > MOST:
+                return best
         model = finer(model)
         answer = solve(model)
-    return _Refined(answer=answer, limits={}, estimate=None)
+    return answer, {}, None
 
 
-def _missed(estimate: ErrorEstimate | None) -> str:
+def missed(estimate: ErrorEstimate) -> str:
     """Return that an accuracy was not reached, or ""."""
-    if estimate is None or estimate.largest <= estimate.accuracy:
+    if estimate.largest <= estimate.accuracy:
         return ""
     return (
         f"accuracy {estimate.accuracy:.3g} is not reached with up to {estimate.elements} elements: the "
@@ -147,15 +137,116 @@ def limit_of(
                 found[name] = (values[:, :, ::every] if name in ALONG else values, unit)
         return found | {name: (make(found["bodies"][0]), 1.0) for name, make in derived.items()}
 
-    refined = refine(model, accuracy, solve, quantities, judged, relative)
-    found = refined.answer
-    if refined.estimate is None:
+    found, refined, estimate = refine(model, accuracy, solve, quantities, judged, relative)
+    if estimate is None:
         return found
-    own = {each.name: getattr(found, each.name) for each in fields(found)}
-    limits: dict[str, Any] = {name: limit for name, limit in refined.limits.items() if name in own}
+    own = {each.name for each in fields(found)}
+    limits: dict[str, Any] = {name: refined[name] for name in own & set(refined)}
     for name in limits:
-        if isinstance(own[name], Mapping):
-            limits[name] = dict(zip(own[name], limits[name], strict=True))
-    status = Status.NOT_CONVERGED if refined.message else found.status
-    message = "; ".join(each for each in (found.message, refined.message) if each)
-    return replace(found, status=status, message=message, estimate=refined.estimate, **limits)
+        if isinstance(places := getattr(found, name), Mapping):
+            limits[name] = dict(zip(places, limits[name], strict=True))
+    told = missed(estimate)
+    status = Status.NOT_CONVERGED if told else found.status
+    message = "; ".join(each for each in (found.message, told) if each)
+    return replace(found, status=status, message=message, estimate=estimate, **limits)
+
+
+#: Critical points of two meshes are the same within this part of load factor, preload and rotation.
+SAME = 0.05
+#: States of two meshes are kept while places and torque differ by no more than this part of the largest.
+KEPT = 0.03
+#: Rotation up to which critical points are held against it, not against their own [rad].
+TURN = 1e-2
+#: Smallest relative difference of two meshes that is printed.
+LEAST = 1e-6
+#: Arrays with a row a state.
+BY_STATE = (
+    *("inertia", "load_factor", "torque", "stiffness", *ENERGIES, "clamp_reactions", "largest_stress"),
+    *("shape", "axial_force", "shear_force", "bending_moment", "states"),
+)
+
+
+def confirmed(
+    model: Model, answer: StaticSolution, solved: Sequence[StaticSolution], solve: Callable[[Model], Any]
+) -> StaticSolution:
+    """Return an answer that claims no more than another mesh bears out.
+
+    Args:
+        model: of the answer. solved: answers of meshes so far, itself among them. solve: answers a model.
+    """
+    if answer.load_factor[-1] == 1.0 and not answer.critical_points:
+        return answer
+    others = [each for each in solved if len(each.states[0]) != len(answer.states[0])]
+    other = others[-1] if others else solve(finer(model))
+    points, elements = answer.critical_points, [each.model.elements for each in (answer, other)]
+    apart = _apart(points, other.critical_points)
+    # the whole path, or up to a limit point: stability is lost beyond its last state
+    ends = answer.status is Status.CONVERGED or (points and points[-1].inertia > answer.inertia[-1])
+    if apart <= SAME and answer.status is other.status and ends:
+        told = f" ({elements[1]} elements have it within {max(apart, LEAST):.0e})"
+        return replace(answer, message=answer.message + told if answer.message else "")
+    return _resolved(answer, other, elements)
+
+
+def _apart(mine: Sequence[CriticalPoint], others: Sequence[CriticalPoint]) -> float:
+    """Return the largest relative difference of critical points, inf if they are not of the same kinds."""
+    if [point.kind for point in mine] != [point.kind for point in others]:
+        return np.inf
+    places = [
+        np.nan_to_num([[p.load_factor, p.preload, p.rotation] for p in points]).reshape(-1, 3)
+        for points in (mine, others)
+    ]
+    size = np.maximum(np.abs(places).max(axis=0), (NOTHING, NOTHING, TURN))
+    return float((np.abs(places[0] - places[1]) / size).max(initial=0.0))
+
+
+def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[int]) -> StaticSolution:
+    """Return the states that both meshes have, and say where they part."""
+    kept, known = _alike(answer, other), 0
+    pairs = zip(answer.critical_points, other.critical_points, strict=False)
+    for mine, its in pairs:
+        if _apart([mine], [its]) > SAME:
+            break
+        known += 1
+    whole = answer.status is Status.CONVERGED and kept == len(answer.work)
+    ends = [
+        ", ".join((*(f"{p.kind} at {p.load_factor:.6g}" for p in each.critical_points[known:]), _end(each)))
+        for each in (answer, other)
+    ]
+    most = 2 * max(elements)
+    message = (
+        f"not resolved with {elements[0]} elements: {ends[0]}; with {elements[1]}: {ends[1]}; "
+        f"take {most} elements"
+    )
+    rows: dict[str, Any] = {name: getattr(answer, name)[:kept] for name in BY_STATE}
+    return replace(
+        answer,
+        **rows,
+        bodies={name: place[:kept] for name, place in answer.bodies.items()},
+        critical_points=answer.critical_points[:known],
+        status=Status.CONVERGED if whole else Status.NOT_CONVERGED,
+        message=message,
+    )
+
+
+def _end(answer: StaticSolution) -> str:
+    if answer.status is Status.CONVERGED:
+        return "the whole path"
+    return f"stops at load factor {answer.load_factor[-1]:.6g} ({answer.message})"
+
+
+def _alike(answer: StaticSolution, other: StaticSolution) -> int:
+    """Return how many states from the first on the two meshes have alike, at least one."""
+    count = min(len(answer.work), len(other.work))
+    mine, its = (_quantities(each)[:count] for each in (answer, other))
+    scale = np.abs(its).max(axis=0)
+    apart = (np.abs(mine - its) / np.where(scale > NOTHING, scale, np.inf)).max(axis=1)
+    same = np.abs(answer.load_factor[:count] - other.load_factor[:count]) <= NOTHING
+    return max(1, int(np.argmax(np.append((apart > KEPT) | ~same, True))))
+
+
+def _quantities(answer: StaticSolution) -> Array:
+    """Return distances, turns and torque (S, K) [m, rad, N m]."""
+    moved = [np.linalg.norm(place[:, :2] - place[0, :2], axis=1) for place in answer.bodies.values()]
+    turns = [place[:, 2] for place in answer.bodies.values()]
+    return np.stack((*moved, *turns, np.nan_to_num(answer.torque)), axis=1)

@@ -9,9 +9,9 @@ from .control import Control, State
 from .effects import DrivenDisplacement
 from .law import Written
 from .matrix import Singular
-from .mesh import turned
+from .mesh import Tables, turned
 from .model import Model
-from .structure import Evaluation, Structure, Tables, structure_of
+from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
 #: Turns of the bodies (B,), and two rates of them.
@@ -141,8 +141,7 @@ def body_stiffness(
         held[structure.turns[model.body_index(driven)]] = True
     led = model.effects.find(DrivenDisplacement)
     if led is not None and led.body is not None:  # without a name it is of the body that is asked for
-        other = structure.body_slice(model.body_index(led.body)).start
-        held[other : other + 2] |= [moved is not None for moved in led.displacement]
+        held[[*structure.led(None)]] = True
     prescribed, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     prescribed[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)

@@ -72,7 +72,7 @@ def _highest(structure: Structure, bodies: RigidBodies, y: Array, asked: int) ->
     A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out between
     them, with 2 a b <= r a^2 + b^2 / r and r^2 = m / J: k (1 + r) to the node, k (1 + 1 / r) to the body.
     """
-    lumped, local = lumped_elements(structure), structure.element_matrices(y, asked)
+    lumped, local = lumped_elements(structure), structure.evaluate(y, asked=asked).matrices[:, :6, :6]
     (node, body, stiffness), last = structure.springs, structure.stations - 1
     (strip, place), inertia = np.divmod(node, last + 1), np.append(bodies.moment_of_inertia, np.inf)
     end = np.sign(place)
@@ -239,16 +239,12 @@ class Implicit(Scheme):
                 except Singular:
                     break
             change = self._factor[1].solve(residual)
-            if (np.abs(residual) <= self.least).all() and self._size(change) <= SMALL:
+            if (np.abs(residual) <= self.least).all() and self.structure.extent(change) <= SMALL:
                 return after
             a = a - change / reach
         samples.history.append(tuple(norms[1:]))
         self._factor = None
         return None
-
-    def _size(self, change: Array) -> float:
-        """Return the largest component of a change of the coordinates, in strip lengths and rad."""
-        return float(np.abs(self.structure.measure * change).max(initial=0.0))
 
     def _factorise(self, y: Array, h: float, samples: Samples) -> Factors:
         """Return the factors of the tangent of a step of h [s] at y, kept for the steps that follow.

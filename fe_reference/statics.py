@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .confirmed import confirmed
-from .control import Control, spans
+from .control import Control, require_balance, spans
 from .effects import DrivenDisplacement
 from .errors import InvalidParameter, choice, count, finite, pair, several
-from .freedom import require_balance
 from .law import FORCES
 from .loads import full_load
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
-from .refined import limit_of
+from .refined import confirmed, limit_of
 from .section_forces import strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
@@ -66,7 +64,7 @@ def solve_mechanism(
         accuracy: wanted error of path, torque, stiffness, strain energy and largest stress, in parts of the
             largest of each; the mesh is doubled until the estimate is below it, and the answer is the limit.
         check: whether critical points and an early end are compared with those of twice the elements; what
-            is not confirmed is not resolved, see `confirmed`.
+            is not confirmed is not resolved, see `refined.confirmed`.
         raise_on_failure: whether a path that ends early raises, or is returned with its status.
         progress: called as progress(done, total) after every increment.
 
@@ -78,9 +76,15 @@ def solve_mechanism(
     """
     require_model(mechanism)
     ends = None if rotation is None else several("rotation", rotation, "rad")
+    if displacement is not None:
+        if "driven_displacement" in mechanism.effects:
+            expected = "none beside the effect driven_displacement [m]"
+            raise InvalidParameter("displacement", displacement, expected)
+        led = DrivenDisplacement(displacement=pair("displacement", displacement, "m"))
+        mechanism = replace(mechanism, effects=mechanism.effects.changed("driven_displacement", led))
 
     def solve(model: Model) -> StaticSolution:
-        return _solved(model, body, ends, displacement, increments, progress, order=order)
+        return _solved(model, body, ends, increments, progress, order=order)
 
     return _answered(mechanism, accuracy, solve, check).checked(raise_on_failure)
 
@@ -121,60 +125,47 @@ def settled_state(
     rotation: float | None,
     body: str | None = None,
     increments: int = 20,
-    load: Array | None = None,
     starts: bool = False,
 ) -> tuple[Array, str]:
     """Return the coordinates (size,) in equilibrium at a driven rotation [rad], and a remark on the path.
 
-    The load (size,) is by default that of the scene in full, as is its driven displacement. Errors as above.
-    Where a motion `starts` there, rigid motions that nothing resists are held until then, whatever it takes.
+    Loads and the driven displacement of the scene act in full, or where a motion `starts` there as their
+    histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
+    above.
     """
-    structure = structure_of(model)
-    load = full_load(structure) if load is None else load
+    structure, led = structure_of(model), model.effects.find(DrivenDisplacement)
+    load = full_load(structure, time=0.0 if starts else None)
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
-    still = not rotation and load is None and not model.effects.find(DrivenDisplacement)
-    if still and not structure.constant_words:
+    if not rotation and load is None and led is None and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
-    solution = _solved(model, body, ends, None, increments, None, load=load, starts=starts).checked()
-    return solution.states[-1], solution.message
-
-
-def state_at_start(
-    model: Model, rotation: float | None, body: str | None = None, increments: int = 20
-) -> tuple[Array, str]:
-    """Return the state in which a motion starts: loads and drives are as their histories begin."""
-    load, led = full_load(structure_of(model), time=0.0), model.effects.find(DrivenDisplacement)
-    if led is not None:
+    if starts and led is not None:
         model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
-    return settled_state(model, rotation, body, increments, load, starts=True)
+    solution = _solved(model, body, ends, increments, None, starts=starts).checked()
+    return solution.states[-1], solution.message
 
 
 def _solved(
     model: Model,
     body: str | None,
     rotations: Sequence[float] | None,
-    displacement: Sequence[float] | None,
     increments: int,
     progress: Progress | None,
     *,
     order: str = LOADS_FIRST,
-    load: Array | None = None,
     starts: bool = False,
 ) -> StaticSolution:
-    """Follow the path through the rotations [rad], one leg each; the load is by default that of the scene."""
+    """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
-    led, place = _displacement(model, displacement)
-    driven = rotations is not None or (led is not None and place is None)
+    led = model.effects.find(DrivenDisplacement)
+    driven = rotations is not None or (led is not None and led.body is None)
     which = model.body_index(body) if driven or body is not None else None
-    acting = full_load(structure) if load is None else load
+    acting = full_load(structure, time=0.0 if starts else None)
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and led is None  # a body that is led goes where both lead it
     controls = spans(
         structure,
         body=which,
         rotations=rotations,
-        displacement=led,
-        led=place,
         load=acting,
         first=first,
     )
@@ -185,18 +176,6 @@ def _solved(
         require_balance(structure, path.control.props, state.residual, acting)
     name = None if which is None else model.body_names[which]
     return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)
-
-
-def _displacement(
-    model: Model, given: Sequence[float] | None
-) -> tuple[tuple[float | None, float | None] | None, int | None]:
-    """Return the displacement that is asked for or named [m], and the body that is named with it."""
-    named = model.effects.find(DrivenDisplacement)
-    if given is not None and named is not None:
-        raise InvalidParameter("displacement", given, "none beside the effect driven_displacement [m]")
-    if named is None:
-        return (None if given is None else pair("displacement", given, "m")), None
-    return named.displacement, None if named.body is None else model.body_index(named.body)
 
 
 def _packed(

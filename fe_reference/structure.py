@@ -15,29 +15,21 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Array, Flags, Indices, kernel
+from .arrays import Array, Flags, Indices
 from .bending import CURL
-from .effects import Gravity, PreStrain
-from .law import FORCES, TANGENT, Energies, Given, Written, elements
-from .matrix import Envelope, Symmetric
+from .effects import DrivenDisplacement, Gravity, PreStrain
+from .law import FORCES, TANGENT
+from .matrix import Envelope, Symmetric, assemble
 from .mesh import (
     RESULTANTS,
-    Carried,
     Elements,
-    Springs,
-    Weights,
-    body_forces,
     carry,
     carry_velocity,
-    gravity_energy,
+    potential,
     root_stiffness,
-    spring_forces,
     strip_basis,
 )
 from .model import FREE, Model
-
-#: What is known of a structure where all its elements are run through.
-Tables = tuple[Given, Carried, Weights, Springs]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -187,6 +179,23 @@ class Structure:
         """Return where the coordinates of a body lie."""
         return slice(self.first_body + 3 * body, self.first_body + 3 * body + 3)
 
+    def led(self, body: int | None) -> dict[int, float]:
+        """Return the coordinates that the driven displacement of the scene leads, and how far [m].
+
+        They are those of this body where the effect names none.
+        """
+        effect = self.model.effects.find(DrivenDisplacement)
+        if effect is None:
+            return {}
+        if effect.body is not None or body is None:
+            body = self.model.body_index(effect.body)
+        at = self.body_slice(body).start
+        return {at + k: part for k, part in enumerate(effect.displacement) if part is not None}
+
+    def extent(self, change: Array) -> float:
+        """Return the largest component of a change of the coordinates, in strip lengths and rad."""
+        return float(np.abs(self.measure * change).max(initial=0.0))
+
     def flags(self, chosen: Sequence[int] | Indices) -> Flags:
         """Return which of the coordinates are chosen (size,)."""
         return np.isin(np.arange(self.size), chosen)
@@ -226,7 +235,7 @@ class Structure:
         u, bodies = self.displacement(y), self.bodies(y)
         resultants, (force, scratch) = np.empty((len(bodies), RESULTANTS)), self.work
         written = (force, ends, matrices, scratch)
-        strain, gravity = _evaluate(self.tables, share, asked, u, bodies, written, resultants)
+        strain, gravity = potential(self.tables, share, asked, u, bodies, written, resultants)
         if asked != FORCES:
             tangent = self.reduced_matrix(matrices, y)
         if asked == TANGENT:
@@ -250,22 +259,16 @@ class Structure:
         np.add.at(matrix.data, places[places >= 0], values[places >= 0])
 
     def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
-        """Assemble element matrices (E, 8, 8) into the reduced coordinates as P^T K P: see `_assemble`."""
-        return self.pattern.assembled(matrices, self.ends, self.carried, y[self.turns])
+        """Assemble element matrices (E, 8, 8) into the reduced coordinates as P^T K P: see `assemble`."""
+        whole = self.pattern.zero()
+        assemble(matrices, self.ends, self.carried, y[self.turns], self.pattern.places, whole.data)
+        return whole
 
     def body_places(self, y: Array) -> Array:
         """Return places of the bodies (S, B, 3) [m, rad] for coordinates (S, size) about their points."""
         places = self.bodies(y).copy()
         places[..., :2] += self.points
         return places
-
-    def element_matrices(self, y: Array, asked: int) -> Array:
-        """Return the tangents of the elements, or the part that is asked for, (E, 6, 6)."""
-        many, (force, scratch) = len(self.numbers), self.work
-        matrices = np.empty((many, 6, 6))
-        written = (force, np.empty((many, 5)), matrices, scratch)
-        elements(self.given, 1.0, asked, self.displacement(y), written)
-        return matrices
 
     def share_rates(self, y: Array) -> tuple[Array, float, float]:
         """Return what the share changes at fixed y: the gradient (size,), and the potential, once and twice.
@@ -285,15 +288,3 @@ class Structure:
 def structure_of(model: Model) -> Structure:
     """Return the structure of a model about the centres of its bodies, built at first use."""
     return Structure(model)
-
-
-@kernel()
-def _evaluate(
-    tables: Tables, share: float, asked: int, u: Array, bodies: Array, written: Written, resultants: Array
-) -> tuple[Energies, float]:
-    """Write forces and resultants; return energies of the strips and of the full weight."""
-    (given, carried, weights, springs), force = tables, written[0]
-    bending, axial, shear = elements(given, share, asked, u, written)
-    body_forces(share, bodies, carried, weights, force, resultants)
-    bending += spring_forces(springs, 0.0, (bodies, bodies), (u, u), force, resultants)[0]
-    return (bending, axial, shear), gravity_energy(weights, bodies, u)

@@ -227,7 +227,7 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
             "preload": float(point.preload),
         }
     known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
-    return CriticalLoad(asked=asked, solution=path if settled else None, **known | found)
+    return CriticalLoad(asked=asked, solution=path, **known | found)
 
 
 def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
