@@ -19,26 +19,24 @@ Row = dict[str, Any]
 Answer = Mapping[str, Row | Iterable[Row] | pd.DataFrame]
 
 
-def finding(
-    *, claim: str, formulation: str, quantity: str, value: float, holds: bool, ratio: bool = False
-) -> Row:
+def finding(*, claim: str, formulation: str, quantity: str, value: float, holds: bool) -> Row:
     """Return the row of one claim held against one formulation, with the sentence that says it.
 
     Args:
         claim: what the paper says, with the bound it is read as.
         formulation: which formulation it was held against.
         quantity: what was measured.
-        value: measured [1]; ratio: whether it says how many times.
+        value: measured [1].
         holds: whether the claim holds, "yes" or "no" in the row.
     """
-    told, verdict = f"{value:.3g}" if ratio else percent(value), "holds" if holds else "does not hold"
+    verdict = "holds" if holds else "does not hold"
     return {
         "claim": claim,
         "formulation": formulation,
         "quantity": quantity,
         "value": value,
         "holds": "yes" if holds else "no",
-        "sentence": f"{formulation}: {quantity} is {told}, so the claim {verdict}.",
+        "sentence": f"{formulation}: {quantity} is {percent(value)}, so the claim {verdict}.",
     }
 
 
@@ -50,7 +48,7 @@ class Claim:
         claim, formulation, quantity: texts in which a column in braces stands for the row's value, formatted
             as `str.format` does.
         rows: of the tables, which rows are judged.
-        value: the column that was measured [1], or what makes it of a row; ratio: it says how many times.
+        value: the column that was measured [1], or what makes it of a row.
         holds: of a row, whether the claim holds. Without it: `least` <= value <= `most`.
     """
 
@@ -62,7 +60,6 @@ class Claim:
     holds: Callable[[Row], Any] | None = None
     least: float = -math.inf
     most: float = math.inf
-    ratio: bool = False
 
     def __call__(self, tables: Tables) -> Iterator[Row]:
         """Yield the findings."""
@@ -74,7 +71,6 @@ class Claim:
                 quantity=self.quantity.format(**row),
                 value=value,
                 holds=bool(self.holds(row)) if self.holds else self.least <= value <= self.most,
-                ratio=self.ratio,
             )
 
 

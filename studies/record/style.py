@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 #: Colours that remain apart for colour-blind readers (Okabe and Ito, Color Universal Design, 2008).
 BLACK, GREY, ORANGE, SKY = "#000000", "#808080", "#e69f00", "#56b4e9"
-GREEN, YELLOW, BLUE, RED, PURPLE = "#009e73", "#d6c400", "#0072b2", "#d55e00", "#cc79a7"
+GREEN, BLUE, RED, PURPLE = "#009e73", "#0072b2", "#d55e00", "#cc79a7"
 
 #: Width of a page's text [inch].
 PAGE_WIDTH = 160.0 / 25.4

@@ -183,18 +183,18 @@ def _long_run(model: str, count: int) -> Answer:
     return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift}
 
 
-def _pieces(model: str, count: int, steps: int = PIECE) -> Iterator[Row]:
-    """Yield the row of drift after each piece of so many steps, until one stops early."""
+def _pieces(model: str, count: int) -> Iterator[Row]:
+    """Yield the row of drift after each piece, until one stops early."""
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
     first, change = 0.0, 0.0
     for number in range(1, count + 1):
-        piece = _moved(model, duration=steps * LONG_STEP, step=LONG_STEP, records=100, **begin)
+        piece = _moved(model, duration=PIECE * LONG_STEP, step=LONG_STEP, records=100, **begin)
         energy = piece.kinetic_energy + piece.strain_energy
         first = first or float(energy[0])
         change = max(change, float(np.abs(energy / first - 1.0).max()))
         yield {
             "model": model,
-            "steps": number * steps,
+            "steps": number * PIECE,
             "energy_change": change,
             "constraint_residual_m": float(piece.constraint_residual.max()),
             "amplitude_rad": float(np.abs(piece.rotation).max()),
