@@ -1,5 +1,6 @@
 """Static paths of plain pivots by the compiled kernel of many at once; what it cannot do goes one by one."""
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -54,7 +55,9 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
         status[row], reason[row], answer = points.solve(task, design)
         for name, value in answer.items():
             found[name][row] = value
-    table = {points.POINT: np.arange(start, start + count), **columns}
+    table: dict[str, Any] = {points.POINT: np.arange(start, start + count)}
+    for key, column in columns.items():
+        table[key] = [json.dumps(value) if isinstance(value, list) else value for value in column]
     table |= {points.STATUS: status, points.REASON: reason}
     arrays = [pa.array(values) for values in table.values()]
     for name, quantity in points.stored(task).items():

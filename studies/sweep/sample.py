@@ -95,8 +95,19 @@ def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
         raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
     for value in values:
         document.admitted(where, label, rule, value)
-    kept = [float(v) if rule.kind == "number" else tuple(v) if isinstance(v, list) else v for v in values]
+    whole = rule.kind != "number" and all(isinstance(value, int) for value in values)
+    kept = values if whole else [_kept(value) for value in values]
+    if len({type(value) for value in kept}) > 1:
+        expected = "numbers, texts or pairs of numbers alone"
+        raise CaseError(f"{where}: {label}: got values of different types, expected {expected}")
     return tuple(kept)
+
+
+def _kept(value: Any) -> Any:
+    """Return a number as a float, and a pair of numbers as a tuple; other texts and lists as they are."""
+    if isinstance(value, list) and all(isinstance(part, int | float) for part in value):
+        return tuple(map(float, value))
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
 def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Axis:

@@ -77,6 +77,14 @@ def test_a_case_that_tips_over_is_no_end(capsys):
     gates.check("sizing_finite_elements", abs(there / 0.3 - 1.0))
 
 
+def test_a_design_that_the_model_refuses_is_a_start_without_an_answer(capsys):
+    """Requirement: a start that buckles under its weight costs its own row; the others are searched."""
+    limits = ("--stiffness", "0.5", "--max-stress-MPa", "900", "--starts", "2")
+    assert main(["size", str(FINDS / "heavy_pivot.toml"), *QUICK[:2], *limits]) in (0, 3)
+    out, err = capsys.readouterr()
+    assert [row.split()[0] for row in out.splitlines()[-2:]] == ["0", "1"], err
+
+
 @pytest.mark.slow
 def test_every_start_has_a_row_and_an_end_in_words(capsys):
     """Eight starts are eight rows, those whose path ends early among them; a negative rotation is a range."""
