@@ -53,7 +53,7 @@ class Outcome:
     Attributes:
         at: scaled variables (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
-        design: the design there, None of one without an answer; answers: its own, None where its path does not reach the end.
+        design: the design there; answers: its own; both None where its path does not reach the end.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
         solved: designs that were solved.
