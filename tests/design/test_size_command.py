@@ -19,20 +19,14 @@ CASE = "cross_axis_pivot"
 QUICK = ("--objective", "centre-shift", "--rotation-deg", "45", "--aspect", "0.5", "--starts", "1")
 
 
-@pytest.mark.slow
-def test_answer(capsys):
-    """The table compares case, optimum and finite elements and lists the starts."""
-    assert main(["size", CASE, *QUICK]) == 0
-    out = capsys.readouterr().out
-    assert "times less than the case's" in out
-    assert "in FE" in out and "held back by, with prices: " in out
-    assert "no design" not in out
-
-
-def test_json(tmp_path):
-    """The JSON holds the optimum with both models' answers, the bounds and every start."""
+def test_answer(tmp_path, capsys):
+    """The table compares case, optimum and finite elements and lists the starts; the JSON holds the optimum
+    with both models' answers, the bounds and every start."""
     path = tmp_path / "sized.json"
     assert main(["size", CASE, *QUICK, "--json", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "times less than the case's" in out and "no design" not in out
+    assert "in FE" in out and "held back by, with prices: " in out
     found = json.loads(path.read_text())
     optimum, case = found["optimum"], found["case"]
     assert optimum["spline"]["largest_centre_shift_m"] < 0.5 * case["largest_centre_shift_m"]
@@ -46,7 +40,6 @@ def test_json(tmp_path):
     }  # fmt: skip
 
 
-@pytest.mark.slow
 def test_no_design_meets_the_constraints(capsys):
     """A stress that nothing meets ends with code 3, the starts, and how far they missed."""
     assert main(["size", CASE, *QUICK, "--max-stress-MPa", "1"]) == 3
