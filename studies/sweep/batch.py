@@ -172,6 +172,11 @@ def _paths(
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
     shift_errs = shift_error(batch.errors["trajectory"], batch.centre, shift)
     error = np.fmax.reduce((*batch.errors.values(), shift_errs))
+    strip = Strip(
+        thickness=given["depth"],
+        width=given["area"] / given["depth"],
+        **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
+    )
     paths = Paths(
         rest=0,
         along={
@@ -182,7 +187,7 @@ def _paths(
             "strain": batch.strain[..., None],
             **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
         },
-        strips=(_strip(given),),
+        strips=(strip,),
         effects=tuple(PLAIN),
         iterations=(1 + task.options["both_sides"]) * batch.iterations,
         control_points=batch.control_points.astype(float),
@@ -198,12 +203,3 @@ def _crossing(given: Columns) -> Array:
     reach = given["crossing_ratio"] * given["length"]
     angle = given["inclination"] + given["orientation"]
     return np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))
-
-
-def _strip(given: Columns) -> Strip:
-    """Return the strips of all designs as one of arrays."""
-    return Strip(
-        thickness=given["depth"],
-        width=given["area"] / given["depth"],
-        **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
-    )
