@@ -57,7 +57,7 @@ def quantity(
         group: heading over the columns.
         **values: of each column by its heading; NaN where there is none.
     """
-    shown, scaled = prefixed(unit, np.stack([_above(floor, each) for each in values.values()]), highest)
+    shown, scaled = _prefixed(unit, np.stack([_above(floor, each) for each in values.values()]), highest)
     decimals = _decimals(_largest(scaled), digits)
     rows = [tuple(fixed(value, decimals) for value in each) for each in scaled]
     pairs = zip(values, rows, strict=True)
@@ -68,13 +68,13 @@ def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> 
     """Return columns over many powers of ten: every number with its significant digits, a prefix a column."""
     columns = []
     for name, value in values.items():
-        shown, scaled = prefixed(unit, _above(floor, value), 6)
+        shown, scaled = _prefixed(unit, _above(floor, value), 6)
         cells = tuple(one(each, digits) for each in scaled)
         columns.append(Column(name=name, unit=shown, cells=cells))
     return tuple(columns)
 
 
-def prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndarray]:
+def _prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndarray]:
     """Return a unit with a prefix, of a power of ten of `highest` at most, and the values in it.
 
     Of the largest value it leaves three digits before the point at most.

@@ -220,9 +220,7 @@ def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, A
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
-    known = [each for each in strengths if each is not None]
-    strength = min(known) if len(known) == len(strengths) else None
-    allowable = _allowable(strength, arguments)
+    allowable = _allowable(None if None in strengths else min(strengths), arguments)
     try:
         own = task.accurate()
     except PathEnds:

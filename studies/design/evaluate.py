@@ -134,31 +134,24 @@ def answers(
     """
     chain = np.eye(len(parameters)) if chain is None else chain
     sides = [_to_one_side(side, control_points, parameters, chain) for side in sides_of(design)]
-    found = _Side(*map(_joined, zip(*sides, strict=True)))
-    shift, by_shift = found.shift - found.shift[0], found.by_shift - found.by_shift[0]
-    at_rest, ratio = found.stiffness[0], found.stiffness[1:] / found.stiffness[0]
+    rotation, stiffness, by_stiffness, shift, by_shift, stress, by_stress = map(
+        _joined, zip(*sides, strict=True)
+    )
+    shift, by_shift, held = shift - shift[0], by_shift - by_shift[0], held_states(design)
+    ratio = stiffness[1:] / stiffness[0]
+    by_ratio = (by_stiffness[1:] - ratio[:, None] * by_stiffness[0]) / stiffness[0]
+    by_square = 2.0 * np.einsum("si,sip->sp", shift[1:], by_shift[1:])
     followed = {
-        STIFFNESS: Followed(found.stiffness[:1], found.by_stiffness[:1]),
-        CENTRE_SHIFT: Followed(
-            np.sum(shift[1:] ** 2, axis=1), 2.0 * np.einsum("si,sip->sp", shift[1:], by_shift[1:])
-        ),
-        VARIATION: Followed(
-            ratio - 1.0, (found.by_stiffness[1:] - ratio[:, None] * found.by_stiffness[0]) / at_rest
-        ),
-        STRESS: Followed(
-            found.stress[held_states(design)].ravel(),
-            found.by_stress[held_states(design)].reshape(-1, chain.shape[1]),
-        ),
+        STIFFNESS: Followed(stiffness[:1], by_stiffness[:1]),
+        CENTRE_SHIFT: Followed(np.sum(shift[1:] ** 2, axis=1), by_square),
+        VARIATION: Followed(ratio - 1.0, by_ratio),
+        STRESS: Followed(stress[held].ravel(), by_stress[held].reshape(-1, chain.shape[1])),
     }
     if design.rotation is None:
         travel = np.linalg.norm(shift[-1:], axis=1)
         followed[TRAVEL] = Followed(travel, shift[-1:] @ by_shift[-1] / travel)
-    measured = Measured(
-        rotation=found.rotation,
-        shift=np.hypot(*shift.T),
-        stiffness=found.stiffness,
-        stress=np.abs(found.stress).max(axis=(1, 2, 3)),
-    )
+    largest = np.abs(stress).max(axis=(1, 2, 3))
+    measured = Measured(rotation=rotation, shift=np.hypot(*shift.T), stiffness=stiffness, stress=largest)
     return Answers(followed=followed, measured=measured)
 
 
@@ -213,25 +206,13 @@ def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
     )
 
 
-class _Side(NamedTuple):
-    """A path from the state on at which the body begins to turn, loads having come on before: what sizing
-    asks for, (S, ...), and its derivatives by the variables (S, ..., N).
+def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> list[Array]:
+    """Return a path from the state on at which the body begins to turn, loads having come on before.
 
-    rotation: [rad], load factor where nothing is driven; stiffness: [N m / rad]; shift: (S, 2) of the pivot's
-    crossing, or of the mechanism's body, from rest [m]; stress: of fibres [Pa].
+    Arguments and errors are those of `answers`. Arrays (S, ...): rotation [rad], load factor where nothing
+    is driven; the stiffness [N m / rad], the shift of the pivot's crossing, or of the mechanism's body, from
+    rest (2) [m], and the stress of the fibres [Pa], each before its derivative by the variables (S, ..., N).
     """
-
-    rotation: Array
-    stiffness: Array
-    by_stiffness: Array
-    shift: Array
-    by_shift: Array
-    stress: Array
-    by_stress: Array
-
-
-def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> _Side:
-    """Return the path to one side; arguments and errors as of `answers`."""
     asked = put(design, SplineSettings(control_points=control_points))
     with asked.refusals():
         try:
@@ -247,7 +228,7 @@ def _to_one_side(design: Design, control_points: int, parameters: Sequence[str],
     arrays = [path.load_factor[turned] if design.rotation is None else path.rotation[turned]]
     for quantity in (found.stiffness, found.centre_shift, found.fibre_stress):
         arrays += [quantity.value[turned], quantity.derivative[turned] @ chain]
-    return _Side(*arrays)
+    return arrays
 
 
 def _joined(sides: Sequence[Array]) -> Array:

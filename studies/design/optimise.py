@@ -53,7 +53,7 @@ class Outcome:
     Attributes:
         at: scaled variables (N + 1,) where it ended, t last.
         converged: whether it is feasible and meets the Karush-Kuhn-Tucker conditions; message: otherwise why.
-        design: the design there; answers: its own, None where its path does not reach the end.
+        design: the design there; answers: its own; both None where its path does not reach the end.
         objective: largest value over the range [m or 1]; violation: of the worst row [1].
         residual: of the Karush-Kuhn-Tucker conditions, relative; active: the constraints that hold.
         solved: designs that were solved.
@@ -282,7 +282,7 @@ def _outcome(programme: Programme, at: Array, found: Answers | None, message: st
         at=at,
         converged=not message,
         message=message,
-        design=question.design(values),
+        design=None if found is None else question.design(values),
         answers=found,
         objective=objective,
         violation=violation,

@@ -19,6 +19,7 @@ from scipy.optimize import nnls
 
 from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, Answers, Followed, PathEnds
 from studies.design.question import Question
+from studies.errors import BadInput
 from studies.kinds import Array
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
@@ -69,7 +70,7 @@ def compared(question: Question) -> tuple[Array, Answers]:
     for start in spread:
         try:
             return start, question.answers(question.values(start))
-        except PathEnds as error:
+        except (PathEnds, BadInput) as error:
             ended = str(error)
     raise PathEnds(f"neither the case nor {len(spread)} designs within the bounds have an answer: {ended}")
 
@@ -105,7 +106,7 @@ class Programme:
                 self.progress(self.solved)
             try:
                 found = self.question.answers(self.question.values(y))
-            except PathEnds as error:
+            except (PathEnds, BadInput) as error:  # the model may refuse a design that is none of the case's
                 found, self.ended = None, str(error)
             self._last = (key, found)
         return self._last[1]
@@ -132,8 +133,9 @@ class Programme:
             margin = side * (values[ratio.top] - limit * values[ratio.bottom])
             by = side * span * (eye[ratio.top] - limit * eye[ratio.bottom])
             yield Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
-        flat = 0.0 * eye[-1]
-        yield self._below(STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, flat, signs=(-1.0,))
+        yield self._below(
+            STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, 0.0 * eye[-1], signs=(-1.0,)
+        )
 
     def _below(
         self,

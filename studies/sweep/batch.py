@@ -1,5 +1,6 @@
 """Static paths of plain pivots by the compiled kernel of many at once; what it cannot do goes one by one."""
 
+import json
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
@@ -55,7 +56,9 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
         status[row], reason[row], answer = points.solve(task, design)
         for name, value in answer.items():
             found[name][row] = value
-    table = {points.POINT: np.arange(start, start + count), **columns}
+    table: dict[str, Any] = {points.POINT: np.arange(start, start + count)}
+    for key, column in columns.items():
+        table[key] = [json.dumps(value) if isinstance(value, list) else value for value in column]
     table |= {points.STATUS: status, points.REASON: reason}
     arrays = [pa.array(values) for values in table.values()]
     for name, quantity in points.stored(task).items():
@@ -173,6 +176,11 @@ def _paths(
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
     shift_errs = shift_error(batch.errors["trajectory"], batch.centre, shift)
     error = np.fmax.reduce((*batch.errors.values(), shift_errs))
+    strip = Strip(
+        thickness=given["depth"],
+        width=given["area"] / given["depth"],
+        **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
+    )
     paths = Paths(
         rest=0,
         along={
@@ -183,7 +191,7 @@ def _paths(
             "strain": batch.strain[..., None],
             **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
         },
-        strips=(_strip(given),),
+        strips=(strip,),
         effects=tuple(PLAIN),
         iterations=(1 + task.options["both_sides"]) * batch.iterations,
         control_points=batch.control_points.astype(float),
@@ -199,12 +207,3 @@ def _crossing(given: Columns) -> Array:
     reach = given["crossing_ratio"] * given["length"]
     angle = given["inclination"] + given["orientation"]
     return np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))
-
-
-def _strip(given: Columns) -> Strip:
-    """Return the strips of all designs as one of arrays."""
-    return Strip(
-        thickness=given["depth"],
-        width=given["area"] / given["depth"],
-        **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
-    )

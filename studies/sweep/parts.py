@@ -98,7 +98,7 @@ class Folder:
                 _stream(parts, lambda schema: pq.ParquetWriter(stream, schema))
         if csv and not self.csv.is_file():
             with whole_file(self.csv) as stream, pq.ParquetFile(self.table) as source:
-                groups = (source.read_row_group(i) for i in range(source.num_row_groups))
+                groups = (_flat(source.read_row_group(i)) for i in range(source.num_row_groups))
                 _stream(groups, lambda schema: pa_csv.CSVWriter(stream, schema))
         for number in range(self._plan.chunks):
             self._part(number).unlink(missing_ok=True)
@@ -175,6 +175,15 @@ def _difference(former: dict[str, Any], now: dict[str, Any]) -> str:
                 return f"{key}.{_difference(one, other)}"
             return key
     return "order of keys"
+
+
+def _flat(table: pa.Table) -> pa.Table:
+    """Return a table with its lists as texts, as CSV has none."""
+    for place, column in enumerate(table.schema):
+        if pa.types.is_list(column.type):
+            texts = pa.array([json.dumps(each) for each in table[place].to_pylist()])
+            table = table.set_column(place, column.name, texts)
+    return table
 
 
 def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:

@@ -224,7 +224,7 @@ def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
     the document."""
     for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
         if key in MOMENTS:
-            to_moments(document["strip"])
+            _to_moments(document["strip"])
         if key != SLENDERNESS and not is_setting(key):
             _put(document, key, value)
     if SLENDERNESS in values:
@@ -233,7 +233,7 @@ def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
         strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
 
 
-def to_moments(section: dict[str, Any]) -> None:
+def _to_moments(section: dict[str, Any]) -> None:
     """Give a table of the document its section by area and second moment, in place of width and thickness."""
     _exchange(section, keys.SIDES, of_sides, keys.MOMENTS)
 

@@ -17,7 +17,8 @@ from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Key, choice, positive, shown, text, whole
 from studies.sweep import batch, plan, points
 from studies.sweep.plan import KINDS, Plan, Sample, Task
-from studies.sweep.sample import POINTS, leaves, require_known, sample_of
+from studies.sweep.sample import KEYS as SAMPLE
+from studies.sweep.sample import leaves, require_known, sample_of
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
 #: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
@@ -72,8 +73,11 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         require_known(where, "set", key, known)
         document.admitted(where, f"set.{key}", known[key], value)
     plan.put(case, dict(leaves(tables["set"])))
-    settings = _settings(where, tables["settings"], known)
-    sample = sample_of(where, tables["sample"], tables["vary"], known, folder)
+    own = {key.partition(".")[2]: rule for key, rule in known.items() if plan.is_setting(key)}
+    keys = [Key(plan.SETTINGS, name, name, rule, optional=True) for name, rule in own.items()]
+    settings = document.values(where, keys, tables["settings"], plan.SETTINGS)
+    asked = document.values(where, SAMPLE, tables["sample"], "sample")
+    sample = sample_of(where, asked, tables["vary"], known, folder)
     _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
     kind, options = _analysis(where, tables["analysis"])
     found = points.known(case, kind, options.get("count", 0))
@@ -90,9 +94,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     )
     task = _checked(task, sample)
     least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
-    chunk = max(least, min(most, -(-sample.points // CHUNKS)))
-    if "chunk" in tables["sample"]:
-        chunk = document.admitted(where, "sample.chunk", POINTS, tables["sample"]["chunk"])
+    chunk = asked.get("chunk", max(least, min(most, -(-sample.points // CHUNKS))))
     return Plan(task=task, sample=sample, chunk=chunk, content=_content(content, task, sample, chunk))
 
 
@@ -118,16 +120,6 @@ def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
         return document.parsed(folder / name)
     expected = document.nearest(name, sorted(path.stem for path in FOLDER.glob("*.toml")))
     raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
-
-
-def _settings(where: str, given: Mapping[str, Any], known: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keywords of the model's settings."""
-    own = [key.partition(".")[2] for key in known if plan.is_setting(key)]
-    document.refuse_unknown(where, plan.SETTINGS, given, own)
-    return {
-        name: document.admitted(where, f"settings.{name}", known[f"{plan.SETTINGS}.{name}"], value)
-        for name, value in given.items()
-    }
 
 
 def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> None:

@@ -10,44 +10,50 @@ from scipy.stats import qmc
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import shown, whole
+from studies.cases.rules import Key, choice, shown, text, whole
 from studies.kinds import Array
 from studies.sweep.plan import METHODS, Axis, Sample
 
 MOST = 100_000_000
 POINTS = whole(1, MOST)
-SEED = whole(0, 2**32 - 1)
 FIELDS = ("from", "to", "points", "scale", "values")
 SCALES = ("linear", "log")
+#: Keys of [sample].
+KEYS = tuple(
+    Key("sample", name, name, rule, optional=True)
+    for name, rule in {
+        "method": choice(*METHODS),
+        "points": POINTS,
+        "seed": whole(0, 2**32 - 1),
+        "chunk": POINTS,
+        "file": text("the name of a CSV file"),
+    }.items()
+)
 
 
 def sample_of(
     where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
 ) -> Sample:
-    """Return the sample that the sections [sample] and [vary] describe."""
-    document.refuse_unknown(where, "sample", given, ["method", "points", "seed", "chunk", "file"])
+    """Return the sample that the section [vary] and the values of `KEYS` describe."""
     method = given.get("method", "list" if "file" in given else "grid")
-    document.one_of(where, "sample.method", method, METHODS)
     random = method in METHODS[2:]
     for name in ("points", "seed"):
         if name in given and not random:
             raise CaseError(f"{where}: sample.{name}: got it for a {method}, which has those of [vary]")
+    if random and "points" not in given:
+        raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
     if "file" in given:
         axes = _from_file(where, given, varied, known, folder)
     else:
         axes = tuple(_axis(where, key, value, known, method) for key, value in leaves(varied))
-    if random:
-        if "points" not in given:
-            raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
-        points = document.admitted(where, "sample.points", POINTS, given["points"])
-    elif method == "list":
-        points = _length(where, axes)
-    else:
-        points = math.prod(axis.count for axis in axes)
-        if points > MOST:
-            raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {MOST}")
-    seed = document.admitted(where, "sample.seed", SEED, given.get("seed", 0))
-    return Sample(method=method, axes=axes, points=points, seed=seed)
+    counts = {axis.key: axis.count for axis in axes}
+    if method == "list" and len(set(counts.values())) > 1:
+        told = ", ".join(f"{key} {count}" for key, count in counts.items())
+        raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
+    points = axes[0].count if method == "list" else given.get("points", math.prod(counts.values()))
+    if points > MOST:
+        raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {MOST}")
+    return Sample(method=method, axes=axes, points=points, seed=given.get("seed", 0))
 
 
 def leaves(table: Mapping[str, Any], way: str = "") -> Iterator[tuple[str, Any]]:
@@ -95,8 +101,19 @@ def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
         raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
     for value in values:
         document.admitted(where, label, rule, value)
-    kept = [float(v) if rule.kind == "number" else tuple(v) if isinstance(v, list) else v for v in values]
+    whole = rule.kind != "number" and all(isinstance(value, int) for value in values)
+    kept = values if whole else [_kept(value) for value in values]
+    if len({type(value) for value in kept}) > 1:
+        expected = "numbers, texts or pairs of numbers alone"
+        raise CaseError(f"{where}: {label}: got values of different types, expected {expected}")
     return tuple(kept)
+
+
+def _kept(value: Any) -> Any:
+    """Return a number as a float, and a pair of numbers as a tuple; other texts and lists as they are."""
+    if isinstance(value, list) and all(isinstance(part, int | float) for part in value):
+        return tuple(map(float, value))
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
 def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Axis:
@@ -104,32 +121,19 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
     label = f"vary.{key}"
     if rule.kind != "number":
         raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
-    for name in ("from", "to", *(["points"] if grid else [])):
-        if name not in given:
-            raise CaseError(f"{where}: {label}.{name}: got no such field, expected it for a range")
     if "points" in given and not grid:
         raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
-    low, high = given["from"], given["to"]
-    for name, value in (("from", low), ("to", high)):
-        document.admitted(where, f"{label}.{name}", rule, value)
+    fields = {"from": rule, "to": rule, "points": POINTS, "scale": choice(*SCALES)}
+    optional = {"scale", "points"} - ({"points"} if grid else set())
+    keys = [Key(label, name, name, each, optional=name in optional) for name, each in fields.items()]
+    found = document.values(where, keys, given, label)
+    low, high, log = given["from"], given["to"], found.get("scale") == "log"
     if not low < high:
-        raise CaseError(
-            f"{where}: {label}: got an empty range from {shown(low)} to {shown(high)}, expected from < to"
-        )
-    scale = document.one_of(where, f"{label}.scale", given.get("scale", "linear"), SCALES)
-    if scale == "log" and low <= 0:
+        got = f"an empty range from {shown(low)} to {shown(high)}"
+        raise CaseError(f"{where}: {label}: got {got}, expected from < to")
+    if log and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
-    points = document.admitted(where, f"{label}.points", POINTS, given.get("points", 1))
-    return Axis(key=key, low=float(low), high=float(high), points=points, log=scale == "log")
-
-
-def _length(where: str, axes: tuple[Axis, ...]) -> int:
-    """Return the number of designs of a list; CaseError unless all its columns have it."""
-    lengths = {axis.key: axis.count for axis in axes}
-    if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{key} {count}" for key, count in lengths.items())
-        raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
-    return next(iter(lengths.values()))
+    return Axis(key=key, low=float(low), high=float(high), points=found.get("points", 1), log=log)
 
 
 def _from_file(
@@ -140,7 +144,7 @@ def _from_file(
 
     if varied or given.get("method", "list") != "list":
         raise CaseError(f"{where}: sample.file: got it beside [vary] or a method, expected it alone")
-    path = folder / str(given["file"])
+    path = folder / given["file"]
     try:
         table = pd.read_csv(path)
     except (OSError, ValueError) as error:

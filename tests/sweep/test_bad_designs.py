@@ -43,10 +43,17 @@ BAD = [
     ({"vary": "vary.strips.left.area_m2 = [1e-5]"}, "got no key of the case"),
     ({"vary": "vary.strip.crossing_ratio = 0.5"}, "vary.strip.crossing_ratio: got 0.5, expected a list or"),
     ({"vary": "vary.strip.crossing_ratio = { from = 0.5, to = 0.5 }"}, "got an empty range from 0.5 to 0.5"),
-    ({"vary": "vary.strip.crossing_ratio = { from = 0.5 }"}, "to: got no such field"),
+    (
+        {"vary": "vary.strip.crossing_ratio = { from = 0.5 }"},
+        "to: got no such key, expected a number between",
+    ),
     ({"vary": 'vary.body.centre_offset_m.x = { from = 0, to = 1, scale = "log" }'}, "expected it above 0"),
     ({"vary": "vary.strip.crossing_ratio = []"}, "got [], expected a list of values"),
     ({"vary": "vary.strip.crossing_ratio = { values = [0.5], to = 1 }"}, "got values beside to"),
+    (
+        {"vary": 'vary.effects.driven_displacement.displacement_m = [["free", 0.1], [0.1, 0.1]]'},
+        "got values of different types, expected numbers, texts or pairs of numbers alone",
+    ),
     ({"vary": "vary.drive.increments = { from = 5, to = 9 }"}, "got a range, expected values"),
     ({"vary": "vary.strip.slenderness = [50]\nvary.strip.area_m2 = [1e-5]"}, "beside strip.area_m2"),
     ({"sample": GRID, "vary": "vary.strip.crossing_ratio = { from = 0.1, to = 0.9 }"}, "points: got no such"),

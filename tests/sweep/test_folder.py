@@ -77,6 +77,25 @@ def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, mo
         assert (out / name).read_bytes() == (whole / name).read_bytes()
 
 
+PAIRS = ("[[0, 0], [0.01, -0.01]]", [[0.0, 0.0], [0.01, -0.01]], ["[0.0, 0.0]", "[0.01, -0.01]"])
+HISTORIES = ("[[[0, 0], [1, 1]], [[0, 1]]]", ["[[0, 0], [1, 1]]", "[[0, 1]]"])
+
+
+@pytest.mark.parametrize(
+    ("key", "values", "stored", "written"),
+    [("body.centre_offset_m", *PAIRS), ("drive.history", *HISTORIES, HISTORIES[1])],
+)
+def test_lists_are_values_too(key, values, stored, written, tmp_path):
+    """Requirement: pairs and lists of pairs vary as numbers do, whole ones beside others, in chunks, and
+    stand in either table."""
+    text = f'case = "cross_axis_pivot"\nsample.chunk = 1\nvary.{key} = {values}\n'
+    asked = plan(text + "set.drive = { rotation_deg = 5, increments = 1 }\nsettings.control_points = 5")
+    assert sweep(asked, tmp_path, csv=True, pool=local_pool(asked, 1)) == 2
+    table = pd.read_parquet(tmp_path / "designs.parquet")
+    assert [list(each) if isinstance(stored[0], list) else each for each in table[key]] == stored
+    assert list(pd.read_csv(tmp_path / "designs.csv")[key]) == written
+
+
 def test_a_finished_sweep_is_not_solved_again(whole, monkeypatch):
     """Requirement: the same call on a finished folder does nothing."""
     monkeypatch.setattr(run, "solve_chunk", None)
