@@ -66,11 +66,11 @@ def solve_motion(
     after: Trajectory | None = None,
     check: bool = True,
 ) -> Trajectory:
-    """Motion of a mechanism that is let go at rest.
+    """Motion of a mechanism that is released at rest.
 
     The start is in static equilibrium: with the rotation ``start`` [rad] of a body driven, weight and
     pre-strain in full, every load at its value times its history at t = 0 (without a history: in full),
-    and driven displacements likewise. Then the driven rotation lets go, and so does a driven
+    and driven displacements likewise. Then the driven rotation is released, and so is a driven
     displacement without a history; one with a history goes on holding. Loads go on as value times
     history(t), constant before its first and after its last time. start None: no rotation is driven;
     under loads without a history such a mechanism stands still. Rigid motions that nothing holds are held

@@ -79,7 +79,7 @@ def natural_frequencies(
     increments: int = 20,
     accuracy: float | None = None,
 ) -> Modes:
-    """Modes about a static state: free vibrations of what a release from it lets go of.
+    """Modes about a static state: free vibrations of the coordinates that a release from it frees.
 
     The state is in equilibrium with the rotation [rad] of a body, the only one by default, driven there;
     with driven displacements, weight, pre-strain and all loads in full. rotation None: 0 of a pivot; of a

@@ -225,14 +225,28 @@ def rigidity_of(
     reach: tuple[float, float] = (0.0, 1.0),
     roots: tuple[complex, complex] = (0.0, 0.0),
 ) -> Array:
-    """R / EI at u (P,) of a piece of a strip between shares of its length, as a curve of a degree follows it.
+    """Return R / EI of a piece of a strip, as a curve of a degree follows it.
 
-    ratio: b/L, 0 where no clamp holds the section flat; roots: lengths of the roots at its ends over its own,
-    whose compliance stands there as delta functions. The compliance EI / R is projected on polynomials of the
-    degree of the curvature under
-    a linear moment, less one: the strip's own curvature M EI / R is then one that it can take, and it has
-    both factors exactly, however thin the layers are. With more control points it tends to R; the roots do
-    not go beyond ROOT_DEGREE, and as far as the compliance stays above LEAST of that without them.
+    Parameters
+    ----------
+    ratio : width over length b/L; 0 where no clamp holds the section flat.
+    poisson_ratio : of the material.
+    degree : degree of the curve.
+    u : places along the piece (P,), 0 to 1.
+    reach : where the piece begins and ends, in parts of the strip's length.
+    roots : lengths of the roots at both ends over the strip's length. Their compliance stands there as delta
+        functions.
+
+    Returns
+    -------
+    R / EI at u (P,).
+
+    Notes
+    -----
+    The compliance EI / R is projected on polynomials. Their degree is one less than that of the curvature
+    under a linear moment, so that the strip can take its own curvature M EI / R and has both factors exactly,
+    however thin the layers are. With more control points the result tends to R. Roots are projected up to
+    ROOT_DEGREE, and as far as the compliance stays above LEAST of the compliance without them.
     """
     if not ratio and not any(roots):
         return np.ones(len(u))

@@ -116,7 +116,7 @@ class Stepper(Moves):
         return [number * run.step for number in sorted(nearest)]
 
     def switch(self, time: float, span: float) -> None:
-        """Let drives begin, change or end at ``time``, over at least ``span`` [s]: the run starts anew."""
+        """Let drives begin, change or end at ``time``, over at least ``span`` [s]: the run starts again."""
         active, (z, v) = self.motion.drives_at(time + 0.5 * span), self.moving[:2]
         self.drive(self.motion.from_here(z, active, self.active, time), active)
         v[:], lost = self.motion.catch(z, v, active, time, span)

@@ -71,11 +71,9 @@ def _push(s, a, grid, shape, strips, local):
         add_mode(a[k], modes[k], force)
     if along[0, CURL] > 0.0:
         flatten_at(s, strips, lanes)
-    slopes_at(
-        strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, lanes[0], lanes[1], lanes[2], lanes[3],
-        lanes[4], lanes[5], lanes[6], lanes[7], lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1],
-        lanes[GIVEN + 2], lanes[GIVEN + 4], force,
-    )  # fmt: skip
+    given = lanes[SPEED_AT], lanes[GIVEN], lanes[GIVEN + 1], lanes[GIVEN + 2], lanes[GIVEN + 4], force
+    rows = four(lanes, 0) + four(lanes, 4) + given
+    slopes_at(strips.measure, numbers[STRAIN], numbers[STRETCHING], weights, *rows)
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
     add_slopes(d1.shape[0], d1, d2, four(lanes, 4), gradient)

@@ -24,7 +24,7 @@ from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
-from spline_model.motion.strip import SLOPE, keep_curve, lost_between, quadratic
+from spline_model.motion.strip import SHARE, SLOPE, keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
@@ -67,7 +67,7 @@ def _hold(s, state, strips, work):
         for k in range(2):
             clamped[k] = force[outer + k] + force[inner + k]
         across = mean[stick] * force[inner + 1] - mean[stick + 1] * force[inner]
-        clamped[2] = across / (mean[SLOPE + e] if moving else 1.0)
+        clamped[2] = mean[SHARE + e] * across / (mean[SLOPE + e] if moving else 1.0)
 
 
 @part()

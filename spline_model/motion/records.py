@@ -141,8 +141,8 @@ class Trajectory(Tabulated):
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
     the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
     found; effects: names of the scene's effects; counters: steps, halved_steps, newton_iterations, ...;
-    seconds: by part (``newton.Laps``), "start" the static state that is let go; estimate: of the error, where
-    an accuracy was asked for;
+    seconds: by part (``newton.Laps``), "start" the static state that is released; estimate: of the error,
+    where an accuracy was asked for;
     rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad], and of the
     places of all bodies and free ends [m], by companions with finer steps and more control points; nan
     without.

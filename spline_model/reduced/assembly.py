@@ -19,7 +19,7 @@ from spline_model.reduced.arrays import (
     SLOWEST,
 )
 from spline_model.strip.compiled import called, part
-from spline_model.strip.condense import SINGULAR, condense, condense_coupled, recover
+from spline_model.strip.condense import SINGULAR, condense, recover
 from spline_model.strip.element import (
     BEYOND,
     GRADIENT,
@@ -80,9 +80,7 @@ def condensed(s, own, size, strips, local):
     """Condense strip s to its ends; returns its negative pivots, or SINGULAR."""
     h, gap, modes = local.reduced[s], local.gap[s], strips.compliance.shape[1]
     g, b = h[LAST], h[h.shape[1] : h.shape[1] + modes]
-    if strips.coupled == 0:
-        return condense(own, size, strips.gain[s], g, h, b, gap)
-    return condense_coupled(
+    return condense(
         own, size, strips.coupled, strips.outer, strips.compliance[s], strips.gain[s], g, h, b, gap
     )
 

@@ -20,25 +20,6 @@ SINGULAR = -1000
 
 
 @part()
-def condense(own, size, gain, g, h, b, gap):
-    """Condense a strip in place; returns its number of negative pivots, or SINGULAR.
-
-    own: W; size of the element's coordinates in use. Afterwards the leading block of h holds
-    L D L^T, the rest the tangent of the ends, g their force, and the leading part of g and the
-    block beside it are D^-1 L^-1 times their former values (for ``recover``).
-    """
-    for k in range(gap.size):
-        row = b[k]
-        push = gain[k] * gap[k]
-        for i in range(size):
-            left = gain[k] * row[i]
-            g[i] += push * row[i]
-            for j in range(i, size):
-                h[i, j] += left * row[j]
-    return eliminate(own, size, g, h)
-
-
-@part()
 def eliminate(count, size, g, h):
     """Eliminate the leading ``count`` coordinates; returns their negative pivots, or SINGULAR."""
     negative = 0
@@ -58,8 +39,14 @@ def eliminate(count, size, g, h):
 
 
 @called()
-def condense_coupled(own, size, coupled, outer, compliance, gain, g, h, b, gap):
-    """The same with ``coupled`` axial forces beside w, the first ``outer`` of them left with the ends."""
+def condense(own, size, coupled, outer, compliance, gain, g, h, b, gap):
+    """Condense a strip in place; returns its number of negative pivots, or SINGULAR.
+
+    own: W; size of the element's coordinates in use; coupled: axial forces beside w, the first ``outer`` of
+    them left with the ends. Afterwards the leading block of h holds L D L^T, the rest the tangent of the
+    ends, g their force, and the leading part of g and the block beside it are D^-1 L^-1 times their former
+    values (for ``recover``).
+    """
     last, end = own + coupled - outer, size - outer
     for k in range(gap.size):
         row, rest = b[k], 1.0 - compliance[k] * gain[k]

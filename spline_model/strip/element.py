@@ -120,11 +120,6 @@ class Strips(NamedTuple):
         return self.along[..., CURVATURE]
 
     @property
-    def rigidity(self) -> Array:
-        """EI (S, G)."""
-        return self.along[..., RIGIDITY]
-
-    @property
     def modes(self) -> Array:
         """Modes of the axial force (S, G, K)."""
         return self.along[..., MODES:]

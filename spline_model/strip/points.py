@@ -264,14 +264,15 @@ def forces_of_strains(s, strips, local, a):
 
 
 @part()
-def evaluate_curve(s, a, moving, shape, strips, local, out):
-    """Fill the gradient of the first ``moving`` places of strip s, and the rows of its lanes.
+def evaluate_residual(s, a, moving, shape, strips, local, out):
+    """Fill the gradient of the first ``moving`` places of strip s, the gaps, and the rows of its lanes.
 
-    The curve is there already. Adds bending, axial and the dead load's energy to the first three of out, but
-    for that of axial forces; out[3] becomes the least v / J0.
+    Adds bending, axial and the dead load's energy to the first three of out; out[3] becomes the least v / J0.
     """
     numbers, lanes = strips.numbers[s], local.lanes[s]
+    d1, d2 = shape.curve[0], shape.curve[1]
     points, gradient = local.nodal[s, POINTS], local.nodal[s, GRADIENT]
+    curve_at(points, d1, d2, four(lanes, 0))
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
@@ -284,18 +285,10 @@ def evaluate_curve(s, a, moving, shape, strips, local, out):
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
-    add_slopes(moving, shape.curve[0], shape.curve[1], four(lanes, 4), gradient)
+    add_slopes(moving, d1, d2, four(lanes, 4), gradient)
     out[0] += bending
-    out[1] += axial
+    out[1] += axial + add_gaps(s, a, strips, local)
     out[3] = min(out[3], slowest)
-
-
-@part()
-def evaluate_residual(s, a, moving, shape, strips, local, out):
-    """The same of control points whose curve is not known yet, with the gaps and energy of axial forces."""
-    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(local.lanes[s], 0))
-    evaluate_curve(s, a, moving, shape, strips, local, out)
-    out[1] += add_gaps(s, a, strips, local)
 
 
 @part()
