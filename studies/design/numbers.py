@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
+from spline_model.parameters import CENTRES, MATERIAL, POINTS
 from studies.answers.reference import reference
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
