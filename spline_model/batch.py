@@ -14,7 +14,6 @@ from spline_model.accuracy import Search, wanted
 from spline_model.batch_paths import Batch, Many
 from spline_model.confirmed import finer, relative
 from spline_model.discretisation import Described, Discretisation, require_uncut
-from spline_model.effects import MixedStretching
 from spline_model.errors import InvalidParameter, require_choice, require_count
 from spline_model.mechanism import Mechanism
 from spline_model.parameters import Given, one_each, pivots, varied
@@ -62,7 +61,7 @@ def solve_many(
         given=given,
         turned=turned,
         shared=np.ndim(rotation) == 0,
-        depth=_depth(base, given, section_depth),
+        depth=_depth(given, section_depth),
         body=base.design.body_named(body),
         increments=increments,
         first=order == LOADS_FIRST,
@@ -139,12 +138,9 @@ def _given(
     return pivots(designs, asdict(grid))
 
 
-def _depth(base: Mechanism, given: Given, section_depth: ArrayLike | None) -> Array:
+def _depth(given: Given, section_depth: ArrayLike | None) -> Array:
     """Depth of each design's sections over its length (D,); (0,) where none is asked for."""
     if section_depth is None:
         return np.zeros(0)
-    if not base.scene.of(MixedStretching) or any(strip.rise for strip in base.design.strips):
-        expected = "none without straight strips and mixed stretching"
-        raise InvalidParameter("section_depth", section_depth, expected)
     each = one_each("section_depth", section_depth, len(given.ends), above=0.0)
     return np.asarray(each / given.span.max(axis=1))

@@ -108,7 +108,7 @@ def strips_of(
 ) -> tuple[Strips, Array, Array]:
     """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    parts, bends = list(mixed_of(scene).values()), bends_of(scene)
+    parts, bends = list(_mixed_of(scene).values()), bends_of(scene)
     speed, rest = speeds_of(scene, shape, length)
     to_modes = _orthonormal_modes([tuple(e.modes for e in each) for each in parts], basis, points, speed)
     split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
@@ -139,7 +139,7 @@ def bends_of(scene: Scene) -> list[Bending]:
     return [bends[strip.name] for strip in scene.strips]
 
 
-def mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
+def _mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
     """The mixed stretching of each strip, a part for each kind of modes."""
     mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
     for effect in scene.of(MixedStretching):
@@ -156,7 +156,7 @@ def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes
     along[..., SPEED] = speed
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
     along[..., RIGIDITY] = np.array([e.rigidity_at(degree, u) for e in bends]) / (energy * length)
-    for row, bend, parts, back in zip(along, bends, mixed_of(scene).values(), to_modes, strict=True):
+    for row, bend, parts, back in zip(along, bends, _mixed_of(scene).values(), to_modes, strict=True):
         if bend.curl is not None:
             row[:, DROP], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
         if parts:

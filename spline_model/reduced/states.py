@@ -236,11 +236,11 @@ def _all_forces(y, poses, strips, shape, local, force, moment):
 def coordinates_by(model: Reduced, y: Array) -> Array:
     """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
     rows = y + 1j * STEP * np.eye(len(y))
-    moved = unknowns_of(stepped(model), rows, np.zeros((len(y), len(model.bodies.held))))
+    moved = unknowns_of(_stepped(model), rows, np.zeros((len(y), len(model.bodies.held))))
     return np.asarray(moved.imag[:, : model.system.layout.coordinate_count].T / STEP)
 
 
-def stepped(model: Reduced) -> Reduced:
+def _stepped(model: Reduced) -> Reduced:
     """The same with strips of complex numbers, for states with a complex step."""
     own = {name: getattr(model.strips, name) + 0j for name in ("along", "numbers", "compliance")}
     return replace(model, strips=model.strips._replace(**own))
