@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
     from spline_model.section_forces import moving_fields as moving_fields
     from spline_model.section_forces import static_fields as static_fields
-    from spline_model.sensitivity.solve import sensitivities as sensitivities
+    from spline_model.sensitivity import sensitivities as sensitivities
     from spline_model.sequential_impulse import impulse_solver as impulse_solver
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
@@ -61,7 +61,7 @@ _HOMES = {
     "moving_fields": "section_forces",
     "natural_frequencies": "modes",
     "plate_factors": "effects.plate",
-    "sensitivities": "sensitivity.solve",
+    "sensitivities": "sensitivity",
     "solve_impulses": "sequential_impulse",
     "solve_many": "batch",
     "solve_mechanism": "statics",

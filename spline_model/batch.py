@@ -14,18 +14,12 @@ from spline_model.accuracy import Search, wanted
 from spline_model.batch_paths import Batch, Many
 from spline_model.confirmed import finer, relative
 from spline_model.discretisation import Described, Discretisation, require_uncut
-from spline_model.effects import MixedStretching
-from spline_model.effects.elastic import CLAMPED_WIDTH
-from spline_model.effects.registry import ROOTS
 from spline_model.errors import InvalidParameter, require_choice, require_count
 from spline_model.legs import LOADS_FIRST, ORDERS
 from spline_model.mechanism import Mechanism
-from spline_model.reduced.designs import Given, one_each, pivots, varied
+from spline_model.parameters import Given, one_each, pivots, varied
 
 Array = NDArray[np.float64]
-
-SAME = 1e-9
-"""Relative difference to which two sides over lengths are one."""
 
 
 def solve_many(
@@ -45,7 +39,7 @@ def solve_many(
 
     designs: keywords of ``cross_axis_pivot`` as columns, each a number or an array (D,), or
     one mapping a design, and ``described`` as there, the same for all. Or a mechanism, with the
-    ``values`` (D,) of its numbers that vary, by the names of ``spline_model.sensitivity.parameters``:
+    ``values`` (D,) of its numbers that vary, by the names of ``spline_model.parameters``:
     "thickness" of all strips, "crank.centre_x" of a body, "ground_crank.end_y" of a strip; a strip's end
     does not go with the body that it is clamped to. body: the one that is turned and reported, or the
     only one. order: "loads first", in which the first state has all loads, or "together", in which they grow
@@ -67,7 +61,7 @@ def solve_many(
         given=given,
         turned=turned,
         shared=np.ndim(rotation) == 0,
-        depth=_depth(base, given, section_depth),
+        depth=_depth(given, section_depth),
         body=base.design.body_named(body),
         increments=increments,
         first=order == LOADS_FIRST,
@@ -116,7 +110,7 @@ def _chosen(many: Many, accuracy: float) -> Batch:
 def _distances(many: Many, coarse: Batch, fine: Batch, rows: NDArray[np.int64]) -> dict[str, Array]:
     """Errors of some designs (R,) by the names of ``ErrorEstimate``, as ``accuracy.distances``."""
     given = many.given.rows(rows)
-    length = np.abs(given.chord).max(axis=1)
+    length = given.span.max(axis=1)
     moment = given.rigidity.max(axis=1) / length
     moved, better = (each.centre[rows] - each.centre[rows][:, :1] for each in (coarse, fine))
     units = {"torque": moment, "stiffness": moment, "energy": moment, "strain": np.ones(len(rows))}
@@ -138,36 +132,15 @@ def _given(
     if isinstance(designs, Mechanism):
         if grid != Discretisation():
             raise InvalidParameter("discretisation", grid, "none beside a mechanism, which has its own")
-        given = varied(designs, values or {}, count)
-        _require_shape(designs, given)
-        return designs, given
+        return designs, varied(designs, values or {}, count)
     if values is not None:
         raise InvalidParameter("values", list(values), "none beside columns of pivots, which hold them")
     return pivots(designs, asdict(grid))
 
 
-def _depth(base: Mechanism, given: Given, section_depth: ArrayLike | None) -> Array:
+def _depth(given: Given, section_depth: ArrayLike | None) -> Array:
     """Depth of each design's sections over its length (D,); (0,) where none is asked for."""
     if section_depth is None:
         return np.zeros(0)
-    if not base.scene.of(MixedStretching) or any(strip.rise for strip in base.design.strips):
-        expected = "none without straight strips and mixed stretching"
-        raise InvalidParameter("section_depth", section_depth, expected)
     each = one_each("section_depth", section_depth, len(given.ends), above=0.0)
-    return np.asarray(each / np.abs(given.chord).max(axis=1))
-
-
-def _require_shape(base: Mechanism, given: Given) -> None:
-    """Refuse strips of another shape than the mechanism's, where their profile of rigidity goes by it."""
-    own, design = Given.of(base.design), base.design
-    for acts, effect, name, side in (
-        (CLAMPED_WIDTH in design.curling, CLAMPED_WIDTH, "b/L", "width"),
-        (design.root_length > 0.0, ROOTS, "t/L", "thickness"),
-    ):
-        shape, known = (getattr(each, side) / np.abs(each.chord) for each in (given, own))
-        other = np.argwhere(np.abs(shape / known - 1.0) > SAME)
-        if acts and other.size:
-            d, s = other[0]
-            place = f"design {d}: {name} of {design.strips[s].name}"
-            expected = f"{known[0, s]:.6g}, that of the mechanism, for {effect}"
-            raise InvalidParameter(place, float(shape[d, s]), expected)
+    return np.asarray(each / given.span.max(axis=1))

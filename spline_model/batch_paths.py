@@ -15,14 +15,16 @@ from spline_model.errors import InvalidParameter
 from spline_model.legs import has_loads, steady
 from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
+from spline_model.parameters import Given
 from spline_model.reduced.arrays import Answer, Route
-from spline_model.reduced.designs import Given, designs_of
+from spline_model.reduced.designs import along_of_designs, designs_of
 from spline_model.reduced.many import Designs, Share, Stations, follow_all
 from spline_model.reduced.model import Reduced, reduced
 from spline_model.reduced.numbers import LEAST_COMPLIANCE
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 from spline_model.solution import named, remark
+from spline_model.strip.element import Local
 
 Array = NDArray[np.float64]
 
@@ -126,12 +128,30 @@ class Many:
                 alike = rows[slender_ones == slender]
                 if alike.size:
                     kind = model.as_slender(slender=slender)
-                    given, turned = self.given.rows(alike), self.turned[alike]
-                    numbers = designs_of(kind, Given.of(base.design), given, turned)
-                    deep = self.depth[alike] if self.depth.size else self.depth
-                    share = (self.workers, kind, place, alike, numbers, deep, self.increments, batch)
+                    share = (self.workers, kind, place, alike, *self._arrays(kind, alike), batch)
                     together = map if self.workers == 1 else pool.map
                     list(together(partial(_solve_share, *share), range(self.workers)))
+
+    def _arrays(self, model: Reduced, rows: NDArray[np.int64]) -> tuple[Designs, Stations]:
+        """What kernels know of some of the designs, and of the stations of their strains."""
+        given, base = self.given.rows(rows), Given.of(self.base.design)
+        length = given.span.max(axis=1)
+        units = length, given.rigidity.max(axis=1) / length
+        designs = designs_of(model, base, given, *units)
+        designs.target[:, model.bodies.driven] = self.turned[rows]
+        if not self.depth.size:
+            return designs, Stations.none(model.arrays())
+        at = model.at_stations(STATIONS)
+        area, _, modulus = np.moveaxis(given.section, -1, 0)
+        bend = 0.5 * (self.depth[rows] * length)[:, None] / given.rigidity
+        fibre = np.stack((1.0 / (area * modulus * length[:, None]), bend), axis=-1)
+        return designs, Stations(
+            along=along_of_designs(at, base, given, *units),
+            fibre=fibre * designs.energy[:, None, None],
+            strips=at.strips,
+            shape=at.shape,
+            local=at.local(),
+        )
 
     def empty(self, control_points: int, accuracy: float | None) -> Batch:
         """A batch of which nothing is solved yet."""
@@ -178,8 +198,7 @@ def _solve_share(
     place: int,
     rows: NDArray[np.int64],
     designs: Designs,
-    depth: Array,
-    increments: int,
+    stations: Stations,
     batch: Batch,
     worker: int,
 ) -> None:
@@ -191,23 +210,23 @@ def _solve_share(
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
     bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
-    factors, held = np.linspace(0.0, 1.0, increments + 1), len(bodies.held)
+    factors, held = np.linspace(0.0, 1.0, batch.torque.shape[1]), len(bodies.held)
     route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)
     grows = factors[[0, -1]] if model.system.is_preloaded else factors[:0]
+    own_strips = strips._replace(**own)
+    at_stations = own_strips._replace(along=stations.strips.along.copy())
+    local = Local.of(at_stations, len(model.shape.order))
     share = Share(
         rows=rows,
         begin=worker,
         stride=workers,
         designs=designs,
-        depth=depth,
-        stations=Stations.of(model, STATIONS),
+        stations=stations._replace(strips=at_stations, local=local),
         growing=route._replace(factor=grows, target=np.zeros(held), growth=0.0, swells=True),
         place=place,
-        along=strips.along,
-        curved=preload.curvature,
         results=tuple(getattr(batch, name) for name in SOLVED),
     )
-    arrays = model.arrays()._replace(bodies=bodies, strips=strips._replace(**own))
+    arrays = model.arrays()._replace(bodies=bodies, strips=own_strips)
     answer = Answer.empty(len(factors), model.size, held)
     # the moment defect refuses
     follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
@@ -38,6 +37,15 @@ class Pivot(Mechanism):
         """Unit tangents at the clamped points at rest (2, 2, 2)."""
         along = np.diff(self.clamp_points, axis=1)
         return np.repeat(along / np.linalg.norm(along, axis=2, keepdims=True), 2, axis=1)
+
+    @property
+    def shape(self) -> dict[str, float]:
+        """The keywords of ``cross_axis_pivot`` that place its strips."""
+        (ratio, length), (first, second) = self.crossing_reach, self.clamp_directions[:, 0]
+        low, high = math.atan2(first[1], first[0]), math.atan2(second[1], second[0])
+        inclination = (math.pi - (high - low) % (2.0 * math.pi)) / 2.0
+        shape = {"length": length, "inclination": inclination, "crossing_ratio": ratio}
+        return shape | {"orientation": low - inclination}
 
     @property
     def crossing_reach(self) -> tuple[float, float]:
@@ -84,14 +92,23 @@ def cross_axis_pivot(
 
     Source: paper, section 2 and Table 1.
     """
-    points = _clamps_at_rest(length, inclination, crossing_ratio, orientation)
-    offset = cmath.rect(1.0, orientation) * complex(*centre_offset)
-    body = _body((points[0][1] + points[1][1]) / 2.0 + offset, body_mass, body_moment_of_inertia)
+    _check_shape(length, inclination, crossing_ratio, orientation)
+    ends = ends_at_rest(length, inclination, crossing_ratio, orientation)
+    offset = turned(*centre_offset, orientation)
+    centre = [(a + b) / 2.0 + c for a, b, c in zip(ends[0][1], ends[1][1], offset, strict=True)]
+    require_positive("body_mass", body_mass, "kg")
+    require_positive("body_moment_of_inertia", body_moment_of_inertia, "kg m^2")
+    body = BodyDesign(
+        name=BODY,
+        centre=(float(centre[0]), float(centre[1])),
+        mass=body_mass,
+        moment_of_inertia=body_moment_of_inertia,
+    )
     strips = [
         StripDesign(
             name=name,
-            start=(start.real, start.imag),
-            end=(end.real, end.imag),
+            start=(float(start[0]), float(start[1])),
+            end=(float(end[0]), float(end[1])),
             tip=BODY,
             area=area,
             second_moment_of_area=second_moment_of_area,
@@ -101,7 +118,7 @@ def cross_axis_pivot(
             width=width,
             thickness=thickness,
         )
-        for name, (start, end) in zip(STRIPS, points, strict=True)
+        for name, (start, end) in zip(STRIPS, ends, strict=True)
     ]
     made = compliant_mechanism(
         strips=strips, bodies=[body], effects=effects, parameters=parameters, **described
@@ -109,10 +126,24 @@ def cross_axis_pivot(
     return Pivot(design=made.design, effects=made.effects, parameters=made.parameters, scene=made.scene)
 
 
-def _clamps_at_rest(
-    length: float, inclination: float, crossing_ratio: float, orientation: float
-) -> list[tuple[complex, complex]]:
-    """Clamped points x + iy of each strip, from the ground to the body, crossing at r L."""
+def ends_at_rest(
+    length: Any, inclination: Any, crossing_ratio: Any, orientation: Any
+) -> list[list[tuple[Any, Any]]]:
+    """Clamped points x, y of each strip, from the ground to the body, crossing at r L; numbers or arrays."""
+    x, y, zero = length * np.cos(inclination), length * np.sin(inclination), 0.0 * length
+    root = 2.0 * crossing_ratio * x
+    strips = ((zero, zero), (x, y)), ((root, zero), (root - x, y))
+    return [[turned(*point, orientation) for point in strip] for strip in strips]
+
+
+def turned(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
+    """A point turned about the origin; numbers or arrays."""
+    c, s = np.cos(angle), np.sin(angle)
+    return c * x - s * y, s * x + c * y
+
+
+def _check_shape(length: float, inclination: float, crossing_ratio: float, orientation: float) -> None:
+    """Refuse keywords that place no two strips that cross."""
     require_positive("length", length, "m")
     for name, value, unit in (
         ("inclination", inclination, "rad"),
@@ -124,16 +155,3 @@ def _clamps_at_rest(
         raise InvalidParameter("inclination", inclination, "an angle between 0 and pi/2 [rad]")
     if not 0 < crossing_ratio < 1:
         raise InvalidParameter("crossing_ratio", crossing_ratio, "a number between 0 and 1")
-    along = cmath.rect(length, inclination)
-    turn = cmath.rect(1.0, orientation)
-    roots = (0j, complex(2.0 * crossing_ratio * along.real))
-    tips = (roots[0] + along, roots[1] + complex(-along.real, along.imag))
-    return [(root * turn, tip * turn) for root, tip in zip(roots, tips, strict=True)]
-
-
-def _body(centre: complex, mass: float, moment_of_inertia: float) -> BodyDesign:
-    """The body, its centre at x + iy; motions divide by its inertia."""
-    require_positive("body_mass", mass, "kg")
-    require_positive("body_moment_of_inertia", moment_of_inertia, "kg m^2")
-    at = (centre.real, centre.imag)
-    return BodyDesign(name=BODY, centre=at, mass=mass, moment_of_inertia=moment_of_inertia)

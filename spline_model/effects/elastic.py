@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
-from spline_model.effects.plate import STEP, rigidity_of
+from spline_model.effects.plate import rigidity_of
 from spline_model.errors import (
+    InvalidParameter,
     require_choice,
     require_count,
     require_not_negative,
@@ -117,20 +119,19 @@ class Bending(StrainEnergy):
 
     def rigidity_at(self, degree: int, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that degree [N m^2]."""
-        return self.flexural_rigidity * self._stiffer(degree, u)
+        curl = Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0) if self.curl is None else self.curl
+        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u, curl.reach, self.roots)
+        return self.flexural_rigidity * stiffer
 
-    def rigidity_rates(self, degree: int, u: Array) -> tuple[Array, Array, Array]:
-        """The rigidity over EI at u (P,), and its derivatives by log(b/L) and by log(t/L)."""
-        by_width = self._stiffer(degree, u, width=1.0 + 1j * STEP)
-        by_thickness = self._stiffer(degree, u, thickness=1.0 + 1j * STEP)
-        return self._stiffer(degree, u), by_width.imag / STEP, by_thickness.imag / STEP
-
-    def _stiffer(self, degree: int, u: Array, *, width: complex = 1.0, thickness: complex = 1.0) -> Array:
-        """The rigidity over EI at u (P,), of sides in these parts of those given."""
-        curl, reach = self.curl, (0.0, 1.0) if self.curl is None else self.curl.reach
-        ratio, nu = (0.0, 0.0) if curl is None else (curl.clamped * width, curl.poisson_ratio)
-        root, tip = self.roots
-        return rigidity_of(ratio, nu, degree, u, reach, (root * thickness, tip * thickness))
+    def with_sides(self, width: complex, thickness: complex) -> Bending:
+        """Of sections with sides over the length in these parts of b/L and t/L, complex with a step."""
+        ratio: Any = self.curl and self.curl.clamped * width
+        low, high = WIDTHS
+        if ratio and not low <= ratio.real <= high:
+            name = f"width over length of {self.strip}"
+            raise InvalidParameter(name, ratio.real, f"{low:g} to {high:g}")
+        roots: Any = tuple(root * thickness for root in self.roots)
+        return replace(self, curl=self.curl and replace(self.curl, clamped=ratio), roots=roots)
 
     def moment_at(self, strain: Array, degree: int, u: Array) -> Array:
         """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""

@@ -170,15 +170,14 @@ def _decay(s: Array, reach: complex) -> Array:
 def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
     """The profile of a strip of width over length ``ratio``; kept, for the plate takes some milliseconds.
 
-    Newton's method in log A and log l; of a complex ratio in the real part, and one step more for the rest.
+    Newton's method in log A and log l; of a complex ratio in the real part, and their rates for the rest.
     """
-    aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
     if ratio.imag != 0.0:
         own = profile_of(ratio.real, poisson_ratio)
-        logs = np.log([own.size, own.reach]).astype(complex)
-        if poisson_ratio > 0.0:
-            logs += 1j * np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), aim.imag)
-        return _Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+        part = 1j * ratio.imag / ratio.real * _by_ratio(ratio.real, poisson_ratio)
+        size, reach = np.array((own.size, own.reach)) * np.exp(part)
+        return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
+    aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
     ratio, logs = ratio.real, np.log([1.0, 0.2 * ratio.real])
     square = poisson_ratio**2
     for _ in range(MOST_STEPS if square > 0.0 else 0):
@@ -190,6 +189,17 @@ def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
     else:
         assert square == 0.0, f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}"
     return _Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
+
+
+@lru_cache(maxsize=256)
+def _by_ratio(ratio: float, poisson_ratio: float) -> Array:
+    """Derivatives (2,) of log A and log l by log(b/L)."""
+    if poisson_ratio == 0.0:
+        return np.zeros(2)
+    own = profile_of(ratio, poisson_ratio)
+    aim = 1.0 / np.array(plate_factors(ratio * (1.0 + 1j * STEP), poisson_ratio))
+    rates = _rates(np.log([own.size, own.reach]), ratio, poisson_ratio)
+    return np.asarray(np.linalg.solve(rates, aim.imag / STEP))
 
 
 def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:

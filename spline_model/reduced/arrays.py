@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,16 +59,11 @@ class Space(NamedTuple):
     out: Array
 
     @classmethod
-    def of(cls, bodies: Bodies, size: int) -> Self:
+    def of(cls, bodies: Bodies, size: int, dtype: Any = float) -> Self:
         """Fresh ones for that many unknowns."""
         q, f = bodies.load.size, bodies.free.size
-        return cls(
-            tangent=np.zeros((q, q)),
-            factors=np.zeros((f, f)),
-            vectors=np.zeros((7, max(q, 7))),
-            states=np.zeros((2 * KNOWN + 4, size)),
-            out=np.zeros(SUMS),
-        )
+        shapes = (q, q), (f, f), (7, max(q, 7)), (2 * KNOWN + 4, size), (SUMS,)
+        return cls(*(np.zeros(shape, dtype=dtype) for shape in shapes))
 
 
 class Arrays(NamedTuple):

@@ -123,7 +123,7 @@ def _product_at(
 def _add_product(s, a, points, shape, strips, local, covector):
     """What gradient (2 n), into ``covector``, and gaps of strip s change by, as points (2 n) and forces a do.
 
-    Behind ``evaluate_residual``, in the material measure; all but moment and speed is overwritten.
+    Behind ``evaluate_residual``; all but moment and speed is overwritten.
     """
     lanes, along, gap = local.lanes[s], strips.along[s], local.gap[s]
     d1, d2, force, strain = shape.curve[0], shape.curve[1], lanes[FORCE_AT], lanes[PULL_AT]
@@ -162,7 +162,7 @@ def _turn_ends(s, own, last, rate, strips, local):
 
 
 @part()
-def _take_product(rate, load_rate, arrays):
+def take_product(rate, load_rate, arrays):
     """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE."""
     bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
     local, space = arrays.local, arrays.space
@@ -209,7 +209,7 @@ def _confirm(y, load, norm, held_rate, load_rate, arrays, tolerance):
     for d in range(bodies.held.size):
         space.vectors[REACTION, d] = space.vectors[RAW, bodies.held[d]]
         rate[bodies.held[d]] = held_rate[d]
-    _take_product(rate, load_rate, arrays)
+    take_product(rate, load_rate, arrays)
     respond(arrays, change)
     for i in range(y.size):
         rate[i] += change[i]

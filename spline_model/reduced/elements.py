@@ -35,7 +35,6 @@ from spline_model.strip.element import ON_POINTS
 
 Array = NDArray[np.float64]
 
-ALONE = Share.none()
 ASIDE = 1e-5
 """Part of a direction over which it is followed to either side, in lengths and rad: exact to 1e-10."""
 
@@ -145,7 +144,8 @@ class Elements(Followed):
         """A stretch of a path along which nothing happens, compiled."""
         count = self.counters
         answer = Answer.empty(len(route.factor), self.model.size, len(route.origin))
-        done = follow_all(ALONE, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
+        alone = Share.none(arrays)
+        done = follow_all(alone, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
         count.halved_increments += int(answer.counters[HALVED])
         count.newton_iterations += int(answer.counters[ITERATIONS])
         evaluations = int(answer.counters[EVALUATIONS])

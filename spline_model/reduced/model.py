@@ -12,7 +12,7 @@ from spline_model.compile import System
 from spline_model.effects import Bending, BodyGravity, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
 from spline_model.reduced.arrays import Arrays, Bodies, Space
-from spline_model.reduced.numbers import GAIN, ends_of, shape_of, strips_of
+from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
 from spline_model.scene import Scene
 from spline_model.strip.element import Local, Shape, Strips
 from spline_model.tables import steady_loads
@@ -79,13 +79,20 @@ class Reduced:
 
     def arrays(self) -> Arrays:
         """What kernels know of it, with working arrays of their own."""
-        space = Space.of(self.bodies, self.size)
+        space = Space.of(self.bodies, self.size, self.strips.along.dtype)
         return Arrays(self.bodies, self.strips, self.shape, self.local(), space)
 
     def local(self) -> Local:
         """Working arrays of the strips."""
-        s, g, k = self.strips.modes.shape
-        return Local.of(s, len(self.shape.order), k, g, self.strips.coupled)
+        return Local.of(self.strips, len(self.shape.order))
+
+    def at_stations(self, stations: Array) -> Reduced:
+        """The same with stations u (P,) in place of the Gauss points, where sections are recovered."""
+        system = self.system
+        shape = shape_at(system.scene.strips[0].basis, stations, np.zeros(len(stations)))
+        speeds = speeds_of(system.scene, shape, self.length)
+        strips = self.strips._replace(along=along_of(system, shape, speeds, self.to_modes))
+        return replace(self, shape=shape, strips=strips, rest=speeds[1])
 
 
 def reduced(system: System) -> Reduced | None:

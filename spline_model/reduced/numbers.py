@@ -14,6 +14,7 @@ from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, Stretching
 from spline_model.effects.base import Constraint
 from spline_model.effects.elastic import MEASURES
+from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURL,
     CURVATURE,
@@ -90,9 +91,13 @@ def in_order(points: Array, shape: Shape) -> Array:
 @lru_cache(maxsize=64)
 def shape_of(basis: Bezier, points: int) -> Shape:
     """The basis at the Gauss points."""
+    return shape_at(basis, *basis.gauss_rule(points))
+
+
+def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
+    """The basis at any points u (P,) with weights."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
-    u, weight = basis.gauss_rule(points)
     values = [basis.evaluate(u, k) for k in range(3)] + [1.0 / n - basis.areas(u)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
     return Shape.of(order, tables, np.array((u, weight)))
@@ -103,24 +108,18 @@ def strips_of(
 ) -> tuple[Strips, Array, Array]:
     """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    bending = {e.strip: e for e in scene.of(Bending)}
-    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
-    for effect in scene.of(MixedStretching):
-        mixed[effect.strip].append(effect)
-    parts, bends = list(mixed.values()), [bending[name] for name in mixed]
-    speed, rest = _speeds(shape, np.array([strip.control_points for strip in scene.strips]) / length)
-    modes, to_modes = _orthonormal_modes(
-        [tuple(e.modes for e in each) for each in parts], basis, points, speed
-    )
+    parts, bends = list(_mixed_of(scene).values()), bends_of(scene)
+    speed, rest = speeds_of(scene, shape, length)
+    to_modes = _orthonormal_modes([tuple(e.modes for e in each) for each in parts], basis, points, speed)
     split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
     measure = MEASURES.index(bends[0].measure)
     c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
     c *= energy / length
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
-    roots, tips = ([ends[name, end].body for name in mixed] for end in ("start", "end"))
+    roots, tips = ([ends[strip.name, end].body for strip in scene.strips] for end in ("start", "end"))
     strips = Strips(
-        along=_along(system, bends, shape.rule[WHERE], speed, rest, modes),
+        along=along_of(system, shape, (speed, rest), to_modes),
         compliance=c,
         gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
         numbers=_numbers_of(system, shape, ends),
@@ -134,16 +133,34 @@ def strips_of(
     return strips, rest, to_modes
 
 
-def _along(system: System, bends: list[Bending], u: Array, speed: Array, rest: Array, modes: Array) -> Array:
-    """What changes along the strips (S, G, 5 + K), at Gauss points u (G,)."""
-    degree, length, energy = system.scene.strips[0].basis.degree, system.scales.length, system.scales.energy
-    along = np.zeros((*speed.shape, MODES + modes.shape[-1]))
-    along[..., SPEED], along[..., MODES:] = speed, modes
+def bends_of(scene: Scene) -> list[Bending]:
+    """The bending of each strip."""
+    bends = {e.strip: e for e in scene.of(Bending)}
+    return [bends[strip.name] for strip in scene.strips]
+
+
+def _mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
+    """The mixed stretching of each strip, a part for each kind of modes."""
+    mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
+    for effect in scene.of(MixedStretching):
+        mixed[effect.strip].append(effect)
+    return mixed
+
+
+def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes: Array) -> Array:
+    """What changes along the strips (S, P, 5 + K), at the points of a shape; speeds: as of ``speeds_of``."""
+    scene, length, energy = system.scene, system.scales.length, system.scales.energy
+    bends, u, degree = bends_of(scene), shape.rule[WHERE], scene.strips[0].basis.degree
+    speed, rest = speeds
+    along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]))
+    along[..., SPEED] = speed
     along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
     along[..., RIGIDITY] = np.array([e.rigidity_at(degree, u) for e in bends]) / (energy * length)
-    for row, curl in zip(along, (e.curl for e in bends), strict=True):
-        if curl is not None:
-            row[:, DROP], row[:, CURL] = curl.drop(degree, u), curl.flattening / length
+    for row, bend, parts, back in zip(along, bends, _mixed_of(scene).values(), to_modes, strict=True):
+        if bend.curl is not None:
+            row[:, DROP], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
+        if parts:
+            row[:, MODES:] = _values(tuple(e.modes for e in parts), u.tobytes()) @ back
     return along
 
 
@@ -182,9 +199,10 @@ def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
         row[PER_U:ON_POINTS] = scene.weight_of(strip.name) / force
 
 
-def _speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
-    """Speed and curvature at rest (S, G) of strips of control points (S, n, 2)."""
-    curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(control_points, shape)
+def speeds_of(scene: Scene, shape: Shape, length: float) -> tuple[Array, Array]:
+    """Speed and curvature (S, P) at rest of a scene's strips, over a length."""
+    points = np.array([strip.control_points for strip in scene.strips]) / length
+    curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(points, shape)
     (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
     speed = np.hypot(x1, y1)
     return speed, (x1 * y2 - y1 * x2) / speed**3
@@ -192,32 +210,36 @@ def _speeds(shape: Shape, control_points: Array) -> tuple[Array, Array]:
 
 def _orthonormal_modes(
     parts: list[tuple[AxialModes, ...]], basis: Bezier, points: int, speed: Array
-) -> tuple[Array, Array]:
-    """Modes (S, G, K) orthonormal along strips of a speed (S, G), and the scene's modes from them (S, K, K).
+) -> Array:
+    """The scene's axial forces (S, K, K) by those of modes that are orthonormal along strips of a speed
+    (S, G).
 
     Those of one distribution of the speed are kept: all straight strips have the same, but for round-off.
     """
     mean = speed.sum(axis=1, keepdims=True) / speed.shape[1]
     alike = np.rint(speed / mean / ROUND_OFF)
     found = [_modes_of(each, basis, points, v.tobytes()) for each, v in zip(parts, alike, strict=True)]
-    longer = np.sqrt(mean)[..., None]
-    values, back = (np.array(each) / longer for each in zip(*found, strict=True))
-    return values, back
+    return np.asarray(np.array(found) / np.sqrt(mean)[..., None])
 
 
 @lru_cache(maxsize=64)
-def _modes_of(parts: tuple[AxialModes, ...], basis: Bezier, points: int, speed: bytes) -> tuple[Array, Array]:
+def _values(parts: tuple[AxialModes, ...], at: bytes) -> Array:
+    """Values of the scene's modes at the numbers of a buffer (P, K)."""
+    return np.column_stack([modes.evaluate(np.frombuffer(at)) for modes in parts])
+
+
+@lru_cache(maxsize=64)
+def _modes_of(parts: tuple[AxialModes, ...], basis: Bezier, points: int, speed: bytes) -> Array:
     """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
     u, weight = basis.gauss_rule(points)
     weight = weight * (ROUND_OFF * np.frombuffer(speed))
-    values, back = np.zeros((len(u), 0)), np.zeros((0, 0))
+    back = np.zeros((0, 0))
     for modes in parts:
         full, to_part = modes.evaluate(u), np.eye(modes.count)
         if not isinstance(modes, SlideModes):  # the mean first
             to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
             full = full @ to_part
         factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
-        values = np.column_stack((values, np.linalg.solve(factor, full.T).T))
         k, m = len(back), modes.count
         back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
-    return values, back
+    return back

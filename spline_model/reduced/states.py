@@ -3,19 +3,30 @@ tangent with nothing condensed, and how control points move."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import MixedStretching
-from spline_model.reduced.arrays import AXIAL
+from spline_model.effects.plate import STEP
+from spline_model.reduced.arrays import AXIAL, BENDING
 from spline_model.reduced.assembly import assemble, place_of
+from spline_model.reduced.beside import take_product, take_residual
 from spline_model.reduced.model import Reduced
-from spline_model.strip.compiled import called, kernel
-from spline_model.strip.element import GRADIENT, LAST, POINTS
+from spline_model.strip.compiled import called, copy, kernel
+from spline_model.strip.element import (
+    FORCE_AT,
+    GRADIENT,
+    LAST,
+    MOMENT_AT,
+    POINTS,
+)
 from spline_model.strip.ends import place_points, to_element
-from spline_model.strip.points import evaluate_points, evaluate_residual
+from spline_model.strip.points import evaluate_points, evaluate_residual, forces_at
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 @kernel()
@@ -52,38 +63,33 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
     clamped (S, G, 2, 3): what the clamps do to the strips; by default what holds them in equilibrium.
     """
     strips, shape, n = model.strips, model.shape, len(model.shape.order)
-    points = np.zeros((len(y), len(strips.roots), 2 * n))
-    forces = np.zeros((len(y), len(strips.roots), 2, 3))
-    _place_all(y, len(model.bodies.rest), shape, strips, model.local(), np.zeros(5), points, forces)
-    return gathered(model, y, points, forces if clamped is None else clamped, reaction)
-
-
-def gathered(model: Reduced, y: Array, points: Array, forces: Array, reaction: Array) -> Array:
-    """Unknowns z (..., N) from y (..., Y), control points and clamp forces as of ``_place_all``, and
-    reactions (..., D) of the drives."""
-    system, shape = model.system, model.shape
-    scene, layout, n = system.scene, system.layout, len(shape.order)
-    many = y.shape[:-1]
-    z = np.zeros((*many, layout.size), dtype=points.dtype)
+    points = np.zeros((len(y), len(strips.roots), 2 * n), dtype=y.dtype)
+    forces = np.zeros((len(y), len(strips.roots), 2, 3), dtype=y.dtype)
+    out = np.zeros(5, dtype=y.dtype)
+    _place_all(y, len(model.bodies.rest), shape, strips, model.local(), out, points, forces)
+    if clamped is not None:
+        forces = clamped
+    system = model.system
+    scene, layout = system.scene, system.layout
+    z = np.zeros((len(y), layout.size), dtype=y.dtype)
     for i, body in enumerate(scene.bodies):
-        z[..., layout.body(body.name)] = y[..., 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
+        z[:, layout.body(body.name)] = y[:, 3 * i : 3 * i + 3] * [model.length, model.length, 1.0]
     unit = model.energy / model.length * np.array([1.0, 1.0, model.length])
     for s, strip in enumerate(scene.strips):
-        in_order = np.empty((*many, n, 2), dtype=points.dtype)
-        in_order[..., shape.order, :] = points[..., s, :].reshape(*many, n, 2)
-        on_curve = in_order[..., : strip.basis.control_points, :].reshape(*many, -1)
-        z[..., layout.strip(strip.name)] = on_curve * model.length
-        force = y[..., model.places(s)[1]] @ model.to_modes[s].T * (model.energy / model.length)
+        in_order = np.empty((len(y), n, 2), dtype=y.dtype)
+        in_order[:, shape.order] = points[:, s].reshape(len(y), n, 2)
+        z[:, layout.strip(strip.name)] = in_order.reshape(len(y), -1) * model.length
+        force = y[:, model.places(s)[1]] @ model.to_modes[s].T * (model.energy / model.length)
         done = 0
         for i, effect in enumerate(scene.of(MixedStretching)):
             if effect.strip == strip.name:
-                z[..., layout.axial_modes(i)] = force[..., done : done + effect.modes.count]
+                z[:, layout.axial_modes(i)] = force[:, done : done + effect.modes.count]
                 done += effect.modes.count
         for end, place in (("start", 0), ("end", 1)):
             if (strip.name, end) in scene.clamps:
-                z[..., scene.clamps[strip.name, end]] = forces[..., s, place, :] * unit
+                z[:, scene.clamps[strip.name, end]] = forces[:, s, place] * unit
     drives = system.drives
-    z[..., drives.row] = reaction * unit[2 * drives.turns]
+    z[:, drives.row] = reaction * unit[2 * drives.turns]
     return z
 
 
@@ -129,6 +135,39 @@ def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
             add_strip(s, at, at, at + own, y[row], strips, shape, local, out, gradient[row], hessian[row])
 
 
+def products(model: Reduced, y: Array, rate: Array) -> tuple[Array, Array, Array]:
+    """Gradient (S, Y) as of ``whole_tangents``, its product with the Hessian along rates (S, Y), and energies
+    of bending and stretching (S, 2) [EI/L], at states y (S, Y)."""
+    gradient, product = np.zeros((2, *y.shape), dtype=y.dtype)
+    energies = np.zeros((len(y), 2), dtype=y.dtype)
+    _multiply(y, rate, model.arrays(), gradient, product, energies)
+    return gradient, product, energies
+
+
+@kernel()
+def _multiply(y, rate, arrays, gradient, product, energies):
+    for row in range(y.shape[0]):
+        take_residual(y[row], 0.0, arrays)
+        energies[row, 0], energies[row, 1] = arrays.space.out[BENDING], arrays.space.out[AXIAL]
+        _add_strips(arrays, gradient[row])
+        take_product(rate[row], 0.0, arrays)
+        _add_strips(arrays, product[row])
+
+
+@called()
+def _add_strips(arrays, total):
+    """Add g and gap of all strips to a covector (Y,)."""
+    strips, local, poses = arrays.strips, arrays.local, arrays.bodies.rest.size
+    own, modes = 2 * arrays.shape.order.size - 6, strips.compliance.shape[1]
+    last = own + strips.coupled - strips.outer
+    for s in range(strips.roots.size):
+        g, tip, root, at = local.reduced[s, LAST], strips.tips[s], strips.roots[s], poses + s * (own + modes)
+        copy(g[:own], total[at : at + own])
+        copy(local.gap[s], total[at + own : at + own + modes])
+        for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
+            total[place_of(i - last, tip, root, 0)] += g[i]
+
+
 @called()
 def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
     """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
@@ -159,30 +198,34 @@ def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessi
         hessian[axial + k, axial + k] = -strips.compliance[s, k]
 
 
+def section_forces(model: Reduced, y: Array) -> tuple[Array, Array]:
+    """Axial force and moment (S, G, P), in EI/L^2 and EI/L, at states y (S, Y) and the model's points."""
+    force, moment = np.zeros((2, len(y), *model.strips.speed.shape), dtype=y.dtype)
+    _all_forces(y, len(model.bodies.rest), model.strips, model.shape, model.local(), force, moment)
+    return force, moment
+
+
+@kernel()
+def _all_forces(y, poses, strips, shape, local, force, moment):
+    modes = strips.compliance.shape[1]
+    for row in range(y.shape[0]):
+        for s in range(strips.roots.size):
+            at = poses + s * (2 * shape.order.size - 6 + modes)
+            own = at + 2 * shape.order.size - 6
+            place_points(s, y[row, at:own], y[row], strips, local)
+            forces_at(s, y[row, own : own + modes], strips, shape, local)
+            copy(local.lanes[s, FORCE_AT], force[row, s])
+            copy(local.lanes[s, MOMENT_AT], moment[row, s])
+
+
 def coordinates_by(model: Reduced, y: Array) -> Array:
     """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
-    strips, scene, layout = model.strips, model.system.scene, model.system.layout
-    by = np.zeros((layout.coordinate_count, model.size))
-    for i, body in enumerate(scene.bodies):
-        by[layout.body(body.name), 3 * i : 3 * i + 3] = np.diag((model.length, model.length, 1.0))
-    for s, strip in enumerate(scene.strips):
-        w, n = model.places(s)[0], strip.basis.control_points
-        mine = np.zeros((n, 2, model.size))
-        mine[2 : n - 2].reshape(2 * n - 8, model.size)[:, w.stop + 6 - 2 * n : w.stop - 2] = np.eye(2 * n - 8)
-        reach = y[w.stop - 2 : w.stop]
-        for end, (bodies, frames, outer, inner) in enumerate(
-            ((strips.roots, strips.root, 0, 1), (strips.tips, strips.tip, n - 1, n - 2))
-        ):
-            body, (px, py, turn) = bodies[s], frames[s]
-            angle = y[3 * body + 2] if body >= 0 else 0.0
-            cos, sin = np.cos(angle), np.sin(angle)
-            arm = np.array([cos * px - sin * py, sin * px + cos * py])
-            stick = strips.reach[s, end] * np.array([np.cos(angle + turn), np.sin(angle + turn)])
-            stick *= 1.0 - 2.0 * end
-            mine[inner, :, w.stop - 2 + end] = stick
-            if body >= 0:
-                for point, lever in ((outer, arm), (inner, arm + reach[end] * stick)):
-                    mine[point, :, 3 * body : 3 * body + 2] += np.eye(2)
-                    mine[point, :, 3 * body + 2] += -lever[1], lever[0]
-        by[layout.strip(strip.name)] = model.length * mine.reshape(2 * n, -1)
-    return by
+    rows = y + 1j * STEP * np.eye(len(y))
+    moved = unknowns_of(_stepped(model), rows, np.zeros((len(y), len(model.bodies.held))))
+    return np.asarray(moved.imag[:, : model.system.layout.coordinate_count].T / STEP)
+
+
+def _stepped(model: Reduced) -> Reduced:
+    """The same with strips of complex numbers, for states with a complex step."""
+    own = {name: getattr(model.strips, name) + 0j for name in ("along", "numbers", "compliance")}
+    return replace(model, strips=model.strips._replace(**own))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 import math
 from functools import cache, lru_cache, partial
+from typing import Any
 
 import numpy as np
 from numba import njit, types
@@ -149,11 +150,11 @@ def copy(source, target):
         target[i] = source[i]
 
 
-def aligned(*shapes: tuple[int, ...]) -> list[Array]:
+def aligned(*shapes: tuple[int, ...], dtype: np.dtype[Any] | type = float) -> list[NDArray[Any]]:
     """Arrays of zeros that begin with a line of the cache: a vector of eight across two takes longer."""
     places, count = _places(shapes)
-    room = np.zeros(count + 8)
-    room = room[-room.ctypes.data % 64 // 8 :]
+    room = np.zeros(count + 8, dtype=dtype)
+    room = room[-room.ctypes.data % 64 // room.itemsize :]
     return [room[begin:end].reshape(shape) for begin, end, shape in places]
 
 

@@ -174,10 +174,10 @@ class Local(NamedTuple):
     scratch: Array
 
     @classmethod
-    def of(cls, strips: int, control_points: int, modes: int, gauss_points: int, coupled: int) -> Self:
-        """Fresh ones for that many strips."""
-        s, n, k = strips, control_points, modes
-        size = 2 * n - 6 + coupled + 7
+    def of(cls, strips: Strips, control_points: int) -> Self:
+        """Fresh ones for these strips, of their kind of numbers."""
+        n, (s, gauss_points, k) = control_points, strips.modes.shape
+        size = 2 * n - 6 + strips.coupled + 7
         shapes = (
             (s, 2 * n + k + 3, 2 * n),
             (s, size + k + 1, size),
@@ -187,7 +187,7 @@ class Local(NamedTuple):
             (s, 16),
             (17, 8),
         )
-        local = cls(*aligned(*shapes))
+        local = cls(*aligned(*shapes, dtype=strips.along.dtype))
         local.lanes[:, GIVEN + 3 : FORCE_AT] = 1.0  # of ``curl_law``, where nothing curls
         return local
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
 from spline_model.strip.compiled import called, part
 from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, TIP
@@ -17,13 +17,13 @@ def end_frame(body, numbers, end, pose, out):
     px, py, turn = numbers[end], numbers[end + 1], numbers[end + 2]
     if body < 0:
         out[0], out[1], out[4], out[5] = px, py, 0.0, 0.0
-        out[2], out[3] = math.cos(turn), math.sin(turn)
+        out[2], out[3] = np.cos(turn), np.sin(turn)
     else:
         at = 3 * body
         x, y, angle = pose[at], pose[at + 1], pose[at + 2]
-        c, d = math.cos(angle), math.sin(angle)
+        c, d = np.cos(angle), np.sin(angle)
         out[0], out[1] = x + c * px - d * py, y + d * px + c * py
-        out[2], out[3] = math.cos(angle + turn), math.sin(angle + turn)
+        out[2], out[3] = np.cos(angle + turn), np.sin(angle + turn)
         out[4], out[5] = x, y
 
 

@@ -59,7 +59,7 @@ def curl_law(b, drop, curl):
     Source: Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
     """
     y = curl * curl * b * b
-    f, h, t = nearly_flat(y) if y < 1.0 else curled(np.sqrt(np.sqrt(y)))
+    f, h, t = nearly_flat(y) if y.real < 1.0 else curled(np.sqrt(np.sqrt(y)))
     whole = 1.0 / (1.0 - drop)
     return whole * (1.0 - drop * f), whole * (1.0 - drop * h), whole * (1.0 - drop * t)
 
@@ -83,7 +83,7 @@ def bending_law(phi, v, speed, curvature, rigidity, drop, curl, measure):
     if measure == MATERIAL:
         b = phi / speed - curvature
         energy, moment, tangent = 0.5 * rigidity * b * b * speed, rigidity * b, rigidity / speed
-        if curl > 0.0:
+        if curl.real > 0.0:
             by_energy, by_moment, by_tangent = curl_law(b, drop, curl)
             energy, moment, tangent = energy * by_energy, moment * by_moment, tangent * by_tangent
         return energy, moment, tangent, 0.0, 0.0, 0.0
@@ -127,7 +127,7 @@ def axial_laws(v, speed, strain, count, stretching, force, measure):
     stored = by_v = by_vv = by_n = 0.0
     if count > 0:
         by_v, by_n = force, mixed_law(v, speed, strain)
-    if stretching > 0.0:
+    if stretching.real > 0.0:
         stored, more, by_vv = stretching_law(v, speed, strain, stretching, measure)
         by_v += more
     return stored, by_v, by_vv, by_n

@@ -6,11 +6,9 @@ to functions that know them apart (``compiled.lane``). So is the Hessian, by pai
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from spline_model.strip.compiled import lane, part
+from spline_model.strip.compiled import called, lane, part
 from spline_model.strip.element import (
     CURL,
     CURVATURE,
@@ -20,6 +18,7 @@ from spline_model.strip.element import (
     GRADIENT,
     HESSIAN_AT,
     MODES,
+    MOMENT_AT,
     ON_POINTS,
     POINTS,
     PULL_AT,
@@ -65,7 +64,7 @@ def curve_at(points, d1, d2, curve):
 def lengths_at(x1, y1, speed, weights, strain, lengths, pulls):
     """|C'| and, times the weights, the strains that axial forces see."""
     for p in range(x1.size):
-        v = math.sqrt(x1[p] * x1[p] + y1[p] * y1[p])
+        v = np.sqrt(x1[p] * x1[p] + y1[p] * y1[p])
         lengths[p], pulls[p] = v, weights[p] * (v - (1.0 + strain) * speed[p])
 
 
@@ -79,7 +78,7 @@ def _given_at(s, a, strips, lanes):
             force += at[MODES + k] * a[k]
         lanes[GIVEN, p], lanes[GIVEN + 1, p], lanes[GIVEN + 2, p] = at[SPEED], at[CURVATURE], at[RIGIDITY]
         lanes[FORCE_AT, p] = force
-    if along[0, CURL] > 0.0:
+    if along[0, CURL].real > 0.0:
         flatten_at(s, strips, lanes)
 
 
@@ -112,7 +111,7 @@ def slopes_at(
         phi = (a1 * b2 - b1 * a2) * r
         _, m, _, _, f, _ = bending_law(phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure)
         f += force[p]
-        if stretching > 0.0:
+        if stretching.real > 0.0:
             f += stretching_law(v, speed[p], strain, stretching, measure)[1]
         bend, pull = weight * m * by_m[p] * r, weight * f / v
         g0[p], g1[p] = bend * (b2 - 2.0 * phi * a1) + pull * a1, pull * b1 - bend * (a2 + 2.0 * phi * b1)
@@ -134,7 +133,7 @@ def laws_at(
     for p in range(weights.size):
         a1, b1, a2, b2, weight = x1[p], y1[p], x2[p], y2[p], weights[p]
         square = a1 * a1 + b1 * b1
-        v, r = math.sqrt(square), 1.0 / square
+        v, r = np.sqrt(square), 1.0 / square
         ex, ey = a1 / v, b1 / v
         phi = (a1 * b2 - b1 * a2) * r
         density, m, m_phi, m_v, f, f_v = bending_law(
@@ -281,14 +280,29 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     )
     slowest = np.inf
     for p in range(lanes.shape[1]):
-        slowest = min(slowest, lanes[SPEED_AT, p] / lanes[GIVEN, p])
+        slowest = min(slowest, (lanes[SPEED_AT, p] / lanes[GIVEN, p]).real)
     for i in range(gradient.size):
         gradient[i] = -numbers[ON_POINTS + i]
         out[2] -= numbers[ON_POINTS + i] * points[i]
     add_slopes(moving, d1, d2, four(lanes, 4), gradient)
     out[0] += bending
     out[1] += axial + add_gaps(s, a, strips, local)
-    out[3] = min(out[3], slowest)
+    out[3] = min(out[3].real, slowest)
+
+
+@called()
+def forces_at(s, a, strips, shape, local):
+    """Axial force and moment of strip s, of whatever points, into FORCE_AT and MOMENT_AT of its lanes."""
+    numbers, lanes, along = strips.numbers[s], local.lanes[s], strips.along[s]
+    curve_at(local.nodal[s, POINTS], shape.curve[0], shape.curve[1], four(lanes, 0))
+    _given_at(s, a, strips, lanes)
+    for p in range(lanes.shape[1]):
+        x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
+        square, speed = x1 * x1 + y1 * y1, along[p, SPEED]
+        v, phi = np.sqrt(square), (x1 * y2 - y1 * x2) / square
+        law = bending_law(phi, v, speed, along[p, CURVATURE], along[p, RIGIDITY], 0.0, 0.0, strips.measure)
+        lanes[MOMENT_AT, p] = law[1] * lanes[GIVEN + 4, p]
+        lanes[FORCE_AT, p] += numbers[STRETCHING] * (v / speed - 1.0 - numbers[STRAIN])
 
 
 @part()

@@ -11,7 +11,7 @@ import numpy as np
 from spline_model.accuracy import DEFAULT, search
 from spline_model.confirmed import NOTHING, Grid
 from spline_model.discretisation import Discretisation
-from spline_model.sensitivity.solve import sensitivities
+from spline_model.sensitivity import sensitivities
 from spline_model.solution import largest
 from studies.answers.answer import centre_shift
 from studies.answers.models import put

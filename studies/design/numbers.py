@@ -8,7 +8,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from spline_model.sensitivity.parameters import CENTRES, MATERIAL, POINTS
+from spline_model.parameters import CENTRES, MATERIAL, POINTS
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.design.evaluate import STRESS, VARIATION

@@ -4,11 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from spline_model import Mechanism, compliant_mechanism, solve_many, solve_mechanism
+from spline_model import (
+    Mechanism,
+    compliant_mechanism,
+    cross_axis_pivot,
+    solve_many,
+    solve_mechanism,
+    solve_statics,
+)
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
+from tests.table_one import BARE
 
 VALUES = {
     "thickness": np.array([3e-4, 2e-4, 1.5e-2]),  # the last: thick, so that no axial force stays outside
@@ -62,3 +70,25 @@ def batch_error(thickness: float = 1.0) -> float:
 def test_a_batch_of_mechanisms_equals_single_solves():
     """Requirement: a mechanism over its numbers, weight included, gives the answers of single solves."""
     gates.hold("spline_batch_mechanism", batch_error)
+
+
+def sides_error(**coarse: float) -> float:
+    """Largest error of torques of a pivot whose strips change their sides in a batch, under plate effects."""
+    sides, effects = {"thickness": [2e-3, 1e-3], "width": [0.03, 0.02]}, ("clamped_width", "root_compliance")
+    grid = {"effects": ("bending", "stretching", *effects), "control_points": 6}
+    made = [
+        cross_axis_pivot(**BARE | grid, thickness=h, width=b)
+        for h, b in zip(*(coarse.get(name, 1.0) * np.array(sides[name]) for name in sides), strict=True)
+    ]
+    batch = solve_many(made[0], sides, rotation=0.3, increments=3)
+    paths = [solve_statics(pivot, rotation=0.3, increments=3) for pivot in made]
+    return max(
+        float(np.abs(torque - path.torque).max() / np.abs(path.torque).max())
+        for torque, path in zip(batch.torque, paths, strict=True)
+    )
+
+
+def test_a_batch_of_other_sides_has_their_profiles():
+    """Requirement: the rigidity along a strip follows its b/L and t/L, design by design."""
+    gates.check("spline_batch_mechanism", sides_error())
+    gates.refuse("spline_batch_mechanism", sides_error)

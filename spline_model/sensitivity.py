@@ -11,22 +11,19 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.discretisation import require_uncut
-from spline_model.effects import Bending, MixedStretching
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
-from spline_model.layout import Layout
 from spline_model.mechanism import Mechanism, require_mechanism
-from spline_model.pivot import Pivot
+from spline_model.parameters import KEYWORDS, Given, require_names
+from spline_model.pivot import Pivot, turned
+from spline_model.reduced.designs import along_of_designs, designs_of, of_design
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
-from spline_model.reduced.numbers import in_order
-from spline_model.reduced.states import gathered, whole_tangents
+from spline_model.reduced.states import products, section_forces, unknowns_of, whole_tangents
 from spline_model.sections import STATIONS
-from spline_model.sensitivity.element import Curve, Elements, times_each, turned
-from spline_model.sensitivity.parameters import KEYWORDS, Rates, Varied
 from spline_model.static_answers import StaticSolution
-from spline_model.strip import laws
 
 Array = NDArray[np.float64]
+Complex = NDArray[Any]
 
 LARGEST_RESIDUAL = 1e-7
 """Residual [EI/L^2, EI/L, L, rad] above which states are not the design's: solved ones are below 1e-8."""
@@ -42,7 +39,7 @@ def sensitivities(
 ) -> Sensitivities:
     """Derivatives of a solved path by the design, at constant rotations, loads and driven displacements.
 
-    parameters: names as of ``spline_model.sensitivity.parameters.PARAMETERS``; for area and second
+    parameters: names as of ``spline_model.parameters``; for area and second
     moment the section's depth follows as sqrt(12 I / A), for thickness and width it is the
     thickness. stations: where stresses are taken, reference arc length over L. body: of a mechanism, the
     one that was driven and is reported, or the only one.
@@ -52,8 +49,8 @@ def sensitivities(
         dy/dp = -K^-1 dR/dp,    dT/dp = dR_driven/dp,    dk/dp = y_t^T (dK/dp) y_t,    y_t = dy/d(theta)
 
     where dT/dp and dK/dp count the change of the state too: one factorisation a state, one
-    back-substitution a parameter and one for the rate y_t. The parameters enter through the end frames,
-    reach, speed, EI, compliance and dead load of the strips, by a complex step: exact to round-off for
+    back-substitution a parameter and one for the rate y_t. The parameters enter through the arrays of the
+    strips, by a complex step with which the kernels of the path are evaluated again: exact to round-off for
     the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
     the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes
     with the design. Bodies keep their mass. Refuses what the elements do not know: printed
@@ -64,34 +61,53 @@ def sensitivities(
     if asked.design.discretisation.control_points is None:
         asked = asked.on(solution.segments, solution.control_points)
     require_uncut(asked.design.discretisation, "sensitivities")
-    rates = Rates.of(asked, parameters)
+    given = _stepped(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
     z = solution.states
-    model = _model_of(system, z)
-    y, varied = from_unknowns(model, z), Varied.of(model, asked.design, rates)
-    still = Elements(model=model, varied=varied, y=y[None] + 0j)
-    changes, rate = _differentiate(still, solution, rates.held(model))
-    moved = Elements(model=model, varied=varied, y=y + 1j * STEP * changes)
-    unknowns = _unknowns(moved)
-    states, stiffness = _quantity(unknowns), _quantity(model.energy * moved.second_along(rate))
-    bending, axial = (_quantity(model.energy * each).derivative for each in moved.energies)
+    model, base = _model_of(system, z), Given.of(asked.design)
+    units = np.full(len(parameters), model.length), np.full(len(parameters), model.energy)
+    designs = designs_of(model, base, given, *units)
+    models = [of_design(model, designs, p) for p in range(len(parameters))]
+    changes, rate = _differentiate(model, models, solution, designs.start[:, model.bodies.held].imag / STEP)
+    y = from_unknowns(model, z) + 1j * STEP * changes
+    force, product, energies = _products(models, y, rate)
+    reaction = force[..., model.bodies.held]
+    unknowns = np.stack([unknowns_of(*each) for each in zip(models, y, reaction, strict=True)])
+    states = _quantity(unknowns)
+    stiffness = _quantity(model.energy * np.sum(rate * product, axis=-1))
+    bending, axial = (_quantity(model.energy * energies[..., k]).derivative for k in range(2))
     torque = Quantity(value=solution.torque, derivative=np.full((len(z), len(parameters)), np.nan))
     if driven:
         row = system.drives.row[model.bodies.driven]
         torque = replace(torque, derivative=states.derivative[:, row])
+    at = model.at_stations(np.asarray(stations, dtype=float))
+    designs = designs._replace(along=along_of_designs(at, base, given, *units))
+    at_stations = (of_design(at, designs, p) for p in range(len(models)))
+    stress = [_fibre_stress(*each) for each in zip(at_stations, given.section, y, strict=True)]
     return Sensitivities(
         parameters=tuple(parameters),
         torque=torque,
         stiffness=stiffness if driven else torque,
-        **_shifts(asked, rates, unknowns, system.layout, body),
+        **_shifts(asked, given, unknowns, system, body),
         bending_energy=Quantity(value=solution.bending_energy, derivative=bending),
         axial_energy=Quantity(value=solution.axial_energy, derivative=axial),
-        fibre_stress=_quantity(_fibre_stress(moved, stations)),
+        fibre_stress=_quantity(np.stack(stress)),
         stations=np.asarray(stations, dtype=float),
         states=states.derivative,
         counters={"factorisations": len(z), "back_substitutions": len(z) * (len(parameters) + 1)},
     )
+
+
+def _stepped(asked: Mechanism, names: Sequence[str]) -> Given:
+    """P designs with a step in one parameter each; refuses unknown and doubled ones."""
+    if not names or len(set(names)) != len(names):
+        raise InvalidParameter("parameters", list(names), "at least one name, each once")
+    require_names(asked, names, "parameters")
+    given = Given.of(asked.design, len(names), complex)
+    for name, step in zip(names, 1j * STEP * np.eye(len(names)), strict=True):
+        given.put(asked, name, step, own=1.0)
+    return given
 
 
 def _model_of(system: System, z: Array) -> Reduced:
@@ -103,33 +119,31 @@ def _model_of(system: System, z: Array) -> Reduced:
     return model
 
 
-def _unknowns(elements: Elements) -> NDArray[Any]:
-    """The scene's unknowns z (P, S, N), reactions of drives without the loads, which no parameter moves."""
-    force, at_clamps = elements.residual()
-    points = elements.points.transpose(3, 4, 2, 0, 1)
-    points, forces = points.reshape(*points.shape[:3], -1), at_clamps.transpose(3, 4, 2, 0, 1)
-    return gathered(elements.model, elements.y, points, forces, force[..., elements.model.bodies.held])
+def _products(models: Sequence[Reduced], y: Complex, rate: Array) -> list[Complex]:
+    """``products`` of P designs at their states (P, S, Y) along the same rates (S, Y)."""
+    found = (products(model, each, rate + 0j) for model, each in zip(models, y, strict=True))
+    return [np.stack(each) for each in zip(*found, strict=True)]
 
 
-def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tuple[Array, Array]:
-    """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (1, S, Y) by the
+def _differentiate(
+    model: Reduced, models: Sequence[Reduced], solution: StaticSolution, held: Array
+) -> tuple[Array, Array]:
+    """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (S, Y) by the
     rotation."""
-    model, y = still.model, still.y[0].real
-    bodies, scene, poses = model.bodies, model.system.scene, len(model.bodies.rest)
-    force = still.residual()[0]
-    left = force[0].real.copy()
+    z = solution.states
+    y, bodies, poses = from_unknowns(model, z), model.bodies, len(model.bodies.rest)
+    left, tangent = whole_tangents(model, y)
+    force = _products(models, np.repeat(y[None], len(models), axis=0) + 0j, 0.0 * y)[0]
     left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
-    at = [solution.states[:, model.system.layout.strip(strip.name)] for strip in scene.strips]
-    order = model.shape.order
-    given = np.stack(at, axis=-1).reshape(len(y), -1, 2, len(at))[:, order] / model.length
-    apart = still.points[..., 0, :].real.transpose(3, 0, 1, 2) - given
+    count, unit = model.system.layout.coordinate_count, model.system.scales.unit
+    again = unknowns_of(model, y, np.zeros((len(y), len(bodies.held))))
+    apart = np.abs(again - z)[:, :count] / unit[:count]
     free = np.setdiff1d(np.arange(model.size), bodies.held)
-    wrong = np.maximum(np.abs(left[:, free]).max(axis=1), np.abs(apart).max(axis=(1, 2, 3)))
+    wrong = np.maximum(np.abs(left[:, free]).max(axis=1), apart.max(axis=1))
     if not wrong.max() <= LARGEST_RESIDUAL:
         s = int(np.argmax(~(wrong <= LARGEST_RESIDUAL)))
         expected = f"at most {LARGEST_RESIDUAL:g}: a solution of this pivot"
         raise InvalidParameter("solution", f"state {s} with residual {wrong[s]:.1e}", expected)
-    tangent = whole_tangents(model, y)[1]
     changes = np.zeros((len(held) + 1, *y.shape))
     changes[:-1, :, bodies.held] = held[:, None]
     if bodies.driven >= 0:
@@ -141,65 +155,41 @@ def _differentiate(still: Elements, solution: StaticSolution, held: Array) -> tu
     except np.linalg.LinAlgError:
         raise InvalidParameter("solution", "a state with a singular tangent", "regular states") from None
     changes[..., free] = found.transpose(2, 0, 1)
-    return changes[:-1], changes[-1:]
+    return changes[:-1], changes[-1]
 
 
 def _shifts(
-    asked: Mechanism, rates: Rates, unknowns: NDArray[Any], layout: Layout, body: str | None
+    asked: Mechanism, given: Given, unknowns: Complex, system: System, body: str | None
 ) -> dict[str, Quantity]:
     """Centre of the body, its displacement, and that of its point in a pivot's crossing at rest; nan without
     a body."""
-    design, step = asked.design, 1j * STEP
-    if not design.bodies:
+    if not asked.design.bodies:
         none = _quantity(np.full((*unknowns.shape[:-1], 2), np.nan + 0j))
         return {"centre": none, "body_shift": none, "centre_shift": none}
-    name = design.body_named(body)
-    place = [each.name for each in design.bodies].index(name)
-    centre, angle = unknowns[..., layout.body(name)][..., :2], unknowns[..., layout.body(name)][..., 2]
-    rest = np.asarray(design.bodies[place].centre) + step * rates.centres[:, place]
-    point = rest
-    if isinstance(asked, Pivot):
-        ratio, length = asked.crossing_reach
-        crossing = asked.clamp_points[0, 0] + ratio * length * asked.clamp_directions[0, 0]
-        point = crossing + step * rates.crossing
-    arm = (point - rest).T[..., None]
-    swung = np.moveaxis(turned(angle, arm[0], arm[1]), 1, -1)
+    name = asked.design.body_named(body)
+    place = [each.name for each in asked.design.bodies].index(name)
+    pose, rest = unknowns[..., system.layout.body(name)], given.centres[:, None, place]
+    point = given.crossing[:, None] if isinstance(asked, Pivot) else rest
+    x, y = np.moveaxis(point - rest, -1, 0)
+    arm = np.stack(turned(x, y, pose[..., 2]), axis=-1)
     return {
-        "centre": _quantity(centre),
-        "body_shift": _quantity(centre - rest[:, None]),
-        "centre_shift": _quantity(centre + swung - point[:, None]),
+        "centre": _quantity(pose[..., :2]),
+        "body_shift": _quantity(pose[..., :2] - rest),
+        "centre_shift": _quantity(pose[..., :2] + arm - point),
     }
 
 
-def _fibre_stress(elements: Elements, stations: Array) -> NDArray[Any]:
-    """Stress [Pa] at both extreme fibres of G strips at Q stations, (P, S, G, Q, 2).
+def _fibre_stress(at: Reduced, section: NDArray[Any], y: Complex) -> Complex:
+    """Stress [Pa] at both extreme fibres of G strips at a model's Q stations, (S, G, Q, 2).
 
     N / A -+ M h / (2 I) with h = sqrt(12 I / A) of the rectangular section, left fibre first: signed,
     so that both are smooth in state and design. Plane sections, without the clamps' notches.
     """
-    model, varied, strips = elements.model, elements.varied, elements.model.strips
-    scene, basis = model.system.scene, model.system.scene.strips[0].basis
-    d1, d2 = (in_order(basis.evaluate(stations, k)[..., None], model.shape)[..., 0] for k in (1, 2))
-    still = np.stack([in_order(s.control_points, model.shape) for s in scene.strips], axis=-1)
-    at_rest = still[..., None, None] / model.length
-    rest, curve = Curve.of(d1, d2, at_rest), Curve.of(d1, d2, elements.points)
-    natural = {e.strip: model.length * e.natural_curvature for e in scene.of(Bending)}
-    curvature = np.array([natural[s.name] for s in scene.strips])[:, None, None]
-    curvature, speed = curvature + rest.turning / rest.speed, rest.speed * varied.longer
-    bend = curve.turning / (curve.speed if strips.measure else speed) - curvature
-    rigidity, drop = varied.along(model, stations)
-    curled = laws.curl_factors(bend, drop, varied.curl)[1] if varied.curl.any() else 1.0
-    moment = rigidity * bend * curled
-    side = moment * model.energy * np.sqrt(3.0 / (varied.area * varied.second_moment))
-    force: Any = 0.0
-    if strips.stretching.any():
-        force = varied.stretching * (curve.speed / speed - 1.0 - strips.strain[:, None, None])
-    if len(elements.axial):
-        parts = [e.modes for e in scene.of(MixedStretching) if e.strip == scene.strips[0].name]
-        shown = np.column_stack([modes.evaluate(stations) for modes in parts]) @ model.to_modes
-        force = force + times_each(shown, elements.axial)
-    mean = force * (model.energy / model.length / varied.area)
-    return np.stack((mean - side, mean + side)).transpose(3, 4, 2, 1, 0)
+    area, second_moment, _ = section.T[..., None]
+    force, moment = section_forces(at, y)
+    side = moment * at.energy * np.sqrt(3.0 / (area * second_moment))
+    mean = force * (at.energy / at.length / area)
+    return np.stack((mean - side, mean + side), axis=-1)
 
 
 def _quantity(found: NDArray[Any]) -> Quantity:

@@ -1,0 +1,241 @@
+"""Design parameters of a mechanism by name, and the numbers that tell many designs of it apart.
+
+The numbers may be complex: a step of ``STEP`` along the imaginary axis gives a derivative without the
+difference that loses digits (Squire and Trapp, SIAM Review 40 (1998) 110).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from spline_model.compile import compile_scene
+from spline_model.design import Design
+from spline_model.errors import InvalidParameter
+from spline_model.mechanism import Mechanism
+from spline_model.pivot import Pivot, cross_axis_pivot, ends_at_rest, turned
+
+Array = NDArray[Any]
+"""Real, or complex with a step."""
+
+SHAPE = ("length", "inclination", "crossing_ratio")
+MATERIAL = ("area", "second_moment_of_area", "youngs_modulus")
+KEYWORDS = (*SHAPE, *MATERIAL)
+"""Keywords of ``cross_axis_pivot`` that the statics of both strips alike depends on. Of the others density
+and the inertias do not enter, but by weight, nor Poisson's ratio, but by the section's curl;
+``centre_offset`` and ``orientation`` move what is reported rigidly."""
+
+SECTION = ("thickness", "width")
+"""Sides of a rectangular section h x b, A = b h and I = b h^3 / 12, in place of A and I."""
+
+POINTS = ("start_x", "start_y", "end_x", "end_y")
+CENTRES = ("centre_x", "centre_y")
+"""Numbers of one strip and of one body. Those of section and material are of all strips alike, in any
+mechanism; a name before a dot picks one strip, "strip_1.thickness", and then also its ends' places at rest,
+"strip_1.end_x", or a body's centre, "body.centre_y"."""
+
+POSITIVE = ("length", *MATERIAL)
+"""Columns that statics reads and that must be above zero; the others are checked on the first design."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Given:
+    """D designs of S strips and B bodies: ends (D, S, 2, 2) at rest, root and tip, and centres (D, B, 2) [m];
+    section (D, S, 3): area [m^2], second moment [m^4] and modulus [Pa].
+    """
+
+    ends: Array
+    centres: Array
+    section: Array
+
+    @classmethod
+    def of(cls, design: Design, count: int = 1, kind: type = float) -> Given:
+        """One design, so many times, as numbers of a kind."""
+        strips, bodies = design.strips, design.bodies
+        section = [(s.area, s.second_moment_of_area, s.youngs_modulus) for s in strips]
+        return cls(
+            ends=np.array([[(s.start, s.end) for s in strips]] * count, dtype=kind),
+            centres=np.array([[body.centre for body in bodies]] * count, dtype=kind).reshape(count, -1, 2),
+            section=np.array([section] * count, dtype=kind),
+        )
+
+    @property
+    def chord(self) -> Array:
+        """From root to tip (D, S, 2) [m]."""
+        return self.ends[:, :, 1] - self.ends[:, :, 0]
+
+    @property
+    def span(self) -> Array:
+        """Length of the chord (D, S) [m]."""
+        return np.asarray(np.sqrt(np.sum(self.chord**2, axis=-1)))
+
+    @property
+    def rigidity(self) -> Array:
+        """EI (D, S) [N m^2]."""
+        return np.asarray(self.section[..., 1] * self.section[..., 2])
+
+    @property
+    def sides(self) -> Array:
+        """Thickness and width of the rectangle with that section (D, S, 2) [m]."""
+        thickness = np.sqrt(12.0 * self.section[..., 1] / self.section[..., 0])
+        return np.stack((thickness, self.section[..., 0] / thickness), axis=-1)
+
+    @property
+    def compliance(self) -> Array:
+        """Axial compliance of each strip over the longest strip and the largest rigidity, (D, S)."""
+        stiffness = self.section[..., 0] * self.section[..., 2] * self.span.max(axis=1)[:, None] ** 2
+        return np.asarray(self.rigidity.max(axis=1)[:, None] / stiffness)
+
+    @property
+    def crossing(self) -> Array:
+        """Where the chords of the first two strips cross (D, 2) [m]."""
+        (a, b), apart = np.moveaxis(self.chord[:, :2], 1, 0), self.ends[:, 1, 0] - self.ends[:, 0, 0]
+        share = cross(apart, b) / cross(a, b)
+        return np.asarray(self.ends[:, 0, 0] + share[:, None] * a)
+
+    def rows(self, kept: NDArray[np.int64]) -> Given:
+        """Some of the designs."""
+        return Given(ends=self.ends[kept], centres=self.centres[kept], section=self.section[kept])
+
+    def put(self, asked: Mechanism, name: str, column: Array, own: float = 0.0) -> None:
+        """Give the numbers of that name the values of a column (D,), or add it to ``own`` times themselves.
+
+        Where both strips of a pivot change alike, its body goes along.
+        """
+        if isinstance(asked, Pivot) and name in SHAPE:
+            shape = asked.shape
+            new = _ends(**shape | {name: column + own * shape[name]}) - _ends(**shape)
+            self.ends[...] += new
+            self.centres[...] += new[:, None, :, 1].mean(axis=2)
+            return
+        part, place = _place_of(asked.design, name)
+        if part != "sides":
+            numbers = getattr(self, part)
+            numbers[place] = (own * numbers[place].T + column).T
+            return
+        sides, strips = self.sides, place[1]
+        sides[place] = (own * sides[place].T + column).T
+        h, b = np.moveaxis(sides[:, strips], -1, 0)
+        self.section[:, strips, 0], self.section[:, strips, 1] = b * h, b * h**3 / 12.0
+
+
+def _place_of(design: Design, name: str) -> tuple[str, tuple[Any, ...]]:
+    """Where the numbers of that name stand in ``Given``, or in its "sides"; () for no name of the design."""
+    owner, _, field = name.rpartition(".")
+    strips = [i for i, strip in enumerate(design.strips) if owner in ("", strip.name)]
+    bodies = [i for i, body in enumerate(design.bodies) if owner == body.name]
+    for part, names in (("section", MATERIAL), ("sides", SECTION)):
+        if field in names and strips:
+            return part, (slice(None), strips, names.index(field))
+    if field in POINTS and owner and strips and design.strips[strips[0]].rise == 0.0:
+        return "ends", (slice(None), strips[0], *divmod(POINTS.index(field), 2))
+    if field in CENTRES and bodies:
+        return "centres", (slice(None), bodies[0], CENTRES.index(field))
+    return "", ()
+
+
+def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None:
+    """Refuse names of which the design has no number."""
+    shape = SHAPE if isinstance(asked, Pivot) else ()
+    for name in names:
+        if name not in shape and not _place_of(asked.design, name)[0]:
+            one = f"STRIP.{', STRIP.'.join(POINTS)} of a straight strip or BODY.{', BODY.'.join(CENTRES)}"
+            known = ", ".join((*shape, *MATERIAL, *SECTION))
+            raise InvalidParameter(argument, name, f"one of {known}, {one}")
+
+
+def pivots(
+    designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]], discretisation: Mapping[str, Any]
+) -> tuple[Mechanism, Given]:
+    """A pivot of unit length and rigidity, so that no design's answer depends on another one, and the
+    numbers of many by the keywords of ``cross_axis_pivot``; refused under loads, which these do not scale.
+    """
+    columns = _columns(designs)
+    first: dict[str, Any] = {
+        name: tuple(c[0].tolist()) if c.ndim > 1 else float(c[0]) for name, c in columns.items()
+    }
+    system = compile_scene(cross_axis_pivot(**first, **discretisation).driven(1.0))
+    if system.is_preloaded or system.loads.value.any():
+        expected = "no loads on pivots by their keywords: a mechanism and its values"
+        raise InvalidParameter("discretisation", dict(discretisation), expected)
+    unit: dict[str, Any] = dict.fromkeys(
+        ("length", "second_moment_of_area", "youngs_modulus", "density"), 1.0
+    )
+    unit |= {"area": 1e3, "poisson_ratio": 0.3, "body_mass": 1.0, "body_moment_of_inertia": 1.0}
+    unit |= {"inclination": np.pi / 4, "crossing_ratio": 0.5}
+    return cross_axis_pivot(**unit, **discretisation), _pivots(columns)
+
+
+def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
+    """Designs of a mechanism whose numbers are replaced by ``values``, by the names of the parameters."""
+    require_names(mechanism, list(values), "values")
+    columns = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in values.items()}
+    count = max([count, *(len(column) for column in columns.values())])
+    given = Given.of(mechanism.design, count)
+    for name in values:
+        column = one_each(name, columns[name], count)
+        if name.rpartition(".")[2] in (*SHAPE, *MATERIAL, *SECTION):
+            _refuse({name: column}, name, column > 0.0, "a finite number > 0")
+        given.put(mechanism, name, column)
+    return given
+
+
+def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """Designs as columns of equal length, pairs with a second axis."""
+    if not isinstance(designs, Mapping):
+        designs = {name: np.array([design[name] for design in designs]) for name in designs[0]}
+    pairs = {name: 1 + (name == "centre_offset") for name in designs}
+    values = {name: np.asarray(value, dtype=float) for name, value in designs.items()}
+    count = max((len(v) for name, v in values.items() if v.ndim >= pairs[name]), default=1)
+    shape = {name: (count, 2) if pairs[name] == 2 else (count,) for name in values}
+    return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
+
+
+def _pivots(columns: Mapping[str, Array]) -> Given:
+    """Pivots by their keywords."""
+    c, count = columns, len(columns["length"])
+    for name in POSITIVE:
+        _refuse(c, name, c[name] > 0, "a finite number > 0")
+    _refuse(c, "inclination", (c["inclination"] > 0) & (c["inclination"] < np.pi / 2), "0 to pi/2")
+    _refuse(c, "crossing_ratio", (c["crossing_ratio"] > 0) & (c["crossing_ratio"] < 1), "0 to 1")
+    turn = np.broadcast_to(c.get("orientation", np.zeros(1)), (count,))
+    x, y = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2)).T
+    ends = _ends(**{name: c[name] for name in SHAPE}, orientation=turn)
+    section = np.stack([c[name] for name in MATERIAL], axis=-1)
+    return Given(
+        ends=ends,
+        centres=(ends[:, :, 1].mean(axis=1) + np.stack(turned(x, y, turn), axis=-1))[:, None],
+        section=np.repeat(section[:, None], 2, axis=1),
+    )
+
+
+def _ends(**shape: Any) -> Array:
+    """``ends_at_rest`` of pivots (D,) as an array (D, 2, 2, 2), or of one as (1, 2, 2, 2)."""
+    numbers = [n for strip in ends_at_rest(**shape) for point in strip for n in point]
+    return np.stack(np.broadcast_arrays(*numbers), axis=-1).reshape(-1, 2, 2, 2)
+
+
+def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], expected: str) -> None:
+    """Refuse the first design whose number is not good, or not finite."""
+    bad = np.flatnonzero(~(good & np.isfinite(columns[name])))
+    if bad.size:
+        raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
+
+
+def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
+    """A number for all designs, (1,), or one for each, (D,)."""
+    values = np.atleast_1d(np.asarray(given, dtype=float))
+    if values.shape not in ((1,), (count,)):
+        raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
+    bound = "" if above == -np.inf else f" > {above:g}"
+    _refuse({name: values}, name, values > above, f"a finite number{bound}")
+    return values
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a x b."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

@@ -1,1 +1,0 @@
-"""Exact derivatives of a static path with respect to the design of the pivot."""
