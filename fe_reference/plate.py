@@ -53,7 +53,8 @@ LAYERS, ALONG = 6, 2
 QUADRATURE = 6
 #: Gauss points of the strip and of an element: layers at clamps are as thin as a tenth of the width.
 STRIP_POINTS, ELEMENT_POINTS = 400, 60
-#: Width over length below which the clamps do not see each other: the profile is the same, in widths.
+#: Width over length below which the clamps do not see each other: the layers are the same, in widths. What A
+#: differs from 1 by stands for a part of them, and so falls with the width as well.
 NARROW = 0.05
 #: Largest residual of the plate's factors, in parts of the square of Poisson's ratio.
 FITTED = 1e-12
@@ -204,7 +205,8 @@ def _layers(width_ratio: float, poisson_ratio: float) -> tuple[float, float]:
     """Return A and l."""
     if width_ratio < NARROW:
         size, length = _layers(NARROW, poisson_ratio)
-        return size, length * width_ratio / NARROW
+        part = width_ratio / NARROW
+        return 1.0 + (size - 1.0) * part, length * part
     factors = plate_factors(width_ratio, poisson_ratio)
     x, weights = np.polynomial.legendre.leggauss(STRIP_POINTS)
     u, weights, square = 0.5 * x, 0.5 * weights, poisson_ratio**2

@@ -1,5 +1,6 @@
 """The strip as a plate between built-in ends: published factors, limits and its mesh."""
 
+import numpy as np
 import pytest
 
 from fe_reference import plate, plate_factors
@@ -28,6 +29,15 @@ def test_limits():
     assert wider / narrow == pytest.approx(2.0, rel=0.02)
     wide = plate_factors(20.0, 0.3)
     assert 1.09 < wide.constant < wide.linear < 1.0 / (1.0 - 0.3**2)
+
+
+@pytest.mark.slow
+def test_a_narrow_strip_has_the_rigidity_of_its_plate():
+    """Requirement: a strip whose clamps do not see each other is as much stiffer as its plate is."""
+    x, weights = np.polynomial.legendre.leggauss(400)
+    compliance = 0.91 / (1.0 - 0.09 * plate.left_by_clamps(0.01, 0.3, 0.5 * (x + 1.0)))
+    excess = 1.0 / (0.5 * weights @ compliance) - 1.0
+    assert excess == pytest.approx(plate_factors(0.01, 0.3).constant - 1.0, rel=0.02)
 
 
 def test_no_poisson_effect():
