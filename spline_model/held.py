@@ -70,6 +70,7 @@ class HeldPivot:
         grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
         self._grasped = grasped.arrays()
         self.pose = self._y[:3] * self._unit
+        self._led: Arrays | None = None  # those that the state was led with; none behind ``restore``
         self.reset()
 
     @property
@@ -87,7 +88,7 @@ class HeldPivot:
 
     def restore(self, unknowns: Array) -> HeldState:
         """Back to a state that ``unknowns`` gave."""
-        self.pose[:], self._y[:] = unknowns[:3], unknowns[3:]
+        self.pose[:], self._y[:], self._led = unknowns[:3], unknowns[3:], None
         return self._state(1.0, 0)
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
@@ -113,6 +114,8 @@ class HeldPivot:
         that was solved, of which nothing is kept but the whole, and Newton's iterations."""
         held = arrays.bodies.held
         whole, longest = target - self._y[held], np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])[held]
+        if self._led is arrays and not whole.any():
+            return 1.0, 0
         parts = max(1, math.ceil((np.abs(whole) / longest).max()))
         route = Route(np.arange(parts + 1.0) / parts, self._y[held], whole, 0.0, passes=not stable)
         answer = Answer.empty(parts + 1, len(self._y), len(held))
@@ -122,7 +125,7 @@ class HeldPivot:
             done = 0
         if done > parts:
             self._y[:] = answer.y[-1]
-            self._y[held] = target
+            self._y[held], self._led = target, arrays
         return max(done - 1, 0) / parts, int(answer.counters[ITERATIONS])
 
     def _state(self, reached: float, iterations: int) -> HeldState:
