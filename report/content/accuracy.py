@@ -121,6 +121,8 @@ MESHES = Stored("convergence/elements", "meshes", element="corotational")
 TWENTY = MESHES.where(elements=20)
 MOTIONS = Stored("paper/fig06_release", "summary")
 PLATE = Stored("model_form/plate", "paper")
+SOLIDS = Stored("model_form/solid_pivot", "deviations")
+SOLID_LIMITS = Stored("model_form/solid_pivot", "limits", law="st-venant-kirchhoff")
 PIVOTS = Stored("charts/pivot", "validity", pivot="cross_axis_pivot")
 GRAVITY = Stored("effects/worth", "worth", design="Table 1", scene="no gravity")
 
@@ -136,6 +138,9 @@ BUDGET: dict[str, tuple[Stored, str]] = {
     "supports cut from one block": (PIVOTS, "roots"),
     "plate action at the clamps": (PLATE, "excess"),
     "n = 4 without locking": (free(4), "error_torque"),
+    "material law of solids": (SOLIDS.where(model="solid, neo-hookean"), "error_torque"),
+    "beams against solids": (SOLIDS.where(model="beam"), "error_torque"),
+    "uncertainty of the solids": (SOLID_LIMITS, "uncertainty"),
     "shear": (TORQUE, "distance_to_material"),
     "20 elements per strip": (TWENTY, "error_torque"),
     "stretching": (RIGID, "error_torque"),

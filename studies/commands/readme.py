@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from studies.answers import quantities
@@ -254,6 +255,24 @@ def _of_page(name: str) -> Callable[[Store], Iterable[str]]:
     return lambda store: PAGE[name]()
 
 
+#: Rotations of the table of solids [deg].
+SOLID_AT = (9.0, 45.0, 90.0)
+
+
+def _solids(store: Store) -> Iterator[str]:
+    """Yield the deviations of beam models from solids of the benchmark pivot."""
+    rows = _stored(store, "model_form/solid_pivot", "deviations")
+    degrees = np.degrees(rows["rotation_rad"]).round(3)
+    yield markdown_head("model", *(f"torque at {angle:g}°" for angle in SOLID_AT), "trajectory at 90°")
+    for name in dict.fromkeys(rows["model"]):
+        own = rows[rows["model"] == name].set_index(degrees[rows["model"] == name])
+        torques = " | ".join(f"{100.0 * own['error_torque'][angle]:+.2f} %" for angle in SOLID_AT)
+        yield f"| {name} | {torques} | {_percent(own['error_trajectory'][SOLID_AT[-1]])} |"
+    sure = rows[rows["model"] == rows["model"].iloc[0]]["uncertainty"].to_numpy()
+    known = dict(zip(degrees.unique(), sure, strict=True))
+    yield "| *uncertainty of the solids* | " + " | ".join(_percent(known[a]) for a in SOLID_AT) + " |  |"
+
+
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
     ROOT / "README.md": {"agreement": _short},
@@ -264,6 +283,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "costs": _costs,
         "hard cases": _hard_cases,
         "sized": _sized,
+        "solids": _solids,
         "published": _published,
     },
     ROOT / "docs" / "data.md": {"quantities": _quantities},
