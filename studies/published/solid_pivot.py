@@ -182,8 +182,8 @@ def _figure(tables: Tables) -> Figure:
     rows = tables["deviations"].assign(percent=lambda table: 100.0 * table["error_torque"])
     curves = Curves(rows, LOOKS, by="model")
     exact = Level(0.0, colour=BLACK)
-    torque = Panel(ROTATION, Axis("percent", "deviation of the torque from solids [%]"), (curves, exact))
-    trajectory = Axis("error_trajectory", "deviation of the trajectory from solids [1]", log=True)
+    torque = Panel(ROTATION, Axis("percent", "deviation of the torque [%]"), (curves, exact))
+    trajectory = Axis("error_trajectory", "deviation of the trajectory [1]", log=True)
     return sheet(7.5, 3.4, [[torque, Panel(ROTATION, trajectory, (curves,))]], legend=3)
 
 
