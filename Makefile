@@ -26,11 +26,11 @@ $(STAMP): requirements.lock pyproject.toml
 	$(BIN)/python -m studies compile
 	@touch $@
 
-figures: $(STAMP)  ## compute the paper's figures and the convergence studies anew, refresh the README
+figures: $(STAMP)  ## compute the figures of the paper and the convergence studies again, refresh the README
 	$(BIN)/python -m studies run paper convergence
 	$(BIN)/python -m studies readme
 
-results: $(STAMP)  ## compute all studies anew (10 minutes), refresh the README
+results: $(STAMP)  ## compute all studies again (10 minutes), refresh the README
 	$(BIN)/python -m studies run all
 	$(BIN)/python -m studies readme
 
@@ -55,7 +55,7 @@ test: $(STAMP)  ## run the quick tests
 test-all: $(STAMP)  ## run all tests
 	$(BIN)/python -m pytest -q -n auto --dist loadfile
 
-mutate: $(STAMP)  ## put slips into a copy of both models: a named test must notice each (10 minutes)
+mutate: $(STAMP)  ## apply mutants to a copy of the code: a named test must detect each (25 minutes)
 	$(BIN)/python -m tests.mutate $(ARGS)
 
 bench: $(STAMP)  ## time the solvers; counters are stored beside the seconds
