@@ -146,7 +146,7 @@ def _published(store: Store) -> Iterator[str]:
     """Yield the table of published problems: of each and each kind of answer the value that is met worst, by
     the splines where they answer."""
     values = _stored(store, "published/problems", "values")
-    yield markdown_head("published problem", "asked", "in print", "ours", "difference", "limit")
+    yield markdown_head("published problem", "quantity", "published", "ours", "difference", "limit")
     for _, every in values.groupby(["problem", "answer"], sort=False):
         rows = every[every["model"] == "spline"] if (every["model"] == "spline").any() else every
         row = rows.iloc[int(rows["error"].abs().argmax())]

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import fe_reference
-from fe_reference.errors import ConvergenceError, InvalidParameter
-from fe_reference.solid import ELEMENTS, LAWS, SolidStrip
-from fe_reference.solid_path import solve_solids
+from fe_reference import ConvergenceError, InvalidParameter, SolidStrip, solve_solids
+from fe_reference.solid import ELEMENTS, LAWS
 from tests.gates import hold
 
 LENGTH, WIDTH, THICKNESS, CROSSED = 0.08, 0.01, 2e-3, math.pi / 4
