@@ -164,7 +164,8 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     Not asked where a load or a drive has a history: modes are about the state under full loads.
     """
     design = answer.design
-    histories = (table.get("history") for table in design.effects.tables.values())
+    effects = design.effects
+    histories = (own.get("history") for name in effects.tables for own in effects.every(name))
     if design.history or design.held or any(histories):
         return answer
     fall = answer_modes(design, settings, rotation=start, count=1).falls_in

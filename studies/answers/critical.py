@@ -17,11 +17,11 @@ from studies.answers.models import Asked, put
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
+from studies.cases.effects import GROWING
 from studies.errors import BadInput
 
-#: The effect that is raised, and those that load or lead bodies, which are left out.
+#: The effect that is raised; those that load or drive bodies are left out.
 FORCE = "applied_force"
-LOADS = (FORCE, "applied_moment", "tip_force", "driven_displacement")
 #: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
 PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
 #: Discretisations that are tried one after another: control points, then segments; in the given elements.
@@ -104,7 +104,7 @@ class _Question:
     def asked(self, settings: Settings, force: float) -> Asked:
         """Return the design under that force [N] alone, beside weight and pre-strain, as a model has it."""
         design = self.design
-        left = design.effects.renamed([name for name in design.effects.names if name not in LOADS])
+        left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
         way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
         load = {"force": way, "body": self.body}
         return put(replace(design, effects=left.plus(**{FORCE: load})), settings)

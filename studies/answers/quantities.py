@@ -5,7 +5,7 @@ entries: a new quantity is one more of them.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
@@ -97,13 +97,15 @@ class Quantity(Scale):
         meaning: what it is.
         of: its values (S,) in an answer.
         analyses: that have it, of PATH, MOTION and MODES.
-        floor: value that is round-off, in EI/L of the stiffest strip, or in E of a stress.
+        floor: value that is round-off, in EI/L of the stiffest strip, in E of a stress, in strip lengths of a
+            displacement.
         digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
         column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
         chart: whether a picture of a path has a curve of it over the states.
         drive: whether it is of a drive, which only a driven rotation has.
+        group: what it is of, where that is a part of the design; above its column in a table.
     """
 
     key: str
@@ -119,6 +121,11 @@ class Quantity(Scale):
     mechanisms: bool = False
     chart: bool = True
     drive: bool = False
+    group: str = ""
+
+    def named(self, unit: str) -> str:
+        """Return what an axis in that unit is called, with what it is of."""
+        return f"{self.group}, {super().named(unit)}" if self.group else super().named(unit)
 
     @property
     def name_in_sweep(self) -> str:
@@ -129,7 +136,10 @@ class Quantity(Scale):
         """Return the value of a design that is round-off, in its unit."""
         if self.unit == "Pa":
             return self.floor * max(float(strip.youngs_modulus) for strip in design.strips)
-        return self.floor * flexural_scale(design)
+        length = max(strip.length for strip in design.strips)
+        bending = flexural_scale(design)
+        scales = {"m": length, "N": bending / length, "rad": 1.0}
+        return self.floor * scales.get(self.unit, bending)
 
 
 def _of_motion(key: str, name: str, meaning: str, *, mechanisms: bool = False) -> Quantity:
@@ -253,18 +263,6 @@ ALONG = {
         "larger magnitude of axial and bending stress at the two outer fibres [Pa]",
     ),
 }
-
-
-def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
-    """Yield the quantities of an answer with their values (S,)."""
-    for quantity in QUANTITIES:
-        if answer.analysis in quantity.analyses:
-            yield quantity, np.asarray(quantity.of(answer))
-
-
-def numbers_of(answer: Any) -> dict[str, Array]:
-    """Return the quantities of an answer by their keys, but for those of a drive where nothing is driven."""
-    return {each.key: values for each, values in quantities_of(answer) if answer.driven or not each.drive}
 
 
 def along_of(answer: Any) -> dict[str, Array]:

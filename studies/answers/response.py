@@ -77,6 +77,16 @@ class Response(Answer):
         return centre_shift(np.array(self.crossing), self.rotation, self.centre)
 
     @property
+    def spring_energy(self) -> Array:
+        """(S,) of the springs between bodies [J]."""
+        return np.asarray(self.solution.spring_energy)
+
+    def exerted(self, body: str, coordinate: str) -> Array:
+        """(S,) what is exerted on a body from outside for its prescribed "x", "y" [N] or "rotation" [N m]."""
+        place = self.solution.prescribed.index((body, coordinate))
+        return np.asarray(self.solution.reactions[:, place])
+
+    @property
     def strain_energy(self) -> Array:
         """(S,) bending, axial and shear energy together [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy

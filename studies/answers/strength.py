@@ -1,6 +1,5 @@
 """What an answer bears: its largest stress, and from which load factor and rotation on a strip yields."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -15,13 +14,6 @@ from studies.kinds import Array
 NEAR = 0.02
 #: Part of a stress below which two are the same: the strips of a symmetric pivot.
 SAME = 1e-9
-#: What is in proportion to the load factor, by effect.
-SCALED = {
-    "applied_force": "force",
-    "applied_moment": "moment",
-    "tip_force": "force",
-    "driven_displacement": "displacement",
-}
 #: What the models call the error of the largest stress.
 STRESS = ("stress", "largest_stress")
 #: Part of an increment to which the place is solved for.
@@ -148,10 +140,8 @@ def _between(places: Array, at: float) -> Array:
 
 def _solved(answer: Response, place: Array) -> Response:
     """Return the answer to a path that ends at a load factor and rotation on that of an answer."""
-    design, effects = answer.design, answer.design.effects
-    if set(effects.names) & SCALED.keys():
-        effects = replace(effects, tables=_scaled(effects.parameters(), float(place[0])))
-    changes: dict[str, Any] = {"effects": effects}
+    design = answer.design
+    changes: dict[str, Any] = {"effects": design.effects.grown(float(place[0]))}
     if design.rotation is not None:
         changes["rotation"] = float(place[1])
     given = answer.asked.settings
@@ -163,13 +153,3 @@ def _solved(answer: Response, place: Array) -> Response:
     if getattr(answer.solution, "balanced", False):
         path = replace(path, balanced=True)
     return Response.of(asked, path)
-
-
-def _scaled(parameters: Mapping[str, Mapping[str, Any]], factor: float) -> dict[str, dict[str, Any]]:
-    """Return parameters of effects with the loads and led displacements times a factor."""
-    found = {name: dict(values) for name, values in parameters.items()}
-    for name, key in SCALED.items():
-        if name in found:
-            value = np.multiply(found[name][key], factor)
-            found[name][key] = float(value) if value.ndim == 0 else tuple(map(float, value))
-    return found

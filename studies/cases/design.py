@@ -9,7 +9,7 @@ from typing import Any
 
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.effects import refuse_unknown_sides
-from studies.cases.keys import BODY, DRIVE, EFFECT_KEYS, KEYS, MOMENTS, OWN, STRIP
+from studies.cases.keys import BODY, DRIVE, EFFECT_KEYS, KEYS, MOMENTS, OWN, POINT, STRIP
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.problem import FOLDER, Problem, read_problem
 from studies.cases.rules import FREE, Key
@@ -65,14 +65,19 @@ def as_toml(document: Mapping[str, Any], remarks: Iterable[str] = ()) -> str:
     lines = [f"# {remark}" for remark in remarks]
     for section, content in document.items():
         for table in content if isinstance(content, list) else [content]:
-            nested = {name: value for name, value in table.items() if isinstance(value, Mapping)}
+            nested = {name: value for name, value in table.items() if _is_nested(value)}
             if len(nested) < len(table) or not table:
                 lines += ["", f"[[{section}]]" if isinstance(content, list) else f"[{section}]"]
                 lines += [f"{name} = {_text(value)}" for name, value in table.items() if name not in nested]
-            for name, inner in nested.items():
-                lines += ["", f"[{section}.{name}]"]
-                lines += [f"{key} = {_text(each)}" for key, each in inner.items()]
+            inner = {f"{section}.{name}": value for name, value in nested.items()}
+            lines += as_toml(inner).splitlines() if inner else []
     return "\n".join(lines) + "\n"
+
+
+def _is_nested(value: Any) -> bool:
+    """Return whether a value of a table is a table of its own, or several."""
+    several = isinstance(value, list) and bool(value)
+    return all(isinstance(each, Mapping) for each in value) if several else isinstance(value, Mapping)
 
 
 def document_of(design: Design) -> dict[str, Any]:
@@ -88,7 +93,11 @@ def document_of(design: Design) -> dict[str, Any]:
         found["strips"] = [_table((*STRIP, *OWN), strip) for strip in design.strips]
         found |= {"bodies": [_table(BODY, body) for body in design.bodies], "drive": _table(DRIVE, design)}
     found["scene"] = {"effects": design.effects.names}
-    tables = {name: dict(_parameters(name, own)) for name, own in design.effects.tables.items()}
+    found["points"] = [_table(POINT, point) for point in design.points]
+    tables: dict[str, Any] = {}
+    for name in design.effects.tables:
+        every = [dict(_parameters(name, own)) for own in design.effects.every(name)]
+        tables[name] = every if len(every) > 1 else every[0]
     return {name: own for name, own in found.items() if own} | ({"effects": tables} if tables else {})
 
 

@@ -100,6 +100,23 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
     return content
 
 
+def tables(
+    where: str, document: Mapping[str, Any], section: str, *, needed: bool = False, within: str = ""
+) -> list[tuple[str, Mapping[str, Any]]]:
+    """Return the tables of an array [[section]] with the label that errors give them: by name, or by place;
+    none if it is not there, which is refused where one is `needed`. `within`: what errors put before it."""
+    found = document.get(section, [])
+    if (needed and not found) or not isinstance(found, list) or not all(isinstance(e, dict) for e in found):
+        expected = f"tables [[{within}{section}]]"
+        raise CaseError(f"{where}: {within}{section}: got {shown(found)}, expected {expected}")
+    names = (each.get("name") for each in found)
+    labels = (
+        within + (f"{section}.{name}" if isinstance(name, str) else f"{section} number {place}")
+        for place, name in enumerate(names, start=1)
+    )
+    return list(zip(labels, found, strict=True))
+
+
 def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
     """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.keys import EFFECT_KEYS
+from studies.cases.keys import EFFECT_KEYS, LISTS, REPEATED
 from studies.cases.rules import shown
 from studies.errors import BadInput
 
@@ -35,7 +35,20 @@ OF_SIDES = ("clamped_width", "anticlastic", "root_compliance")
 WORDS = "+NAME and -NAME, or names alone"
 
 #: Parameters that an effect has where nothing is said.
-STANDARD: dict[str, dict[str, Any]] = {"gravity": {"acceleration": (0.0, -9.81)}}
+STANDARD: dict[str, dict[str, Any]] = {
+    "gravity": {"acceleration": (0.0, -9.81)},
+    "tip_force": {"force": (0.0, 0.0)},
+}
+#: Loads and drives, which grow along a path, and their parameters that do.
+GROWING = {
+    "applied_force": ("force",),
+    "applied_moment": ("moment",),
+    "tip_force": ("force", "moment"),
+    "driven_displacement": ("displacement",),
+    "driven_rotation": ("angle",),
+}
+
+Table = Mapping[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,22 +57,46 @@ class Effects:
 
     Attributes:
         names: of the effects.
-        tables: effect -> parameter -> value in SI units, also of effects that the scene does not name.
+        tables: effect -> parameter -> value in SI units, also of effects that the scene does not name; of an
+            effect that acts several times a tuple of them.
     """
 
     names: tuple[str, ...] = DEFAULT
-    tables: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
+    tables: Mapping[str, Table | tuple[Table, ...]] = field(default_factory=dict, hash=False)
 
-    def parameters(self) -> dict[str, dict[str, Any]]:
+    def every(self, name: str) -> tuple[Table, ...]:
+        """Return the parameters of each time that an effect acts, one of a table that is not there."""
+        given = self.tables.get(name, {})
+        return given if isinstance(given, tuple) else (given,)
+
+    def acting(self, name: str) -> tuple[Table, ...]:
+        """Return the same of an effect that the scene names, none of another."""
+        return self.every(name) if name in self.names else ()
+
+    def parameters(self) -> dict[str, Any]:
         """Return the parameters of the named effects, with what is standard where nothing is said."""
-        every = {name: STANDARD.get(name, {}) | dict(self.tables.get(name, {})) for name in self.names}
-        return {name: values for name, values in every.items() if values}
+        every = {
+            name: tuple(STANDARD.get(name, {}) | dict(own) for own in self.every(name)) for name in self.names
+        }
+        return {name: own if len(own) > 1 else own[0] for name, own in every.items() if any(own)}
+
+    def grown(self, factor: float, more: Mapping[str, tuple[str, ...]] | None = None) -> "Effects":
+        """Return the scene with all loads and drives, and `more` parameters by effect, times a factor."""
+        growing, tables = GROWING | dict(more or {}), {}
+        for name in self.tables:
+            keys = growing.get(name, ())
+            every = [
+                {key: _times(value, factor) if key in keys else value for key, value in own.items()}
+                for own in self.every(name)
+            ]
+            tables[name] = tuple(every) if len(every) > 1 else every[0]
+        return replace(self, tables=tables)
 
     def renamed(self, names: Sequence[str]) -> "Effects":
         """Return the scene with other names and the same tables."""
         return replace(self, names=tuple(names))
 
-    def plus(self, *names: str, **tables: Mapping[str, Any]) -> "Effects":
+    def plus(self, *names: str, **tables: Table | tuple[Table, ...]) -> "Effects":
         """Return the scene with these effects as well, and those that have parameters with them."""
         every = dict.fromkeys((*self.names, *names, *tables))
         return replace(self, names=tuple(every), tables={**self.tables, **tables})
@@ -114,8 +151,13 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     words = scene.get("effects", list(DEFAULT))
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
         raise CaseError(f"{path}: scene.effects: got {shown(words)}, expected a list of names")
+    tables, listed = _read_tables(path, content), _read_lists(path, content)
+    for name, own in listed.items():
+        tables[name] = (*tables.get(name, ()), *own)
+    names = _names_after(f"{path}: scene.effects", words, DEFAULT)
     effects = Effects(
-        names=_names_after(f"{path}: scene.effects", words, DEFAULT), tables=_read_tables(path, content)
+        names=tuple(dict.fromkeys((*names, *listed))),
+        tables={name: own if len(own) > 1 else own[0] for name, own in tables.items()},
     )
     _require_parameters(path, effects)
     changed = effects if changes is None else effects.changed(changes)
@@ -128,15 +170,44 @@ def read_effects(path: str, content: Mapping[str, Any], changes: str | None = No
     return changed
 
 
-def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the parameters of every table [effects.NAME]."""
-    tables = {}
-    for name, given in document.table(path, content, "effects").items():
+def _read_tables(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
+    """Return the parameters of every table [effects.NAME], and of those of an array [[effects.NAME]]."""
+    found: dict[str, tuple[Table, ...]] = {}
+    effects = document.table(path, content, "effects")
+    for name, given in effects.items():
         require_known(f"{path}: effects", name)
-        if not isinstance(given, dict):
+        every: list[tuple[str, Any]] = [(f"effects.{name}", given)]
+        if name in REPEATED and isinstance(given, list) and given:
+            every = document.tables(path, effects, name, within="effects.")
+        elif not isinstance(given, dict):
             raise CaseError(f"{path}: effects.{name}: got {shown(given)}, expected a table [effects.{name}]")
-        tables[name] = _parameters(path, name, given)
-    return tables
+        found[name] = tuple(_parameters(path, name, own, label) for label, own in every)
+    return found
+
+
+def _read_lists(path: str, content: Mapping[str, Any]) -> dict[str, tuple[Table, ...]]:
+    """Return the parameters of the effects that [[loads]] and the other lists stand for."""
+    found: dict[str, tuple[Table, ...]] = {}
+    for section, effects in LISTS.items():
+        for label, given in document.tables(path, content, section):
+            meant = [name for name, key in effects.items() if not key or key in given]
+            if "tip_force" in meant:  # which is force and moment at once
+                meant = ["tip_force"]
+            if not meant:
+                raise CaseError(f"{path}: {label}: got none of {', '.join(effects.values())}, expected one")
+            known = {key.name for name in meant for key in EFFECT_KEYS[name]}
+            document.refuse_unknown(path, label, given, sorted(known))
+            for name in meant:
+                own = {key.name: given[key.name] for key in EFFECT_KEYS[name] if key.name in given}
+                found[name] = (*found.get(name, ()), _parameters(path, name, own, label))
+    return found
+
+
+def _times(value: Any, factor: float) -> Any:
+    """Return a number, or each of a pair that is one, times a factor."""
+    if isinstance(value, tuple):
+        return tuple(_times(part, factor) for part in value)
+    return None if value is None else factor * value
 
 
 def require_known(where: str, name: str) -> None:
@@ -152,7 +223,7 @@ def _require_parameters(where: str, effects: Effects) -> None:
     """Raise CaseError if a named effect lacks a parameter that it needs."""
     for name in effects.names:
         for key in EFFECT_KEYS.get(name, ()):
-            if not key.optional and key.attribute not in effects.tables.get(name, {}):
+            if not key.optional and any(key.attribute not in own for own in effects.every(name)):
                 raise document.missing(where, key, key.section)
 
 
@@ -173,11 +244,11 @@ def _registered() -> Mapping[str, Any]:
     return registry
 
 
-def _parameters(path: str, name: str, given: Mapping[str, Any]) -> dict[str, Any]:
+def _parameters(path: str, name: str, given: Table, label: str) -> dict[str, Any]:
     """Return the parameters of a table in SI; those of an effect without keys here as they stand."""
     if name not in EFFECT_KEYS:
         return {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    found = document.values(path, EFFECT_KEYS[name], given, f"effects.{name}")
+    found = document.values(path, EFFECT_KEYS[name], given, label)
     return _free_fall(path, found) if name == "gravity" else found
 
 

@@ -20,12 +20,14 @@ LOADS_FIRST, TOGETHER = "loads first", "together"
 
 
 ROTATION = rules.number("a number from -360 to 360 [deg]", -360.0, 360.0, closed="low and high", degrees=True)
+DRIVEN = rules.number("a finite number [deg]", degrees=True)
 INCLINATION = rules.number("a number between 0 and 90, both excluded [deg]", 0.0, 90.0, degrees=True)
 INCREMENTS = rules.whole(1, 100_000)
 POISSON = rules.number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, closed="high")
 RATIO = rules.number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
 NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
 TIP = text(f"{PLACE.expected}, or {FREE}")
+JOINT = choice("clamp", "hinge")
 
 # Rows: name in the file, attribute, rule, default ("": it is needed), example, meaning.
 # fmt: off
@@ -106,7 +108,7 @@ KEYS = (
     ),
     *keys_of(
         "drive",
-        ("rotation_deg", "rotation", ROTATION, "",
+        ("rotation_deg", "rotation", DRIVEN, "",
          "15", "end of the path, counter-clockwise; 0 holds the body while loads come on"),
     ),
     *_PATH,
@@ -120,6 +122,8 @@ STRIP = keys_of(
     ("end_m", "end", finite_pair("m"), "", "[0.1, 0]", "where it ends at rest"),
     ("root", "root", PLACE, f'"{GROUND}"', f'"{GROUND}"', "what its beginning is clamped to"),
     ("tip", "tip", TIP, "", '"body"', "what its end is clamped to"),
+    ("root_joint", "root_joint", JOINT, '"clamp"', '"hinge"', "whether its beginning turns freely there"),
+    ("tip_joint", "tip_joint", JOINT, '"clamp"', '"hinge"', "whether its end turns freely there"),
     ("rise_m", "rise", rules.finite("m"), "0, straight",
      "0.002", "sagitta of the circular arc that it is at rest, to the left of start to end"),
 )
@@ -131,12 +135,18 @@ BODY = keys_of(
     ("moment_of_inertia_kg_m2", "moment_of_inertia", not_negative("kg m^2"), "",
      "5e-6", "its moment of inertia about its centre of mass"),
 )
+POINT = keys_of(
+    "points",
+    ("name", "name", NAME, "", '"point"', "what the point is called"),
+    ("body", "body", text("the name of a body"), "the only one there is", '"body"', "of which body"),
+    ("at_m", "at", finite_pair("m"), "", "[0.12, 0]", "where it is at rest"),
+)
 DRIVE = (
     *keys_of(
         "drive",
         ("body", "body", text("the name of a body"), "the only one there is",
          '"body"', "the body that is driven, let go, and whose swing is reported"),
-        ("rotation_deg", "rotation", ROTATION, "none: the bodies follow the loads",
+        ("rotation_deg", "rotation", DRIVEN, "none: the bodies follow the loads",
          "20", "that the body is driven to, counter-clockwise"),
     ),
     *_PATH,
@@ -147,7 +157,17 @@ OWN = tuple(
     replace(key, section="strips", name="material" if key is NAMED else key.name)
     for key in (*SECTION, *MATERIAL)
 )
-SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects")
+#: Arrays of tables, and the effects that a table [[loads]], ... stands for: each where the table has the key
+#: beside it, or in any case.
+LISTS: dict[str, dict[str, str]] = {
+    "loads": {"tip_force": "strip", "applied_force": "force_N", "applied_moment": "moment_Nm"},
+    "supports": {"support": ""},
+    "springs": {"spring": ""},
+    "drives": {"driven_displacement": "displacement_m", "driven_rotation": "rotation_deg"},
+}
+#: Effects that may act several times.
+REPEATED = tuple(effect for effects in LISTS.values() for effect in effects)
+SECTIONS = ("strips", "bodies", "section", "material", "drive", "scene", "effects", *LISTS, "points")
 
 #: Effect -> what it is.
 EFFECTS: dict[str, str] = {
@@ -161,10 +181,13 @@ EFFECTS: dict[str, str] = {
     "strip_damping": "damping of the strips' strain rates",
     "strip_drag": "damping of the strips' velocity, over their mass",
     "body_damping": "damping of the bodies' velocity and angular velocity",
-    "applied_force": "a force on a body at its centre of mass, in fixed directions",
+    "applied_force": "a force on a body, in fixed directions or turning with the body",
     "applied_moment": "a moment on a body",
-    "tip_force": "a force on the free end of a strip, in fixed directions",
+    "tip_force": "a force and a moment on the free end of a strip",
     "driven_displacement": "leads the centre of mass of a body from where it is at rest, in x, y or both",
+    "driven_rotation": "drives the rotation of a body beside the one that `[drive]` names",
+    "support": "holds a body where it is at rest, in x, y or rotation, in a motion too",
+    "spring": "a spring, and a damper, between a body and the ground or another body",
     "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides); alone up to "
     "4.5 % too soft",
     "anticlastic": "sections that flatten as wide strips bend, which stiffens them (of known sides); with "
@@ -186,6 +209,10 @@ _HISTORY: _Row = (
     "[[0, 0], [0.01, 1]]", "in motion: factor of the load over time, constant behind the last instant",
 )
 _FORCE: _Row = ("force_N", "force", finite_pair("N"), "", "[0, -1]", "the force [x, y]")
+_FOLLOWER: _Row = (
+    "follower", "follower", rules.TRUTH, "false", "true", "whether it turns with what it acts on",
+)
+_MOMENT: _Row = ("moment_Nm", "moment", rules.finite("N m"), "", "0.01", "the moment, counter-clockwise")
 _FREE_TIP = text("the name of a strip with a free end")
 _LED, _ROOT = rules.free_pair("m"), rules.number_or("monolithic", not_negative("1"))
 #: Effect -> its keys.
@@ -209,17 +236,47 @@ _PARAMETERS: dict[str, tuple[_Row, ...]] = {
         ("translation_Ns_per_m", "translation", not_negative("N s/m"), "0", "0.1", "force by velocity"),
         ("rotation_Nms", "rotation", not_negative("N m s"), "0", "1e-5", "moment by angular velocity"),
     ),
-    "applied_force": (_FORCE, _BODY, _HISTORY),
-    "applied_moment": (
-        ("moment_Nm", "moment", rules.finite("N m"), "", "0.01", "the moment, counter-clockwise"),
+    "applied_force": (
+        _FORCE,
+        ("at_m", "at", finite_pair("m"), "its centre of mass",
+         "[0, 0]", "the point of the body that it acts on, where this is at rest"),
+        _FOLLOWER,
         _BODY,
         _HISTORY,
     ),
-    "tip_force": (("strip", "strip", _FREE_TIP, "", '"strip"', "on which strip"), _FORCE, _HISTORY),
+    "applied_moment": (_MOMENT, _BODY, _HISTORY),
+    "tip_force": (
+        ("strip", "strip", _FREE_TIP, "", '"strip"', "on which strip"),
+        (*_FORCE[:3], "[0, 0]", *_FORCE[4:]),
+        (*_MOMENT[:3], "0", *_MOMENT[4:]),
+        _FOLLOWER,
+        _HISTORY,
+    ),
     "driven_displacement": (
         ("displacement_m", "displacement", _LED, "", "[1e-3, 0]", "from its place at rest [x, y]"),
         _BODY,
         _HISTORY,
+    ),
+    "driven_rotation": (
+        ("rotation_deg", "angle", DRIVEN, "", "5", "that the body is driven to, counter-clockwise"),
+        _BODY,
+        _HISTORY,
+    ),
+    "support": (
+        ("fixed", "fixed", rules.some_of("x", "y", "rotation"), "", '["x", "y"]', "what of the body is held"),
+        _BODY,
+    ),
+    "spring": (
+        _BODY,
+        ("other", "other", text("the name of a body"), "the ground", '"other"', "what it leads to"),
+        ("stiffness_N_per_m", "stiffness", finite_pair("N/m"), "[0, 0]",
+         "[1000, 0]", "force by displacement of the centre of mass [x, y]"),
+        ("rotational_stiffness_Nm_per_rad", "rotational_stiffness", not_negative("N m/rad"), "0",
+         "0.05", "moment by rotation"),
+        ("damping_N_s_per_m", "damping", finite_pair("N s/m"), "[0, 0]",
+         "[0.1, 0]", "force by velocity of the centre of mass [x, y]"),
+        ("rotational_damping_Nm_s_per_rad", "rotational_damping", not_negative("N m s/rad"), "0",
+         "1e-5", "moment by angular velocity"),
     ),
     "root_compliance": (
         ("root", "root", _ROOT, '"monolithic"', '"monolithic"',

@@ -1,15 +1,15 @@
 """Read a case file of any strips and bodies into a `Mechanism`: given data in SI units and radians."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 from studies.cases import document, keys
-from studies.cases.document import CaseError
+from studies.cases.document import CaseError, tables
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION
-from studies.cases.rules import FREE, shown
+from studies.cases.rules import FREE
 from studies.cases.section import (
     Sectioned,
     completed,
@@ -68,6 +68,15 @@ class Body:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Point:
+    """A point of a body whose displacement is reported: where it is at rest [m]."""
+
+    name: str
+    body: str
+    at: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Mechanism:
     """The given data of a mechanism of flexures and of how it is driven.
 
@@ -80,6 +89,7 @@ class Mechanism:
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
             begin and end [s]; None for one that lets go.
         order: of loads and rotation, "loads first" or "together".
+        points: whose displacement is reported.
     """
 
     strips: tuple[Strip, ...]
@@ -91,6 +101,7 @@ class Mechanism:
     order: str = LOADS_FIRST
     history: tuple[tuple[float, float], ...] | None = None
     held: tuple[float, float] | None = None
+    points: tuple[Point, ...] = ()
 
     @property
     def crossing_point(self) -> None:
@@ -132,8 +143,10 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     refuse_both(path, shared, "section")
-    bodies = tuple(_body(path, given, label) for label, given in _each(path, content, "bodies"))
-    strips = tuple(_strip(path, given, label, shared) for label, given in _each(path, content, "strips"))
+    bodies = tuple(_body(path, given, label) for label, given in tables(path, content, "bodies"))
+    strips = tuple(
+        _strip(path, given, label, shared) for label, given in tables(path, content, "strips", needed=True)
+    )
     names = [body.name for body in bodies]
     _refuse_twice(path, [*names, *(strip.name for strip in strips)])
     for strip in strips:
@@ -144,8 +157,20 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     if "drive" not in content:
         raise CaseError(f"{path}: [drive]: got no such section, expected one with increments")
     drive = document.values(path, keys.DRIVE, document.table(path, content, "drive"), "drive")
-    drive = {"rotation": None} | drive | {"body": _driven(path, drive.get("body"), names)}
-    return Mechanism(strips=strips, bodies=bodies, effects=read_effects(path, content, changes), **drive)
+    drive = {"rotation": None} | drive | {"body": _body_of(path, "drive.body", drive.get("body"), names)}
+    drive |= {"effects": read_effects(path, content, changes), "points": read_points(path, content, names)}
+    return Mechanism(strips=strips, bodies=bodies, **drive)
+
+
+def read_points(path: str, content: Mapping[str, Any], bodies: Sequence[str]) -> tuple[Point, ...]:
+    """Return the points of [[points]], each of one of the bodies; CaseError as of `read_mechanism`."""
+    found = []
+    for label, given in tables(path, content, "points"):
+        own = document.values(path, keys.POINT, given, label)
+        own["body"] = _body_of(path, f"{label}.body", own.get("body"), list(bodies))
+        found.append(Point(**own))
+    _refuse_twice(path, [point.name for point in found])
+    return tuple(found)
 
 
 def _keywords(part: Strip | Body) -> dict[str, Any]:
@@ -153,19 +178,6 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
     return without(given, ["yield_strength", "section_depth", *unsaid])
-
-
-def _each(path: str, content: Mapping[str, Any], section: str) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the tables of an array with the label that errors give them: by name, or by place."""
-    tables = content.get(section, [])
-    needed = section == "strips" and not tables
-    if needed or not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        raise CaseError(f"{path}: {section}: got {shown(tables)}, expected tables [[{section}]]")
-    found = []
-    for place, each in enumerate(tables, start=1):
-        name = each.get("name")
-        found.append((f"{section}.{name}" if isinstance(name, str) else f"{section} number {place}", each))
-    return found
 
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
@@ -200,12 +212,12 @@ def _refuse_twice(path: str, names: list[str]) -> None:
             )
 
 
-def _driven(path: str, body: str | None, names: list[str]) -> str | None:
-    """Return the body that is driven: the one named, or the only one."""
+def _body_of(path: str, label: str, body: str | None, names: list[str]) -> str | None:
+    """Return the body that is meant: the one named, or the only one."""
     if body is None and len(names) <= 1:
         return names[0] if names else None
     if body not in names:
         got = "no such key" if body is None else body
         expected = document.nearest(body or "", names) if names else "none, as there are no bodies"
-        raise CaseError(f"{path}: drive.body: got {got}, expected {expected}")
+        raise CaseError(f"{path}: {label}: got {got}, expected {expected}")
     return body

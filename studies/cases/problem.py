@@ -9,8 +9,8 @@ from typing import Any
 
 from studies.cases.document import CaseError, is_mechanism, parsed, refuse_sections, table, values
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import KEYS, LOADS_FIRST
-from studies.cases.mechanism import Body, Strip
+from studies.cases.keys import KEYS, LISTS, LOADS_FIRST
+from studies.cases.mechanism import Body, Point, Strip, read_points
 from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
@@ -60,6 +60,7 @@ class Problem(Sectioned):
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
             begin and end [s]; None for one that lets go.
+        points: of the body, whose displacement is reported.
 
     Raises:
         CaseError: a value outside its admissible range.
@@ -87,6 +88,7 @@ class Problem(Sectioned):
     effects: Effects = field(default_factory=Effects)
     history: tuple[tuple[float, float], ...] | None = None
     held: tuple[float, float] | None = None
+    points: tuple[Point, ...] = ()
 
     def __post_init__(self) -> None:
         for key in KEYS:
@@ -180,7 +182,7 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
     if is_mechanism(content):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))
-    refuse_sections(path, content, [*sections, "scene", "effects"])
+    refuse_sections(path, content, [*sections, "scene", "effects", *LISTS, "points"])
     found: dict[str, Any] = {}
     for section in sections:
         keys = [key for key in KEYS if key.section == section]
@@ -191,7 +193,8 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
         found |= values(path, keys, given, section)
     whole = completed(path, found, "strip", "material")
     try:
-        return Problem(**whole, effects=read_effects(path, content, changes))
+        points = read_points(path, content, [BODY])
+        return Problem(**whole, effects=read_effects(path, content, changes), points=points)
     except CaseError as error:
         text = str(error)
         raise error if text.startswith(path) else CaseError(f"{path}: {text}") from None

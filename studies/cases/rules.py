@@ -169,6 +169,19 @@ def _is_history(value: Any) -> bool:
 
 #: A truth value; pairs [time in s, factor] in order of time; two instants.
 TRUTH = Rule(expected="true or false", admits=lambda value: isinstance(value, bool))
+
+
+def some_of(*names: str) -> Rule:
+    """Return the rule for a list of some of these names, each at most once."""
+
+    def admits(value: Any) -> bool:
+        given = isinstance(value, list | tuple) and value and all(each in names for each in value)
+        return bool(given) and len(set(value)) == len(value)
+
+    listed = ", ".join(f'"{name}"' for name in names)
+    return Rule(expected=f"a list of some of {listed}", admits=admits, read=tuple)
+
+
 HISTORY = Rule(
     expected="pairs [time, factor] with increasing times [s]",
     admits=_is_history,

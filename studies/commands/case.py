@@ -109,7 +109,7 @@ def markdown_head(*names: str) -> str:
 
 def _mechanism() -> Iterator[str]:
     """Yield the tables of a mechanism's keys."""
-    yield from _tables(MECHANISM)
+    yield from _tables(MECHANISM | {"[[points]]": keys.POINT})
     own = ", ".join(f"`{key.name}`" for key in keys.OWN)
     yield ""
     yield f"A strip may also have, in place of what `[section]` and `[material]` say of all: {own}."
@@ -121,7 +121,9 @@ def _effects() -> Iterator[str]:
     for name, meaning in keys.EFFECTS.items():
         yield f"| `{name}` | {meaning} | {'unless taken out' if name in DEFAULT else 'where it is named'} |"
     yield ""
-    yield from _tables({f"[effects.{name}]": rows for name, rows in keys.EFFECT_KEYS.items() if rows})
+    listed = {name: f"`, `[[{section}]]" for section, effects in keys.LISTS.items() for name in effects}
+    titles = {f"[effects.{n}]{listed.get(n, '')}": rows for n, rows in keys.EFFECT_KEYS.items() if rows}
+    yield from _tables(titles)
 
 
 def _materials() -> Iterator[str]:

@@ -24,7 +24,8 @@ import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.motion import Spectrum
-from studies.answers.quantities import NOTHING, QUANTITIES, STANDING, Scale, quantities_of
+from studies.answers.named import quantities_of
+from studies.answers.quantities import NOTHING, QUANTITIES, STANDING, Scale
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
@@ -96,7 +97,7 @@ def _values(answer: Response) -> dict[str, Any]:
     """Return the numbers of a path by their keys."""
     limits, stiffness, shift = strength(answer), answer.stiffness, answer.shift
     found: dict[str, Any] = {
-        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(answer) if q.standing},
+        **{q.key: STANDING[q.standing](values) for q, values in quantities_of(answer) if q.key in ROWS},
         "safety": limits.safety,
         "yield_rotation_rad": limits.yields and limits.yields.rotation,
         "rotation_rad": None if answer.body is None else answer.rotation[-1],

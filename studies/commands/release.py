@@ -142,8 +142,8 @@ def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
 
 def _last_time(design: Design) -> float:
     """Return when the last history of a load or a drive is over [s]."""
-    histories = [design.history or ()]
-    histories += [design.effects.tables.get(name, {}).get("history") or () for name in design.effects.names]
+    histories, effects = [design.history or ()], design.effects
+    histories += [own.get("history") or () for name in effects.names for own in effects.every(name)]
     times = [float(time) for history in histories for time, _ in np.reshape(history, (-1, 2))]
     return float(max([0.0, *times, *(design.held or ())]))
 

@@ -35,10 +35,11 @@ import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.metrics import differences
-from studies.answers.quantities import quantities_of
+from studies.answers.named import quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.validity import validity
+from studies.cases.effects import GROWING
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands import columns
@@ -50,8 +51,6 @@ from studies.record.progress import Bar
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Effects whose share a table shows beside the rotation.
-LOADS = {"applied_force", "applied_moment", "tip_force", "driven_displacement"}
 #: Entries of the stiffness of a body, in x, y and turn, by name with unit.
 ENTRIES = {
     "xx_N_per_m": (0, 0),
@@ -184,8 +183,8 @@ def _document(answer: Response) -> dict[str, Any]:
 
 def _critical(answer: Response) -> list[dict[str, Any]]:
     """Return the critical points of a path as JSON has them, with the force that acts on a body there [N]."""
-    acting = answer.design.effects.parameters().get("applied_force")
-    force = math.hypot(*acting["force"]) if acting and "applied_force" in answer.effects else None
+    forces = answer.design.effects.acting("applied_force")
+    force = math.hypot(*forces[0]["force"]) if len(forces) == 1 else None
     return [
         tell.keyed(point, "kind", "load_factor", "rotation_rad")
         | ({} if force is None else {"force_N": force * point.load_factor})
@@ -229,7 +228,7 @@ def _readable(answer: Response) -> Iterator[str]:
 
 def _states(answer: Response) -> Iterator[Column]:
     """Yield the columns that say which state it is."""
-    if answer.crossing is None or LOADS & set(answer.effects):
+    if answer.crossing is None or GROWING.keys() & set(answer.effects):
         yield columns.plain("load", (f"{factor:.3f}" for factor in answer.load_factor))
     if answer.crossing is not None:
         yield columns.angle(answer.rotation)
@@ -243,9 +242,12 @@ def _columns(answer: Response) -> Iterator[Column]:
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
     for each, values in quantities_of(answer):
         if each.column and np.isfinite(values).any():
+            if each.unit == "rad":
+                yield columns.angle(values, group=each.group)
+                continue
             named: dict[str, Any] = {each.heading: values}
-            floor = each.least(answer.design)
-            yield from quantity(each.unit, floor=floor, highest=each.highest, digits=each.digits, **named)
+            how: dict[str, Any] = {"floor": each.least(answer.design), "group": each.group}
+            yield from quantity(each.unit, highest=each.highest, digits=each.digits, **how, **named)
     if answer.crossing is None:
         for name, place in answer.bodies.items():
             yield from quantity("m", highest=-3, group=name, x=place[:, 0], y=place[:, 1])

@@ -11,7 +11,8 @@ import pandas as pd
 
 from studies.answers.answer import Answer
 from studies.answers.motion import Spectrum
-from studies.answers.quantities import ALONG, QUANTITIES, along_of, numbers_of
+from studies.answers.named import named, numbers_of
+from studies.answers.quantities import ALONG, QUANTITIES, along_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
@@ -188,8 +189,9 @@ def _parquet(answer: Answer, drawn: list[int]) -> Contents:
 def _json(answer: Answer, drawn: list[int]) -> Contents:
     made = tables(answer)
     plain = {name: table.astype(object).where(table.notna(), None) for name, table in made.items()}
+    columns = COLUMNS | {each.key: f"{each.meaning} [{each.unit}]" for each in named(answer.design)}
     document = _summary(answer) | {
-        "columns": {name: COLUMNS[name] for table in made.values() for name in map(str, table)},
+        "columns": {name: columns[name] for table in made.values() for name in map(str, table)},
         "tables": {name: table.to_dict("list") for name, table in plain.items()},
     }
     return {f"{answer.analysis}.json": (json.dumps(document, allow_nan=False) + "\n").encode()}

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from studies.answers.answer import Answer
 from studies.answers.motion import Spectrum
-from studies.answers.quantities import along_of, numbers_of
+from studies.answers.named import numbers_of
+from studies.answers.quantities import along_of
 from studies.cases.keys import GROUND
 from studies.kinds import Array
 

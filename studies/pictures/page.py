@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 
 from studies.answers.adapters import answer_of
 from studies.answers.answer import Answer
-from studies.answers.quantities import PATH, QUANTITIES, Quantity, Scale
+from studies.answers.named import named
+from studies.answers.quantities import QUANTITIES, Quantity, Scale
 from studies.answers.response import TURNED
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -71,7 +72,10 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     chart = partial(_chart, _looks(shown), answers)
     if not turned:
         yield from chart(x, ROTATION, over, lambda each: None if each.body is None else each.rotation)
-    for each in (own for own in QUANTITIES if path and own.chart and PATH in own.analyses):
+    parts = {each.key: each for answer in answers for each in named(answer.design)}
+    for each in (*(own for own in QUANTITIES if path), *parts.values()):
+        if not each.chart or answers[0].analysis not in each.analyses:
+            continue
         yield from chart(x, replace(each, highest=3), over, partial(_of_path, each, turned))
     if not path:
         yield from _energies(chart, answers, x, over)
@@ -110,7 +114,9 @@ def _chart(
 
 
 def _of_path(quantity: Quantity, turned: bool, answer: Answer) -> Array | None:
-    """Return the values of a quantity (S,); those of a drive are drawn where it turns."""
+    """Return the values of a quantity (S,) that the design has; those of a drive are drawn where it turns."""
+    if quantity.group and quantity.key not in (each.key for each in named(answer.design)):
+        return None
     return quantity.of(answer) if turned or not quantity.drive else None
 
 

@@ -82,8 +82,8 @@ VALUE = (
     _key("values", "bound", choice(EQUAL, AT_MOST, AT_LEAST), optional=True),
     _key("values", "limit", Rule(expected=LIMITS, read=_limits), attribute="limits"),
 )
-#: Parameters of loads, which grow with the load.
-LOADS = ("force", "moment", "acceleration")
+#: What grows with the load beside loads.
+WEIGHT = {"gravity": ("acceleration",)}
 #: Part of a force that acts across a frame to lead elements onto a branch: the angle of a column moves by
 #: less than 1 %, and with a tenth of it the steps of their path jump the bend.
 SIDE = 1e-4
@@ -147,7 +147,7 @@ class Frame:
     def aside(self) -> Mechanism:
         """Return the design with a part of its force across it, to the right of it."""
         effects = self.design.effects
-        force = effects.tables["applied_force"]
+        (force,) = effects.every("applied_force")
         x, y = force["force"]
         leant = {**force, "force": (x + SIDE * y, y - SIDE * x)}
         return replace(self.design, effects=effects.plus(applied_force=leant))
@@ -178,12 +178,7 @@ class _Published:
         with the effects that the answer names."""
         load = self.values[0].load if load is None else load
         assert isinstance(self.design, Mechanism)
-        effects = self.design.effects
-        tables = {
-            effect: {n: _product(given, load) if n in LOADS else given for n, given in parameters.items()}
-            for effect, parameters in effects.tables.items()
-        }
-        acting = replace(effects, tables=tables).plus(*(() if answer == BEAM else answer.split(", ")))
+        acting = self.design.effects.grown(load, WEIGHT).plus(*(() if answer == BEAM else answer.split(", ")))
         return Frame(design=replace(self.design, effects=acting), load=load, body=self.body, pins=self.pins)
 
 
@@ -239,7 +234,3 @@ def _require_bodies(
     moved = [value.quantity for value in values if value.quantity in PLACES]
     if pins and moved:
         raise CaseError(f"{where}: problem.pins: got them beside {moved[0]}, expected limit loads alone")
-
-
-def _product(given: Any, load: float) -> Any:
-    return tuple(load * part for part in given) if isinstance(given, tuple) else load * given

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from studies.answers.answer import centre_shift, shift_error
 from studies.answers.models import model_of
+from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
 from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
+from studies.cases.design import design_of
 from studies.cases.document import is_mechanism
-from studies.cases.effects import DEFAULT, MOTION_ONLY
+from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
 from studies.cases.section import of_sides
 from studies.kinds import Array
@@ -89,15 +91,17 @@ def takes(task: Task) -> bool:
 
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
-    own = {*_KEYS, *_PARTS, plan.SLENDERNESS}
+    own, design = {*_KEYS, *_PARTS, plan.SLENDERNESS}, design_of("case", task.case)
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
     if not asked <= set(_Known().quantities()):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
-    effects = set(task.case.get("scene", {}).get("effects", DEFAULT))
-    return PLAIN <= effects <= PLAIN | set(MOTION_ONLY) and all(
-        key in own or plan.is_setting(key) for key in task.keys
+    effects = set(design.effects.names)
+    return (
+        not named(design)
+        and PLAIN <= effects <= PLAIN | set(MOTION_ONLY)
+        and all(key in own or plan.is_setting(key) for key in task.keys)
     )
 
 

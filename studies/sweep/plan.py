@@ -157,6 +157,10 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     else:
         found = {name: key.rule for name, key in PIVOT_KEYS.items()} | {SLENDERNESS: positive("1")}
     found |= {name: key.rule for rows in keys.EFFECT_KEYS.values() for name, key in _dotted(rows).items()}
+    for section, listed in keys.LISTS.items():
+        for place in range(1, 1 + len(document.get(section, []))):
+            rows = (key for effect in listed for key in keys.EFFECT_KEYS[effect])
+            found |= {f"{section}.{place}.{key.name}": key.rule for key in rows}
     for name, rule in list(found.items()):
         if rule.kind == "pair":
             found |= {f"{name}.{part}": number("a finite number") for part in PARTS}
@@ -204,8 +208,8 @@ def value_at(document: Mapping[str, Any], key: str) -> Any:
 
 
 def _place(document: dict[str, Any], key: str) -> tuple[dict[str, Any], str, int | None]:
-    """Return the table that a key stands in, of an array the one of its name, its name there, and which
-    number of a pair it is."""
+    """Return the table that a key stands in, of an array the one of its name or number, its name there, and
+    which number of a pair it is."""
     *way, name = key.split(".")
     part = PARTS.get(name) if len(way) > 1 else None
     if part is not None:
@@ -213,7 +217,8 @@ def _place(document: dict[str, Any], key: str) -> tuple[dict[str, Any], str, int
     place: Any = document
     for each in way:
         if isinstance(place, list):
-            place = next(table for table in place if table.get("name") == each)
+            named = {str(table.get("name", number)): table for number, table in enumerate(place, start=1)}
+            place = named[each]
         else:
             place = place.setdefault(each, {})
     return place, name, part

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from studies.answers import validity
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.motion import Motion, Spectrum
-from studies.answers.quantities import QUANTITIES, STANDING, Quantity, quantities_of
+from studies.answers.named import named, quantities_of
+from studies.answers.quantities import QUANTITIES, STANDING, Quantity
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.validity import Strip, strips_of
-from studies.cases.design import Design
+from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -109,7 +110,14 @@ def _most(ratio: str) -> Callable[[Paths], Array]:
 
 def _standing(each: Quantity) -> Column:
     """Return the column of a quantity of a path: its value in the state that stands for it."""
-    return Column(f"{each.meaning}, {each.standing}", lambda p: STANDING[each.standing](p.along[each.key]))
+
+    def standing(paths: Paths) -> Array:
+        none = np.full_like(
+            paths.stiffness, np.nan
+        )  # of a part that an effect of this design alone would have
+        return STANDING[each.standing](paths.along.get(each.key, none))
+
+    return Column(f"{each.meaning}, {each.standing}", standing)
 
 
 def _unstable(paths: Paths) -> Any:
@@ -206,8 +214,10 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Column]:
         return _of_modes(count)
     if kind == "release":
         return RELEASE
+    parts = {each.name_in_sweep: _standing(each) for each in named(design_of("case", case))}
     mechanism = is_mechanism(case)
-    return PATH | (_of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT)
+    places = _of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT
+    return PATH | places | parts
 
 
 def stored(task: Task) -> dict[str, Column]:

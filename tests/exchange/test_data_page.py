@@ -8,7 +8,9 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import main
+from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
+from studies.cases.design import named_design, read_design
 from studies.cases.problem import FOLDER
 from studies.exchange.formats import COLUMNS
 from studies.exchange.vtk import mesh
@@ -19,6 +21,8 @@ from tests.exchange.test_files import solved
 PAGE = (ROOT / "docs" / "data.md").read_text(encoding="utf-8")
 #: What every state has as a whole, which has a table of its own.
 KEYS = {each.key for each in QUANTITIES}
+#: A case with every kind of named part.
+LISTS = ROOT / "tests" / "exchange" / "lists.toml"
 #: Tables that are the same in all studies.
 COMMON = ("findings", "findings_of_time", "counts")
 #: What a name that ends so says of its unit.
@@ -89,7 +93,8 @@ def test_keys_of_json_are_described(words, capsys):
     path = str(FOLDER / f"{case}.toml")
     assert main([command, path, "--model", "spline", "--control-points", "4", "--json", "-", *options]) == 0
     document = json.loads(capsys.readouterr().out)
-    known, quantities = described("## JSON of the commands"), described("## Quantities of a state")
+    known = described("## JSON of the commands")
+    quantities = described("## Quantities of a state") | {each.key: [] for each in named(named_design(case))}
     assert set(document) <= set(known) | set(quantities)
     for key in set(document) - (set(quantities) if command == "solve" else set()):
         places = known[key][2]
@@ -106,8 +111,17 @@ def test_arrays_of_vtk_are_described():
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points
-    quantities = set(described("## Quantities of a state"))
+    quantities = {*described("## Quantities of a state"), *(each.key for each in named(solved("static").design))}
     assert {name for name, row in known.items() if row[1] == "cells"} == cells - quantities
+
+
+def test_quantities_of_named_parts_are_described():
+    """Every number of a support, drive, spring, point or free end is described, with its unit."""
+    kinds, found = {"stage": "BODY", "post": "BODY", "beam": "STRIP", "nose": "POINT"}, {}
+    for each in named(read_design(LISTS)):
+        first, _, rest = each.key.partition("_")
+        found[f"{kinds[first]}_{rest}" if first in kinds else each.key] = each.unit
+    assert found == {name: row[0] for name, row in described("## Quantities of named parts").items()}
 
 
 def test_columns_of_exports_are_described():

@@ -48,6 +48,8 @@ BAD = {
         f"a whole number from 1 to {n}": ("0", str(n + 1), "4.5", *NO_NUMBER)
         for n in (100, 200, 10**4, 10**5)
     },
+    "true or false": ("1", '"45"', "[1]"),
+    'a list of some of "x", "y", "rotation"': ('"45"', "[]", "[1]", "1"),
     "two finite numbers [x, y]": NO_PAIR,
     'two finite numbers [x, y], one of them or "free"': ('["free", "free"]', *NO_PAIR),
     "two instants [begin, end], the first before the second": ("[1, 0]", "[1, 1]", *NO_PAIR),
@@ -118,8 +120,8 @@ def test_every_section_of_a_pivot(title, tmp_path, refused):
     table = document.pop(title)
     refused("solve", written(path, document), says=f": {title}: got no such section, expected one with ")
     refused("solve", written(path, {f"{name} = 3": {}} | document), says=f": {name}: got int, expected a ta")
-    said = f": [{name}s]: got an unknown section, expected {name} (the nearest name)\n"
-    refused("solve", written(path, document | {f"[{name}s]": table}), says=said)
+    said = f": [{name}_]: got an unknown section, expected {name} (the nearest name)\n"
+    refused("solve", written(path, document | {f"[{name}_]": table}), says=said)
 
 
 def test_every_key_of_a_sweep(tmp_path, refused):

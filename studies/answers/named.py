@@ -1,0 +1,166 @@
+"""The numbers of the named parts of a design: what holds its prescribed coordinates, where its free ends and
+points go, what its springs store, and how far the instantaneous centre of its body moves.
+
+Each is a quantity like those of every path, so that tables, files, pictures and sweeps have it too.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from operator import attrgetter, methodcaller
+from typing import Any
+
+import numpy as np
+
+from studies.answers.answer import centre_shift
+from studies.answers.quantities import (
+    ENERGY_FLOOR,
+    FORCE_FLOOR,
+    MOTION,
+    PATH,
+    QUANTITIES,
+    Quantity,
+)
+from studies.cases.design import Design
+from studies.cases.mechanism import Point
+from studies.kinds import Array
+
+#: Coordinate of a body -> key and unit of what is exerted on the body for it.
+EXERTED = {"x": ("force_x_N", "N"), "y": ("force_y_N", "N"), "rotation": ("moment_Nm", "N m")}
+#: What takes the displacement of a place (S, 2 or 3), with its rotation, from an answer.
+Moved = Callable[[Any], Array]
+#: Displacement over the length of the longest strip, and rotation [rad], that are none.
+STILL = 1e-12
+
+
+def named(design: Design) -> tuple[Quantity, ...]:
+    """Return the quantities of the named parts of a design; none of a plain pivot."""
+    return (*_reactions(design), *_free_ends(design), *_points(design), *_springs(design), *_drift(design))
+
+
+def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
+    """Yield the quantities of an answer with their values (S,)."""
+    for quantity in (*QUANTITIES, *named(answer.design)):
+        if answer.analysis in quantity.analyses:
+            yield quantity, np.asarray(quantity.of(answer))
+
+
+def numbers_of(answer: Any) -> dict[str, Array]:
+    """Return the quantities of an answer by their keys, but for those of a drive where nothing is driven."""
+    return {each.key: values for each, values in quantities_of(answer) if answer.driven or not each.drive}
+
+
+def prescribed(design: Design) -> tuple[tuple[str, str], ...]:
+    """Return body and coordinate ("x", "y" or "rotation") of all that drives and supports prescribe, but for
+    the rotation that the path drives, whose torque is a quantity of every path."""
+    found: list[tuple[str | None, str]] = []
+    effects = design.effects
+    for own in effects.acting("support"):
+        found += [(own.get("body"), part) for part in own["fixed"]]
+    for own in effects.acting("driven_displacement"):
+        led = zip("xy", own["displacement"], strict=True)
+        found += [(own.get("body"), axis) for axis, moved in led if moved is not None]
+    found += [(own.get("body"), "rotation") for own in effects.acting("driven_rotation")]
+    return tuple((str(body or design.body), part) for body, part in found)
+
+
+def _reactions(design: Design) -> Iterator[Quantity]:
+    """Yield the forces and moments that prescribed coordinates need."""
+    for body, part in prescribed(design):
+        key, unit = EXERTED[part]
+        what = "moment" if part == "rotation" else f"force along {part}"
+        yield Quantity(
+            key=f"{body}_{key}",
+            heading=part,
+            group=f"exerted on {body}",
+            unit=unit,
+            meaning=f"{what} that is exerted on {body} from outside",
+            of=methodcaller("exerted", body, part),
+            floor=FORCE_FLOOR,
+        )
+
+
+def _free_ends(design: Design) -> Iterator[Quantity]:
+    """Yield displacement and rotation of the free ends of strips."""
+    for place, strip in enumerate(design.strips):
+        if strip.tip is None:
+            yield from _moved(f"{strip.name}_tip_displacement", f"tip of {strip.name}", partial(_end_moved, place))
+
+
+def _points(design: Design) -> Iterator[Quantity]:
+    """Yield displacements of the named points of bodies."""
+    for point in design.points:
+        yield from _moved(f"{point.name}_displacement", point.name, partial(_point_moved, point), turns=False)
+
+
+def _moved(key: str, group: str, of: Moved, *, turns: bool = True) -> Iterator[Quantity]:
+    """Yield the displacement of a place, and its rotation if it is one that turns."""
+    for axis, part in enumerate("xy"):
+        yield Quantity(
+            key=f"{key}_{part}_m",
+            heading=part,
+            group=group,
+            unit="m",
+            meaning=f"displacement of {group} along {part}",
+            of=partial(_part, of, axis),
+            floor=STILL,
+            analyses=(PATH, MOTION),
+        )
+    if turns:
+        yield Quantity(
+            key=f"{key.removesuffix('displacement')}rotation_rad",
+            heading="rotation",
+            group=group,
+            unit="rad",
+            meaning=f"rotation of {group}",
+            of=partial(_part, of, 2),
+            floor=STILL,
+            analyses=(PATH, MOTION),
+        )
+
+
+def _part(moved: Moved, part: int, answer: Any) -> Array:
+    """Return a column of a displacement."""
+    return np.asarray(moved(answer)[:, part])
+
+
+def _end_moved(strip: int, answer: Any) -> Array:
+    """Return displacement [m] and rotation [rad] (S, 3) of the end of a strip."""
+    along = answer.along
+    moved = along.shape[:, strip, -1] - along.rest_shape[strip, -1]
+    return np.column_stack((moved, along.rotation[:, strip, -1]))
+
+
+def _point_moved(point: Point, answer: Any) -> Array:
+    """Return the displacement (S, 2) of a point of a body [m]."""
+    rest = next(body.centre for body in answer.design.bodies if body.name == point.body)
+    place = answer.bodies[point.body]
+    return centre_shift(point.at, place[:, 2], place[:, :2], np.array([rest]))
+
+
+def _springs(design: Design) -> Iterator[Quantity]:
+    """Yield the energy of the springs between bodies."""
+    if design.effects.acting("spring"):
+        yield Quantity(
+            key="spring_energy_J",
+            heading="springs",
+            unit="J",
+            meaning="energy of the springs between bodies",
+            of=attrgetter("spring_energy"),
+            floor=ENERGY_FLOOR,
+            chart=False,
+        )
+
+
+def _drift(design: Design) -> Iterator[Quantity]:
+    """Yield how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
+    if design.rotation and design.crossing_point is None:
+        yield from _moved("centre_drift", "instantaneous centre", _drifted, turns=False)
+
+
+def _drifted(answer: Any) -> Array:
+    """Return the displacement (S, 2) [m] of the body's point about which it turns in the first state, by a
+    moment alone."""
+    flexibility = np.linalg.inv(answer.body_stiffness[0])
+    x, y, turn = flexibility[:, 2]
+    pole = answer.centre[0] + np.array([-y, x]) / turn
+    return centre_shift(pole, answer.rotation - answer.rotation[0], answer.centre)
