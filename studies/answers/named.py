@@ -83,7 +83,9 @@ def _free_ends(design: Design) -> Iterator[Quantity]:
     """Yield displacement and rotation of the free ends of strips."""
     for place, strip in enumerate(design.strips):
         if strip.tip is None:
-            yield from _moved(f"{strip.name}_tip_displacement", f"tip of {strip.name}", partial(_end_moved, place))
+            yield from _moved(
+                f"{strip.name}_tip_displacement", f"tip of {strip.name}", partial(_end_moved, place)
+            )
 
 
 def _points(design: Design) -> Iterator[Quantity]:
@@ -154,7 +156,7 @@ def _springs(design: Design) -> Iterator[Quantity]:
 def _drift(design: Design) -> Iterator[Quantity]:
     """Yield how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
     if design.rotation and design.crossing_point is None:
-        yield from _moved("centre_drift", "instantaneous centre", _drifted, turns=False)
+        yield from _moved("centre_drift", "centre drift", _drifted, turns=False)
 
 
 def _drifted(answer: Any) -> Array:

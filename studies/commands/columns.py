@@ -6,7 +6,8 @@ below the last decimal, or below what the solvers resolve, is printed as zero, w
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -118,12 +119,22 @@ def one(value: float, digits: int) -> str:
 
 def table(columns: Sequence[Column]) -> Iterator[str]:
     """Yield the lines of a table: groups where there are any, headings, units, rows; all flush right."""
+    columns = [
+        each for _, group in groupby(columns, lambda column: column.group) for each in _wide(list(group))
+    ]
     heads = [[column.name for column in columns], [column.unit for column in columns]]
     rows = zip(*(column.cells for column in columns), strict=True)
     if any(column.group for column in columns):
         yield from _groups(columns)
     for cells in (*heads, *rows):
         yield "".join(_cell(columns, place, text) for place, text in enumerate(cells))
+
+
+def _wide(group: list[Column]) -> list[Column]:
+    """Return the columns of a group, the first of them so wide that the name of the group fits over them."""
+    first, *others = group
+    missing = len(first.group) - sum(each.width + 2 for each in others) - first.width
+    return [replace(first, unit=first.unit.rjust(first.width + max(missing, 0))), *others]
 
 
 def _groups(columns: Sequence[Column]) -> Iterator[str]:
@@ -134,7 +145,7 @@ def _groups(columns: Sequence[Column]) -> Iterator[str]:
         span = span + 2 + column.width if place and columns[place - 1].group == column.group else column.width
         last = place + 1 == len(columns) or columns[place + 1].group != column.group
         if last:
-            line = f"{line[:-span]}{column.group[:span]:>{span}}"
+            line = f"{line[:-span]}{column.group:>{span}}"
     yield line
 
 
