@@ -182,8 +182,10 @@ class Elements:
     Attributes:
         chord: reference chord x2 - x1, (2, E) [m].
         length: reference length (E,) [m].
-        axial_rigidity, flexural_rigidity, shear_rigidity: EA [N], EI [N m^2], kGA [N], (E,).
-        linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,).
+        axial_rigidity, flexural_rigidity, shear_rigidity: EA [N], EI [N m^2], kGA [N], (E,). Of tapered
+        strips their compliances are the means over the element: end force and end moment lengthen and turn
+        it exactly; all else errs by the second order of its length.
+        linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,), means over the element.
         plate (E, 4): nu^2 of sections that do not curl freely, else 0; the share of their curl that clamps
         leave at two points; the reach [m] of anticlastic bending, as in `bending`.
     """
@@ -202,11 +204,15 @@ class Elements:
         """Return those of all elements of a model, strip by strip."""
         chord = np.diff(model.rest, axis=1).reshape(-1, 2).T
         rigid = ("axial_rigidity", "flexural_rigidity", "shear_rigidity", "linear_density", "rotary_density")
+        own = {name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid}
+        if any(strip.tapered for strip in model.strips):
+            for name, growth in zip(rigid, _tapers(model), strict=True):
+                own[name] = own[name] * growth
         return cls(
             chord=chord,
             length=np.hypot(*chord),
             plate=np.vstack([_plate(model, k) for k in range(len(model.strips))]),
-            **{name: np.repeat([getattr(s, name) for s in model.strips], model.elements) for name in rigid},
+            **own,
         )
 
     def table(self, natural: PreStrain) -> Array:
@@ -217,6 +223,15 @@ class Elements:
         square, shares = self.plate[:, :1], self.plate[:, 1:3]
         flat = self.flexural_rigidity[:, None] / (1.0 - square)
         return np.hstack([known, flat, square * shares, self.plate[:, 3:]])
+
+
+def _tapers(model: Model) -> tuple[Array, ...]:
+    """Return EA, EI, kGA, rho A and rho I of the elements over those at the start of their strips (E,)."""
+    x, weight = np.polynomial.legendre.leggauss(5)
+    places = (np.arange(model.elements)[:, None] + 0.5 * (x + 1.0)) / model.elements
+    area, moment = np.hstack([strip.growth(places) for strip in model.strips])
+    soft, flexible = (2.0 / (1.0 / each @ weight) for each in (area, moment))
+    return soft, flexible, soft, 0.5 * area @ weight, 0.5 * moment @ weight
 
 
 def strip_basis(model: Model) -> Basis:

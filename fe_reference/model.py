@@ -58,7 +58,8 @@ class StripDesign(Checked):
 
     A rectangle may be told by its sides, the width b [m] and the thickness t in the plane of bending [m],
     which effects of the curl across the width need: then A = b t and I = b t^3 / 12 where they are left out;
-    where they are given they hold, and must be those of the sides to ROUNDING.
+    where they are given they hold, and must be those of the sides to ROUNDING. The sides of a tapered strip
+    change linearly over its length to width_end and thickness_end [m]; all else is told at its start.
 
     Attributes:
         name: what it is called. start, end: of its axis at rest [m].
@@ -80,6 +81,8 @@ class StripDesign(Checked):
     shear_factor: Annotated[float, positive, "1"] = 5.0 / 6.0
     width: float | None = None
     thickness: float | None = None
+    width_end: float | None = None
+    thickness_end: float | None = None
 
     def __post_init__(self) -> None:
         self._read_sides()
@@ -89,17 +92,33 @@ class StripDesign(Checked):
         """Fill in what the sides make of the section; refuse what contradicts them, and half a section."""
         names = ("area", "second_moment_of_area")
         missing = [name for name in names if getattr(self, name) != getattr(self, name)]  # NOT_GIVEN
-        if self.width is None and self.thickness is None:
+        ends = (self.width_end, self.thickness_end)
+        if all(side is None for side in (self.width, self.thickness, *ends)):
             if missing:
                 raise InvalidParameter(missing[0], "nothing", "it, or width and thickness of a rectangle [m]")
             return
         b, t = (positive(name, getattr(self, name), "m") for name in ("width", "thickness"))
+        for name, side in zip(("width_end", "thickness_end"), ends, strict=True):
+            if side is not None:
+                positive(name, side, "m")
         for name, made, power in zip(names, (b * t, b * t**3 / 12.0), (2, 4), strict=True):
             if name in missing:
                 object.__setattr__(self, name, made)
             elif abs(positive(name, getattr(self, name), f"m^{power}") - made) > ROUNDING * made:
                 expected = f"{made:.6g}, that of width and thickness [m^{power}]"
                 raise InvalidParameter(name, getattr(self, name), expected)
+
+    @property
+    def tapered(self) -> bool:
+        """Whether its section changes along it."""
+        sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
+        return any(end is not None and end != start for start, end in sides)
+
+    def growth(self, places: Array) -> tuple[Array, Array]:
+        """Return area and second moment at places, parts of the length, over those at the start."""
+        sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
+        b, t = (1.0 + places * (end / start - 1.0 if start and end else 0.0) for start, end in sides)
+        return b * t, b * t**3
 
     @property
     def axial_rigidity(self) -> float:
@@ -227,6 +246,8 @@ class Model:
         for strip in self.strips if named else ():
             if strip.width is None:
                 raise InvalidParameter(named[0], strip.name, "strips with width and thickness [name]")
+            if strip.tapered:
+                raise InvalidParameter(named[0], strip.name, "strips of a constant section [name]")
             if curl and strip.rise:
                 raise InvalidParameter(curl[0], strip.name, "straight strips [name]")
             if "clamped_width" in curl and None in (strip.root, strip.tip):

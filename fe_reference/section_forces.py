@@ -54,9 +54,7 @@ class StripFields:
         is the mean across the width, to which the stress is equal where the section is held flat or wholly
         free.
         """
-        area, inertia = np.array([(each.area, each.second_moment_of_area) for each in model.strips]).T[
-            :, :, None
-        ]
+        area, inertia = _sections(model)
         stress: Array = np.abs(self.axial_force) / area
         stress += np.abs(self.bending_moment) * np.sqrt(3.0 / (area * inertia))
         return stress
@@ -98,7 +96,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
         shape=model.rest + nodal[..., :2],
         rotation=nodal[..., 2],
         curvature=_at_nodes(turning, turning) + _bent(model, moment) + natural.curvature,
-        stretch=1.0 + axial / elements.axial_rigidity.reshape(rows)[:, :1] + natural.strain,
+        stretch=1.0 + axial / (_moduli(model) * _sections(model)[0]) + natural.strain,
         axial_force=axial,
         shear_force=force_y * c - force_x * s,
         bending_moment=moment,
@@ -108,9 +106,22 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     )
 
 
+def _moduli(model: Model) -> Array:
+    """Return Young's moduli of the strips (G, 1) [Pa]."""
+    return np.array([[strip.youngs_modulus] for strip in model.strips])
+
+
+def _sections(model: Model) -> tuple[Array, Array]:
+    """Return area [m^2] and second moment [m^4] at the nodes (G, P)."""
+    growths = zip(model.strips, model.arcs / model.lengths[:, None], strict=True)
+    own = [(strip, *strip.growth(places)) for strip, places in growths]
+    area = np.array([strip.area * growth for strip, growth, _ in own])
+    return area, np.array([strip.second_moment_of_area * growth for strip, _, growth in own])
+
+
 def _bent(model: Model, moment: Array) -> Array:
     """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
-    rigidity = np.array([strip.flexural_rigidity for strip in model.strips])[:, None]
+    rigidity = _moduli(model) * _sections(model)[1]
     plate = structure_of(model).elements.plate.reshape(len(rigidity), -1, 4)[:, :1]
     if not plate[..., 0].any():
         free: Array = moment / rigidity

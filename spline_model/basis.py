@@ -49,9 +49,9 @@ class Bezier:
         """Values of the derivative of each polynomial, shape (len(u), control_points)."""
         return _bernstein(self.control_points, derivative, np.asarray(u, dtype=float).tobytes())
 
-    def areas(self, u: Array) -> Array:
-        """Integrals of the polynomials from 0 to u, (len(u), control_points)."""
-        return _areas(self.control_points, np.asarray(u, dtype=float).tobytes())
+    def areas(self, u: Array, power: int = 0) -> Array:
+        """Integrals of u^power times the polynomials from 0 to u, (len(u), control_points)."""
+        return _areas(self.control_points, power, np.asarray(u, dtype=float).tobytes())
 
     def gauss_rule(self, points: int) -> tuple[Array, Array]:
         """Points and weights of Gauss and Legendre, exact for polynomials of degree 2 * points - 1."""
@@ -76,10 +76,14 @@ def _bernstein(control_points: int, derivative: int, at: bytes) -> Array:
 
 
 @lru_cache(maxsize=256)
-def _areas(control_points: int, at: bytes) -> Array:
-    """Values of ``Bezier.areas``; kept."""
-    above = _bernstein(control_points + 1, 0, at)
-    areas = np.ascontiguousarray(np.cumsum(above[:, :0:-1], axis=1)[:, ::-1] / control_points)
+def _areas(control_points: int, power: int, at: bytes) -> Array:
+    """Values of ``Bezier.areas``; kept. Times u^power they are polynomials of so much higher a degree."""
+    count = control_points + power
+    above = _bernstein(count + 1, 0, at)
+    areas = np.cumsum(above[:, :0:-1], axis=1)[:, ::-1][:, power:] / count
+    for k in range(1, power + 1):
+        areas = areas * (np.arange(control_points) + k) / (control_points - 1 + k)
+    areas = np.ascontiguousarray(areas)
     areas.setflags(write=False)
     return areas
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.design import Design, StripDesign
+from spline_model.sections import STATIONS
 from spline_model.solution import CriticalPoint, Status, largest, named
 from spline_model.static_answers import StaticSolution
 
@@ -241,4 +242,9 @@ def _stress(design: Design, path: StaticSolution) -> Array:
     """Largest stress of each strip, |N|/A + |M|/W (S, G) [Pa]."""
     area = np.array([[strip.area] for strip in design.strips])
     modulus = np.array([[_modulus(strip)] for strip in design.strips])
+    if tapers := {g: strip.taper for g, strip in enumerate(design.strips) if strip.taper}:
+        area, modulus = (np.repeat(each, len(STATIONS), axis=1) for each in (area, modulus))
+        for g, taper in tapers.items():
+            area[g] *= taper.area(STATIONS)
+            modulus[g] *= taper.area(STATIONS) * taper.side("thickness", STATIONS)
     return np.asarray((np.abs(path.axial_force) / area + np.abs(path.bending_moment) / modulus).max(axis=2))

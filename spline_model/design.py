@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 from spline_model.basis import Bezier
 from spline_model.discretisation import Discretisation
 from spline_model.effects.boundary import GROUND
-from spline_model.errors import InvalidParameter, is_finite, require_not_negative, require_positive
+from spline_model.effects.elastic import Taper
+from spline_model.errors import (
+    InvalidParameter,
+    is_finite,
+    require_finite,
+    require_not_negative,
+    require_positive,
+)
 
 Array = NDArray[np.float64]
 
@@ -33,7 +40,9 @@ class StripDesign:
     section, whose area b t and second moment b t^3 / 12 then need not be given, and where they are must
     agree to ROUNDED (and count as given); poisson_ratio is for the section's curl (``clamped_width``,
     ``anticlastic``); rise: sagitta of the circular arc at rest [m], positive to the left of
-    start -> end, 0 for a straight strip.
+    start -> end, 0 for a straight strip; half the chord of a half circle, more of longer arcs.
+    width_end, thickness_end: sides at the end of a taper [m], between which they change linearly along the
+    strip, None where they are constant; width, thickness, area and second moment are those at the start.
     """
 
     name: str
@@ -49,9 +58,12 @@ class StripDesign:
     rise: float = 0.0
     width: float | None = None
     thickness: float | None = None
+    width_end: float | None = None
+    thickness_end: float | None = None
 
     def __post_init__(self) -> None:
-        if self.width is not None or self.thickness is not None:
+        sides = (self.width, self.thickness, self.width_end, self.thickness_end)
+        if any(side is not None for side in sides):
             self._take_sides()
         elif NOT_GIVEN in (self.area, self.second_moment_of_area):
             raise InvalidParameter("area", "none", "area and second_moment_of_area, or width and thickness")
@@ -64,9 +76,7 @@ class StripDesign:
             raise InvalidParameter(
                 "poisson_ratio", self.poisson_ratio, "a number above -1 and at most 0.5 [1]"
             )
-        if not abs(self.rise) < self.chord / 2:
-            expected = f"less than half the chord, {self.chord / 2:g}, or two strips with a massless body [m]"
-            raise InvalidParameter(f"rise of {self.name}", self.rise, expected)
+        require_finite(f"rise of {self.name}", self.rise, "m")
 
     def _take_sides(self) -> None:
         """Area and second moment from width and thickness, compared with them where they are given."""
@@ -74,14 +84,23 @@ class StripDesign:
             if side is None:
                 raise InvalidParameter(name, side, "width and thickness, both or neither")
             require_positive(name, side, "m")
+            if (at_end := getattr(self, f"{name}_end")) is not None:
+                require_positive(f"{name}_end", at_end, "m")
         assert self.width is not None and self.thickness is not None
         area = self.width * self.thickness
         for name, made in (("area", area), ("second_moment_of_area", area * self.thickness**2 / 12.0)):
             given = getattr(self, name)
-            if given is NOT_GIVEN:
-                object.__setattr__(self, name, made)
-            elif not abs(given - made) <= ROUNDED * made:
+            if not (given is NOT_GIVEN or abs(given - made) <= ROUNDED * made):
                 raise InvalidParameter(name, given, f"{made:.6g}, that of width and thickness, or none")
+            if given is NOT_GIVEN or self.taper is not None:  # a taper has those of its sides
+                object.__setattr__(self, name, made)
+
+    @property
+    def taper(self) -> Taper | None:
+        """The taper of the section, None of a constant one."""
+        sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
+        width, thickness = (end / start if start and end else 1.0 for start, end in sides)
+        return None if width == thickness == 1.0 else Taper(width, thickness)
 
     @property
     def chord(self) -> float:
@@ -154,7 +173,7 @@ class StripDesign:
         if count == 1:
             return (Piece(self, self, (0.0, 1.0)),)
         cuts = np.linspace(0.0, 1.0, count + 1)
-        points = [tuple(point) for point in self.at(cuts).tolist()]
+        points, sections = [tuple(point) for point in self.at(cuts).tolist()], self._sections(cuts)
         half = self.opening
         rise = self.length / (2.0 * half) * (1.0 - math.cos(half / count)) if half else 0.0
         ends = [self.root, *(f"{self.name}, joint {k}" for k in range(1, count)), self.tip]
@@ -168,12 +187,24 @@ class StripDesign:
                     rise=rise,
                     root=str(ends[k]),
                     tip=ends[k + 1],
+                    **sections[k],
                 ),
                 self,
                 (float(cuts[k]), float(cuts[k + 1])),
             )
             for k in range(count)
         )
+
+    def _sections(self, cuts: Array) -> list[dict[str, Any]]:
+        """Keywords of the sections of pieces between cuts (K + 1,); none where the section is constant."""
+        if (taper := self.taper) is None:
+            return [{} for _ in cuts[1:]]
+        sides: dict[str, Any] = {"area": NOT_GIVEN, "second_moment_of_area": NOT_GIVEN}
+        b, t = ((getattr(self, name) * taper.side(name, cuts)).tolist() for name in Taper._fields)
+        return [
+            sides | {"width": b[k], "width_end": b[k + 1], "thickness": t[k], "thickness_end": t[k + 1]}
+            for k in range(len(cuts) - 1)
+        ]
 
 
 class Piece(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -19,6 +20,9 @@ from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, ROOTS, build
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import loose, props_of
 from spline_model.scene import Body, Effect, Scene, Strip
+
+LARGEST_OPENING = math.radians(100.0)
+"""Angle of an arc at rest above which it is cut into segments."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,10 +137,13 @@ def compliant_mechanism(
     """A mechanism whose scene holds the named effects and nothing else.
 
     effects: names of ``spline_model.effects.registry``; parameters: of each named effect,
-    by effect; described: keywords of ``Discretisation``. ``stretch="inextensible"`` and
+    by effect; described: keywords of ``Discretisation``; strips are cut into more segments than these say
+    where one of a segment alone would be an arc of more than LARGEST_OPENING. ``stretch="inextensible"`` and
     the effect "inextensible" are the same thing.
     """
     grid = Discretisation(**described)
+    fewest = max((math.ceil(2.0 * abs(strip.opening) / LARGEST_OPENING) for strip in strips), default=1)
+    grid = replace(grid, segments=max(grid.segments, fewest))
     given = dict(parameters or {})
     names = tuple(effects)
     if grid.stretch == "inextensible":
@@ -165,6 +172,7 @@ def compliant_mechanism(
                 basis=grid.spline,
                 control_points=piece.control_points(grid.spline),
                 of=whole.name,
+                taper=piece.taper,
             )
             for piece, whole, _ in design.pieces
         ),

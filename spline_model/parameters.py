@@ -56,6 +56,10 @@ class Given:
     def of(cls, design: Design, count: int = 1, kind: type = float) -> Given:
         """One design, so many times, as numbers of a kind."""
         strips, bodies = design.strips, design.bodies
+        for strip in strips:
+            if strip.taper is not None:
+                expected = "none, a constant section, for designs by their numbers"
+                raise InvalidParameter(f"taper of {strip.name}", tuple(strip.taper), expected)
         section = [(s.area, s.second_moment_of_area, s.youngs_modulus) for s in strips]
         return cls(
             ends=np.array([[(s.start, s.end) for s in strips]] * count, dtype=kind),

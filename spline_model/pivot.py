@@ -71,6 +71,8 @@ def cross_axis_pivot(
     orientation: float = 0.0,
     width: float | None = None,
     thickness: float | None = None,
+    width_end: float | None = None,
+    thickness_end: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     **described: Unpack[Described],
@@ -83,6 +85,7 @@ def cross_axis_pivot(
     crossing_ratio : distance of the crossing from the ground end over L, in (0, 1).
     area, second_moment_of_area : of a strip's section [m^2, m^4].
     width, thickness : of a rectangular section [m], in place of area and second moment or beside them.
+    width_end, thickness_end : of a taper [m], at the body.
     poisson_ratio : of effects that know the section's curl; a shear-rigid strip is without it otherwise.
     centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
     orientation : turns the whole pivot about A1 [rad].
@@ -117,6 +120,8 @@ def cross_axis_pivot(
             density=density,
             width=width,
             thickness=thickness,
+            width_end=width_end,
+            thickness_end=thickness_end,
         )
         for name, (start, end) in zip(STRIPS, ends, strict=True)
     ]

@@ -132,7 +132,7 @@ def _rows(
     if isinstance(axial, Stretching):
         numbers[:, STRETCHING] = axial.axial_rigidity
     if isinstance(axial, MixedStretching):
-        numbers[:, COMPLIANCE] = axial.axial_compliance
+        numbers[:, COMPLIANCE] = axial.compliance_at(u)
         place[:, MODE], place[:, MODES] = mode, axial.modes.count
         modes[:, : axial.modes.count] = axial.modes.evaluate(u)
     if width < widest:

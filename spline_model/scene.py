@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from spline_model.basis import Bezier
 from spline_model.effects import GROUND, Clamp, DrivenRotation, MixedStretching, StripGravity
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
+from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter
 from spline_model.layout import Layout
 
@@ -23,43 +24,53 @@ Kind = TypeVar("Kind", bound=Effect)
 class Strip:
     """A flexure or a piece of one: a curve C(u) of control points, given at rest.
 
-    control_points: (n, 2) positions at rest [m]; of: name of the flexure that it is a piece of, if it is one.
+    control_points: (n, 2) positions at rest [m]; of: name of the flexure that it is a piece of, if it is one;
+    taper: of its section, None for a constant one.
     """
 
     name: str
     basis: Bezier
     control_points: NDArray[np.float64]
     of: str | None = None
+    taper: Taper | None = None
 
-    def gauss_points(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Points u and weights ds0 [m] of a rule that is exact for products of two basis functions."""
-        u, weight = self.basis.gauss_rule(self.basis.degree + 1)
-        return u, weight * np.hypot(*(self.basis.evaluate(u, 1) @ self.control_points).T)
+    def gauss_points(self, of: str = "area") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Points u and weights p ds0 [m] of a rule that is exact for products of two basis functions.
+
+        p: "area" or "second_moment" of the section over that at the start, 1 of a constant one.
+        """
+        u, weight = self.basis.gauss_rule(self.basis.degree + (1 if self.taper is None else 2))
+        length = weight * np.hypot(*(self.basis.evaluate(u, 1) @ self.control_points).T)
+        return u, length if self.taper is None else length * getattr(self.taper, of)(u)
 
     def share_of_length(self) -> NDArray[np.float64]:
-        """int N ds0 of each basis function, shape (n,) [m]."""
+        """int N p ds0 of each basis function with the area as p, shape (n,) [m]."""
         u, length = self.gauss_points()
         return np.asarray(length @ self.basis.evaluate(u))
 
     def products(self) -> NDArray[np.float64]:
-        """int N^T N ds0 (n, n) [m]."""
+        """int N^T N p ds0 (n, n) with the area as p [m]."""
         u, length = self.gauss_points()
         values = self.basis.evaluate(u)
         return np.asarray(values.T @ (length[:, None] * values))
 
     def slope_products(self) -> NDArray[np.float64]:
-        """int (dN/ds0)^T (dN/ds0) ds0 (n, n) [1/m]."""
-        u, length = self.gauss_points()
+        """int (dN/ds0)^T (dN/ds0) p ds0 (n, n) with the second moment as p [1/m]."""
+        u, length = self.gauss_points("second_moment")
         slopes = self.basis.evaluate(u, 1)
         speed = np.hypot(*(slopes @ self.control_points).T)
         return np.asarray(slopes.T @ ((length / speed**2)[:, None] * slopes))
 
-    def length_to(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m]."""
+    def length_to(self, stations: NDArray[np.float64], taper: Taper | None = None) -> NDArray[np.float64]:
+        """Arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m].
+
+        taper: where it is given, the length is weighed by the area over that at the start.
+        """
         u, weight = self.basis.gauss_rule(self.basis.degree + 1)
         inner = np.asarray(stations)[:, None] * u
         tangent = self.basis.evaluate(inner.ravel(), 1) @ self.control_points
-        return np.asarray(stations * (np.hypot(*tangent.T).reshape(inner.shape) @ weight))
+        speed = np.hypot(*tangent.T).reshape(inner.shape)
+        return np.asarray(stations * ((speed if taper is None else speed * taper.area(inner)) @ weight))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,12 +147,14 @@ class Scene:
         return {}
 
     def weight_of(self, strip: str) -> NDArray[np.float64]:
-        """Weight of a strip (2,) [N], spread evenly over u."""
-        total = np.zeros(2)
+        """Weight of a strip per du, spread over u as the area: its parts (3, 2) with 1, u and u^2 [N]."""
+        total = np.zeros((3, 2))
         for effect in self.of(StripGravity):
             if effect.strip == strip:
-                length = float(self.strip(strip).share_of_length().sum())
-                total += effect.linear_density * length * np.asarray(effect.acceleration)
+                own = self.strip(strip)
+                parts = np.array([1.0, 0.0, 0.0]) if own.taper is None else own.taper.powers
+                length = float(own.share_of_length().sum()) / float(parts @ (1.0, 1.0 / 2.0, 1.0 / 3.0))
+                total += np.outer(effect.linear_density * length * parts, effect.acceleration)
         return total
 
     @property

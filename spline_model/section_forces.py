@@ -99,7 +99,7 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
             turn = states[:, layout.body(root)][:, 2:]
             rotation[:, g] += 2.0 * np.pi * np.round((turn - rotation[:, g, :1]) / (2.0 * np.pi))
     stretch = speed / rest_speed
-    _stretch(system, along.axial_force, stretch)
+    _stretch(mechanism, system.scene, along.axial_force, stretch)
     if moving:
         direction = rotation + np.arctan2(rest[..., 1], rest[..., 0])
         force, reactions = _by_moments(arc, along, stretch, direction)
@@ -145,14 +145,15 @@ def _at_rest(scene: Scene) -> tuple[tuple[Array, Array], Array]:
     return (shape, tangent), np.concatenate(arc, axis=1)
 
 
-def _stretch(system: System, axial_force: Array, stretch: Array) -> None:
+def _stretch(mechanism: Mechanism, scene: Scene, axial_force: Array, stretch: Array) -> None:
     """Put 1 + N/EA + natural strain of mixed strips in the place of that of the shape."""
-    scene = system.scene
     of = {strip.name: strip.of or strip.name for strip in scene.strips}
     for mixed in reversed(scene.of(MixedStretching)):
         if not isinstance(mixed.modes, SlideModes):
             g = list(scene.whole).index(of[mixed.strip])
-            stretch[:, g] = 1.0 + mixed.axial_compliance * axial_force[:, g] + mixed.natural_strain
+            taper = mechanism.design.strips[g].taper
+            strain = mixed.axial_compliance * axial_force[:, g] / (taper.area(STATIONS) if taper else 1.0)
+            stretch[:, g] = 1.0 + strain + mixed.natural_strain
 
 
 def _by_moments(arc: Array, along: Sections, stretch: Array, direction: Array) -> tuple[Array, Array]:

@@ -104,7 +104,7 @@ def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) 
         pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
         for weight in system.scene.of(StripGravity):
             if weight.strip == strip.name:
-                mass = weight.linear_density * strip.length_to(stations)
+                mass = weight.linear_density * strip.length_to(stations, strip.taper)
                 pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]
     return pull
 
@@ -114,13 +114,12 @@ def _balanced_moments(
 ) -> Array:
     """Bending moments (P, S, G) by balance, of control points (n, 2, S, G)."""
     basis = strips[0].basis
-    values, areas = basis.evaluate(stations), basis.areas(stations)
+    values = basis.evaluate(stations)
     by_strip = [
         balance(
             points[..., g].transpose(2, 0, 1),
             values,
-            areas,
-            stations,
+            (basis, stations),
             clamp_reactions(system, states, strip.name, "start"),
             system.scene.weight_of(strip.name),
         )

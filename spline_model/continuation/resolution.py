@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import Bezier
 from spline_model.compile import System
 from spline_model.effects import Bending
 from spline_model.quadrature import MEASURE, WEIGHT
@@ -36,32 +38,35 @@ def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
     speed = np.where(table.place[:, MEASURE] == 0, table.speed, np.sqrt(square))
     moment = table.moments((x1 * y2 - y1 * x2) / square / speed - table.curvature)
     wrong, stored = 0.0, SMALLEST_MOMENT**2 * system.scales.energy
-    for rows, points, clamp, (values, areas, u), load in system.once("strips in balance", _in_balance):
+    for rows, points, clamp, (values, where), load in system.once("strips in balance", _in_balance):
         ds = table.numbers[rows, WEIGHT] * table.speed[rows] / table.rigidity[rows]
-        held = balance(z[points].reshape(-1, 2), values, areas, u, z[clamp], share * load)
+        held = balance(z[points].reshape(-1, 2), values, where, z[clamp], share * load)
         wrong += float(ds @ (moment[rows] - held) ** 2)
         stored += float(ds @ moment[rows] ** 2)
     return math.sqrt(wrong / stored)
 
 
-def balance(points: Array, values: Array, areas: Array, u: Array, reaction: Array, load: Array) -> Array:
+def balance(points: Array, values: Array, where: tuple[Bezier, Array], reaction: Array, load: Array) -> Array:
     """Bending moment (..., P) that holds the balance of a strip up to u (P,) [N m].
 
-    points (..., n, 2); values, areas (P, n): basis functions and their integrals from the root; reaction
-    (..., 3) of the clamp there; load (2,): weight per du [N].
+    points (..., n, 2); values (P, n): basis functions; where: basis and u; reaction (..., 3) of the clamp at
+    the root; load (3, 2): parts of the weight per du with 1, u and u^2 [N].
     """
     here = values @ points
     arm, (x, y, moment) = here - points[..., :1, :], np.moveaxis(reaction, -1, 0)[..., None]
     held = arm[..., 0] * y - arm[..., 1] * x - moment
-    if load.any():
-        weighed = u[:, None] * here - areas @ points
-        held += weighed[..., 0] * load[1] - weighed[..., 1] * load[0]
+    basis, u = where
+    for power, (x, y) in enumerate(load):
+        if x or y:
+            whole = u[:, None] ** (power + 1) / (power + 1)
+            weighed = whole * here - basis.areas(u, power) @ points
+            held += weighed[..., 0] * y - weighed[..., 1] * x
     return np.asarray(held)
 
 
-def _in_balance(system: System) -> list[tuple[slice, slice, slice, tuple[Array, Array, Array], Array]]:
+def _in_balance(system: System) -> list[tuple[slice, slice, slice, tuple[Array, Any], Array]]:
     """Of each strip that is clamped at its root: rows in the table of points, places of its control points
-    and of the clamp's multipliers, basis there as ``balance`` takes it, and weight per du (2,) [N]."""
+    and of the clamp's multipliers, basis there as ``balance`` takes it, and weight per du (3, 2) [N]."""
     scene, found, at = system.scene, [], 0
     for bending in scene.of(Bending):
         strip = scene.strip(bending.strip)
@@ -69,7 +74,7 @@ def _in_balance(system: System) -> list[tuple[slice, slice, slice, tuple[Array, 
         rows, clamp = slice(at, at + len(u)), scene.clamps.get((strip.name, "start"))
         at = rows.stop
         if clamp is not None and bending.flexural_rigidity != 0.0:
-            basis = strip.basis.evaluate(u), strip.basis.areas(u), u
+            basis = strip.basis.evaluate(u), (strip.basis, u)
             points, load = system.layout.strip(strip.name), scene.weight_of(strip.name)
             found.append((rows, points, clamp, basis, load))
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,34 @@ CURLING = (CLAMPED_WIDTH, ANTICLASTIC)
 """Names of the effects that bending takes up."""
 WIDTHS = (0.005, 4.0)
 """Width over length for which the plate's factors and the profile that has them were seen to be exact."""
+
+
+class Taper(NamedTuple):
+    """A rectangular section whose sides change linearly from the start of a strip to its end.
+
+    width, thickness: those at the end over those at the start [1].
+    """
+
+    width: float
+    thickness: float
+
+    def side(self, name: str, u: Array) -> Array:
+        """Width or thickness over that at the start, at u (P,)."""
+        return np.asarray(1.0 + (getattr(self, name) - 1.0) * u)
+
+    def area(self, u: Array) -> Array:
+        """Area over that at the start, at u (P,)."""
+        return self.side("width", u) * self.side("thickness", u)
+
+    @property
+    def powers(self) -> Array:
+        """Parts (3,) of the area with 1, u and u^2."""
+        b, t = self.width - 1.0, self.thickness - 1.0
+        return np.array([1.0, b + t, b * t])
+
+    def second_moment(self, u: Array) -> Array:
+        """Second moment of area over that at the start, at u (P,)."""
+        return self.area(u) * self.side("thickness", u) ** 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,7 +122,8 @@ class Bending(StrainEnergy):
     flexural_rigidity : EI >= 0.                                               [N m^2]
     natural_curvature : kappa_n of the stress-free strip, counted from kappa_0 at rest,
         as the natural strain is counted from the length at rest.                  [1/m]
-    curl : of the section; None for a narrow beam's, whose rigidity is EI all along.
+    taper : of the section, whose EI is that at the start; None for a constant one.
+    curl : of the section; None for a narrow beam's, whose rigidity is that of the taper.
     roots : length of the root at start and end over the strip's, 0 where there is none: a strip that is cut
         from the same block as its bodies turns in its roots as if it were longer, by 0.416 t at a sharp
         corner (half-plane in plane stress). Their compliance is a peak at the clamp, which is projected
@@ -110,6 +139,7 @@ class Bending(StrainEnergy):
 
     flexural_rigidity: float
     natural_curvature: float = 0.0
+    taper: Taper | None = None
     curl: Curl | None = None
     roots: tuple[float, float] = (0.0, 0.0)
 
@@ -121,6 +151,8 @@ class Bending(StrainEnergy):
         """Rigidity at u (P,) of a strip of that degree [N m^2]."""
         curl = Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0) if self.curl is None else self.curl
         stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u, curl.reach, self.roots)
+        if self.taper is not None:
+            stiffer = stiffer * self.taper.second_moment(u)
         return self.flexural_rigidity * stiffer
 
     def with_sides(self, width: complex, thickness: complex) -> Bending:
@@ -183,7 +215,8 @@ class MixedStretching(StrainEnergy):
     Parameters
     ----------
     strip : name of the strip.
-    axial_compliance : c = 1 / EA >= 0.                                          [1/N]
+    axial_compliance : c = 1 / EA >= 0, that at the start of a tapered strip.    [1/N]
+    taper : of the section; None for a constant one.
     modes : the modes P_k; control_points - 2 of them is the locking-free choice.
     natural_strain : eps_0 of the stress-free strip against the one at rest; eps is less by it.
 
@@ -194,7 +227,12 @@ class MixedStretching(StrainEnergy):
     axial_compliance: float
     modes: AxialModes
     natural_strain: float = 0.0
+    taper: Taper | None = None
 
     def __post_init__(self) -> None:
         require_not_negative("axial_compliance", self.axial_compliance, "1/N")
         self.require_sum(MEASURES[0])
+
+    def compliance_at(self, u: Array) -> Any:
+        """Axial compliance at u (P,) [1/N]."""
+        return self.axial_compliance if self.taper is None else self.axial_compliance / self.taper.area(u)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from spline_model.basis import AxialModes, SlideModes
 from spline_model.effects import boundary, elastic, moving
 from spline_model.effects.boundary import STEADY, History
+from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter, is_finite
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def _bending(design: Design) -> Iterator[Effect]:
             strip=strip.name,
             flexural_rigidity=strip.flexural_rigidity,
             natural_curvature=design.pre_strain.get("curvature", 0.0),
+            taper=strip.taper,
             curl=_curl(design, whole, reach),
             roots=_roots(design, whole, reach),
             measure=grid.measure,
@@ -61,6 +63,7 @@ def _curl(design: Design, strip: StripDesign, reach: tuple[float, float]) -> ela
     widths = f"{low:g} to {high:g}"
     for right, what, got, expected in (
         (strip.rise == 0.0, f"rise of {name}", strip.rise, f"0, a straight strip, for {names}"),
+        (strip.taper is None, f"taper of {name}", strip.taper, f"none for {names}"),
         (natural == 0.0, "natural curvature of pre_strain", natural, f"0 for {names}"),
         (0.0 <= nu <= 0.5, f"poisson_ratio of {name}", nu, f"0 to 0.5 for {names}"),
         (not flattens or measure == "material", "measure", measure, f"material for {elastic.ANTICLASTIC}"),
@@ -82,6 +85,8 @@ def _roots(design: Design, strip: StripDesign, reach: tuple[float, float]) -> tu
     if strip.thickness is None:
         needs = "width and thickness [m] for root_compliance"
         raise InvalidParameter(f"thickness of {strip.name}", None, needs)
+    if strip.taper is not None:
+        raise InvalidParameter(f"taper of {strip.name}", tuple(strip.taper), f"none for {ROOTS}")
     length = design.root_length * strip.thickness / (strip.length * (reach[1] - reach[0]))
     return length * (reach[0] == 0.0), length * (reach[1] == 1.0 and strip.tip is not None)
 
@@ -93,6 +98,8 @@ def _stretching(design: Design) -> Iterator[Effect]:
         if grid.stretch != "consistent":
             yield from _mixed(design, strip, 1.0 / strip.axial_rigidity)
             continue
+        if strip.taper is not None:
+            raise InvalidParameter("stretch", grid.stretch, f"mixed for the tapered {strip.name}")
         yield elastic.Stretching(
             strip=strip.name,
             axial_rigidity=strip.axial_rigidity,
@@ -110,15 +117,16 @@ def _inextensible(design: Design) -> Iterator[Effect]:
 
 def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Effect]:
     grid = design.discretisation
-    parts: list[tuple[float, AxialModes]] = [(compliance, grid.modes)]
+    parts: list[tuple[float, AxialModes, Taper | None]] = [(compliance, grid.modes, strip.taper)]
     slide = grid.slide * strip.flexural_rigidity / strip.length**2
     if slide > 0 and grid.modes.count < grid.points - 1:
-        parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes)))
-    for part, modes in parts:
+        parts.append((1.0 / slide, SlideModes(basis=grid.spline, axial=grid.modes), None))
+    for part, modes, taper in parts:
         yield elastic.MixedStretching(
             strip=strip.name,
             axial_compliance=part,
             modes=modes,
+            taper=taper,
             natural_strain=design.pre_strain.get("strain", 0.0),
             gauss_points=grid.quadrature,
         )

@@ -26,6 +26,7 @@ from spline_model.strip.element import (
     LAST,
     LEVER,
     MOMENT_AT,
+    ON_POINTS,
     PER_U,
     POINTS,
     RIGIDITY,
@@ -207,6 +208,23 @@ def move_strips(share, arrays, out):
         recovered(s, own, share, strips, local, ends, dw, da)
 
 
+@part()
+def _moment_of_load_beyond(p, points, numbers, rule, tables):
+    """Moment about a Gauss point of the dead load beyond it."""
+    moment = cx = cy = 0.0
+    for i in range(points.size // 2):
+        cx += tables[VALUE, p, i] * points[2 * i]
+        cy += tables[VALUE, p, i] * points[2 * i + 1]
+    for k in range(3):
+        ax = ay = 0.0
+        for i in range(points.size // 2):
+            ax += tables[BEYOND + k, p, i] * points[2 * i]
+            ay += tables[BEYOND + k, p, i] * points[2 * i + 1]
+        far = (1.0 - rule[WHERE, p] ** (k + 1)) / (k + 1)
+        moment += (ax - far * cx) * numbers[PER_U + 2 * k + 1] - (ay - far * cy) * numbers[PER_U + 2 * k]
+    return moment
+
+
 @called()
 def moment_defect(y, strips, shape, local, smallest):
     """Root of the energy of what the strips' moments differ from balance by over their bending energy.
@@ -225,19 +243,17 @@ def moment_defect(y, strips, shape, local, smallest):
         x, y0 = points[2 * tip], points[2 * tip + 1]
         bx, by = points[2 * inner] - x, points[2 * inner + 1] - y0
         moment = bx * gradient[2 * inner + 1] - by * gradient[2 * inner]
-        qx, qy = numbers[PER_U], numbers[PER_U + 1]
+        heavy = False
+        for i in range(PER_U, ON_POINTS):
+            heavy = heavy or numbers[i] != 0.0
         for i in range(n):
             lever[i] = (x - points[2 * i]) * fy - (y0 - points[2 * i + 1]) * fx + moment
         for p in range(rule.shape[1]):
-            left, cx, cy, ax, ay = moments[p], 0.0, 0.0, 0.0, 0.0
+            left = moments[p]
             for i in range(n):
                 left -= tables[VALUE, p, i] * lever[i]
-                cx += tables[VALUE, p, i] * points[2 * i]
-                cy += tables[VALUE, p, i] * points[2 * i + 1]
-                ax += tables[BEYOND, p, i] * points[2 * i]
-                ay += tables[BEYOND, p, i] * points[2 * i + 1]
-            far = 1.0 - rule[WHERE, p]
-            left -= (ax - far * cx) * qy - (ay - far * cy) * qx
+            if heavy:
+                left -= _moment_of_load_beyond(p, points, numbers, rule, tables)
             if along[p, RIGIDITY] > 0.0:
                 ds = rule[WEIGHT, p] * along[p, SPEED] / along[p, RIGIDITY]
                 wrong += ds * left * left

@@ -78,7 +78,7 @@ def of_design(model: Reduced, designs: Designs, d: int) -> Reduced:
 
 
 def _numbers(model: Reduced, base: Given, given: Given, longer: Array, force: Array, wide: Array) -> Array:
-    """The numbers of ``Strips`` of each design (D, S, 12 + 2 n)."""
+    """The numbers of ``Strips`` of each design (D, S, 16 + 2 n)."""
     strips, (cos, sin) = model.strips, _turns(base, given)
     area, modulus = (given.section[..., k] / base.section[..., k] for k in (0, 2))
     numbers = np.repeat(strips.numbers[None].astype(longer.dtype), len(longer), axis=0)

@@ -13,7 +13,7 @@ from spline_model.basis import AxialModes, Bezier, SlideModes
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, Stretching
 from spline_model.effects.base import Constraint
-from spline_model.effects.elastic import MEASURES
+from spline_model.effects.elastic import MEASURES, Taper
 from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURL,
@@ -98,7 +98,9 @@ def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
     """The basis at any points u (P,) with weights."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
-    values = [basis.evaluate(u, k) for k in range(3)] + [1.0 / n - basis.areas(u)]
+    whole = np.ones(1)
+    values = [basis.evaluate(u, k) for k in range(3)]
+    values += [basis.areas(whole, power) - basis.areas(u, power) for power in range(3)]
     tables = np.ascontiguousarray(np.array(values)[:, :, order])
     return Shape.of(order, tables, np.array((u, weight)))
 
@@ -110,7 +112,8 @@ def strips_of(
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     parts, bends = list(_mixed_of(scene).values()), bends_of(scene)
     speed, rest = speeds_of(scene, shape, length)
-    to_modes = _orthonormal_modes([tuple(e.modes for e in each) for each in parts], basis, points, speed)
+    kinds = [tuple((e.modes, e.taper) for e in each) for each in parts]
+    to_modes = _orthonormal_modes(kinds, basis, points, speed)
     split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
     measure = MEASURES.index(bends[0].measure)
     c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
@@ -165,7 +168,7 @@ def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes
 
 
 def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
-    """The numbers of ``Strips``, (S, 12 + 2 n)."""
+    """The numbers of ``Strips``, (S, 16 + 2 n)."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
     mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
@@ -196,7 +199,7 @@ def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
     for row, strip in zip(numbers, scene.strips, strict=True):
         dead = weight[system.layout.strip(strip.name)].reshape(-1, 2)
         row[ON_POINTS:] = in_order(dead, shape).ravel() / force
-        row[PER_U:ON_POINTS] = scene.weight_of(strip.name) / force
+        row[PER_U:ON_POINTS] = scene.weight_of(strip.name).ravel() / force
 
 
 def speeds_of(scene: Scene, shape: Shape, length: float) -> tuple[Array, Array]:
@@ -209,10 +212,10 @@ def speeds_of(scene: Scene, shape: Shape, length: float) -> tuple[Array, Array]:
 
 
 def _orthonormal_modes(
-    parts: list[tuple[AxialModes, ...]], basis: Bezier, points: int, speed: Array
+    parts: list[tuple[tuple[AxialModes, Taper | None], ...]], basis: Bezier, points: int, speed: Array
 ) -> Array:
     """The scene's axial forces (S, K, K) by those of modes that are orthonormal along strips of a speed
-    (S, G).
+    (S, G), weighed by their compliance over that at the start.
 
     Those of one distribution of the speed are kept: all straight strips have the same, but for round-off.
     """
@@ -229,17 +232,20 @@ def _values(parts: tuple[AxialModes, ...], at: bytes) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _modes_of(parts: tuple[AxialModes, ...], basis: Bezier, points: int, speed: bytes) -> Array:
+def _modes_of(
+    parts: tuple[tuple[AxialModes, Taper | None], ...], basis: Bezier, points: int, speed: bytes
+) -> Array:
     """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
     u, weight = basis.gauss_rule(points)
     weight = weight * (ROUND_OFF * np.frombuffer(speed))
     back = np.zeros((0, 0))
-    for modes in parts:
+    for modes, taper in parts:
         full, to_part = modes.evaluate(u), np.eye(modes.count)
+        soft = weight if taper is None else weight / taper.area(u)
         if not isinstance(modes, SlideModes):  # the mean first
             to_part[:, 0] = np.linalg.lstsq(full, np.ones(len(u)), rcond=None)[0]
             full = full @ to_part
-        factor = np.linalg.cholesky(full.T @ (weight[:, None] * full))
+        factor = np.linalg.cholesky(full.T @ (soft[:, None] * full))
         k, m = len(back), modes.count
         back = np.block([[back, np.zeros((k, m))], [np.zeros((m, k)), to_part @ np.linalg.inv(factor).T]])
     return back

@@ -32,7 +32,7 @@ WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
 SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
 """Places along a strip, ``Strips.along``."""
-STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 12
+STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 16
 """Places of a strip's numbers."""
 LEVER, GRADIENT, POINTS = -3, -2, -1
 """Last rows of ``Local.nodal``."""
@@ -47,9 +47,10 @@ LAST = -1
 class Shape(NamedTuple):
     """Basis at the G Gauss points, the same for all strips, points in the order of elimination.
 
-    order (n,) control point at each place; tables (4, G, n) the basis, its first and second derivatives and
-    its integrals from u to 1; rule (2, G) u and weights; curve (2, n, G) both derivatives once more; products
-    (4, G, P) of derivatives 11, 12, 21 and 22 of pairs i <= j of points, j by j, P filled up to eights.
+    order (n,) control point at each place; tables (6, G, n) the basis, its first and second derivatives and
+    the integrals from u to 1 of it, of u and of u^2 times it; rule (2, G) u and weights; curve (2, n, G) both
+    derivatives once more; products (4, G, P) of derivatives 11, 12, 21 and 22 of pairs i <= j of points, j by
+    j, P filled up to eights.
     """
 
     order: NDArray[np.int64]
@@ -89,13 +90,14 @@ class Strips(NamedTuple):
     """What tells S strips from one another, in few arrays: each costs every kernel that they are passed to.
 
     along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
-    axial force at the Gauss points, orthonormal, of which ``split`` belong to the stretching, the others to
-    the sliding of control points; compliance (S, K) of each; gain (S, K) the stiffness by which they are
-    condensed; numbers (S, 12 + 2 n): EA of stretching by quadrature, 0 for the mixed form; natural strain;
-    root and tip, three each, the clamped point in its body's frame, or on the ground, and direction at rest
-    [rad]; reach, k_A and k_B; dead load per du, two, and on the control points; roots, tips (S,) bodies
-    or GROUNDED; coupled: leading axial forces that stay beside w, where a compliance is too small to divide
-    by; outer: 1 if the mean stays beside the bodies, or 0; measure: of all.
+    axial force at the Gauss points, orthonormal as compliances weigh them, of which ``split`` belong to the
+    stretching, the others to the sliding of control points; compliance (S, K) of each; gain (S, K) the
+    stiffness by which they are condensed; numbers (S, 16 + 2 n): EA of stretching by quadrature, 0 for the
+    mixed form; natural strain; root and tip, three each, the clamped point in its body's frame, or on the
+    ground, and direction at rest [rad]; reach, k_A and k_B; dead load per du, a parabola: two for each of 1,
+    u and u^2, and on the control points; roots, tips (S,) bodies or GROUNDED; coupled: leading axial forces
+    that stay beside w, where a compliance is too small to divide by; outer: 1 if the mean stays beside the
+    bodies, or 0; measure: of all.
     """
 
     along: Array

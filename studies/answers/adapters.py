@@ -198,7 +198,7 @@ def answer_of(solution: Any, modelled: Any) -> Answer:
 
     Args:
         solution: static solution, trajectory or modes of `spline_model` or `fe_reference`.
-        modelled: the pivot or mechanism of the model that it is of; sections are taken as rectangles.
+        modelled: the pivot or mechanism of the model that it is of; it has stress where sections have sides.
 
     Raises:
         BadInput: something else, or of two models; one line.

@@ -224,13 +224,12 @@ def validity(answer: "Response") -> _Validity:
 
 
 def _assumed(design: Design) -> Iterator[str]:
-    """Yield the sentence that stresses are of rectangles that no one named, if any are."""
-    depths = {strip.name: 1e3 * strip.depth for strip in design.strips if strip.depth_is_assumed}
-    if depths:
-        deep = f"{', '.join(depths)} as {', '.join({f'{each:.4g} mm': 1 for each in depths.values()})} deep"
+    """Yield the sentence that strips have no stress as no one says where their outermost fibre is, if any."""
+    unknown = [strip.name for strip in design.strips if math.isnan(strip.fibre)]
+    if unknown:
         yield (
-            f"stress: takes {deep}, rectangles of the area and second moment that are given; "
-            "section_depth_m names another depth, as of a round rod its diameter"
+            f"stress: none without the distance of the outermost fibre of {', '.join(unknown)}: give "
+            "outer_fibre_m, of a round rod its radius, or width_m and thickness_m"
         )
 
 
@@ -259,7 +258,9 @@ def strips_of(design: Design, forces: Any = None) -> list[Strip]:
         strip = Strip(thickness=part.depth, width=width, yield_strength=strength, **given)
         if forces is not None:
             axial, moment = forces.axial_force[:, i], forces.bending_moment[:, i]
-            most = np.abs(moment).max(initial=0.0) / (part.youngs_modulus * part.second_moment_of_area)
+            b, t = part.growth(np.linspace(0.0, 1.0, moment.shape[-1]))
+            most = (np.abs(moment) / (b * t**3)).max(initial=0.0)
+            most /= part.youngs_modulus * part.second_moment_of_area
             strain = part.extreme_fibre_strain(axial, moment).max(initial=0.0)
             strip = replace(strip, strain=float(strain), curvature=float(most))
         found.append(strip)

@@ -46,12 +46,19 @@ MOMENTS = keys_of(
     ("second_moment_m4", "second_moment_of_area", positive("m^4"), "b h^3 / 12 of width_m and thickness_m",
      "1.6667e-12", "second moment I of the section's area, for bending in the plane"),
 )
-(DEPTH,) = keys_of(
+TAPER = keys_of(
     "section",
-    ("section_depth_m", "section_depth", positive("m"), "sqrt(12 I / A), that of the rectangle",
-     "0.001", "depth in the plane of bending of a section that is no rectangle, for stresses"),
+    ("width_end_m", "width_end", positive("m"), "width_m",
+     "0.01", "width at the end of a tapered strip; it changes linearly along the strip"),
+    ("thickness_end_m", "thickness_end", positive("m"), "thickness_m",
+     "0.0005", "thickness at the end of a tapered strip; it changes linearly along the strip"),
 )
-SECTION = (*SIDES, *MOMENTS, DEPTH)
+(FIBRE,) = keys_of(
+    "section",
+    ("outer_fibre_m", "outer_fibre", positive("m"), "thickness_m / 2; without a thickness there is no stress",
+     "0.0005", "distance of the outermost fibre from the neutral axis of a section given by A and I"),
+)
+SECTION = (*SIDES, *TAPER, *MOMENTS, FIBRE)
 
 MATERIAL = NAMED, *_VALUES = keys_of(
     "material",
@@ -125,7 +132,8 @@ STRIP = keys_of(
     ("root_joint", "root_joint", JOINT, '"clamp"', '"hinge"', "whether its beginning turns freely there"),
     ("tip_joint", "tip_joint", JOINT, '"clamp"', '"hinge"', "whether its end turns freely there"),
     ("rise_m", "rise", rules.finite("m"), "0, straight",
-     "0.002", "sagitta of the circular arc that it is at rest, to the left of start to end"),
+     "0.002", "sagitta of the circular arc that it is at rest, to the left of start to end; half of the "
+     "distance of its ends for a half circle, more for a longer arc"),
 )
 BODY = keys_of(
     "bodies",

@@ -8,7 +8,7 @@ from typing import Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError, tables
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION
+from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION, SIDES, TAPER
 from studies.cases.rules import FREE
 from studies.cases.section import (
     Sectioned,
@@ -16,6 +16,7 @@ from studies.cases.section import (
     inherited,
     out_of_scale,
     refuse_both,
+    renamed,
     too_heavy,
     without,
 )
@@ -31,8 +32,10 @@ class Strip(Sectioned):
     """A strip between two points [m], on the ground or on a body at its root, free or on either at its tip.
 
     tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
-    end. width, thickness: of a rectangular section [m], None where only A and I are known. section_depth: of
-    one that is no rectangle [m]. yield_strength: that stresses must stay below [Pa]; None where unknown.
+    end. width, thickness: of a rectangular section [m], None where only A and I are known; width_end,
+    thickness_end: at the end of a tapered one. outer_fibre: distance of the outermost fibre from the neutral
+    axis of one that is no rectangle [m]. yield_strength: that stresses must stay below [Pa]; None where
+    unknown.
     """
 
     name: str
@@ -45,16 +48,20 @@ class Strip(Sectioned):
     second_moment_of_area: float
     width: float | None = None
     thickness: float | None = None
+    width_end: float | None = None
+    thickness_end: float | None = None
     youngs_modulus: float
     poisson_ratio: float
     density: float
     yield_strength: float | None = None
-    section_depth: float | None = None
+    outer_fibre: float | None = None
 
     @property
     def length(self) -> float:
-        """Distance of its ends at rest [m]."""
-        return math.dist(self.start, self.end)
+        """Length of its axis at rest [m]."""
+        chord = math.dist(self.start, self.end)
+        half = 2.0 * math.atan2(2.0 * abs(self.rise), chord)
+        return chord * half / math.sin(half) if self.rise else chord
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +146,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     """
     document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
-        **document.values(path, SECTION, document.table(path, content, "section"), "section"),
+        **document.values(path, SECTION, renamed(path, document.table(path, content, "section")), "section"),
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     refuse_both(path, shared, "section")
@@ -176,13 +183,13 @@ def read_points(path: str, content: Mapping[str, Any], bodies: Sequence[str]) ->
 def _keywords(part: Strip | Body) -> dict[str, Any]:
     """Return what the models take of a part; the sides of a section only where they are given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
-    unsaid = [name for name in ("width", "thickness") if given.get(name) is None]
-    return without(given, ["yield_strength", "section_depth", *unsaid])
+    sides = [key.attribute for key in (*SIDES, *TAPER)]
+    return without(given, ["yield_strength", "outer_fibre", *(n for n in sides if given.get(n) is None)])
 
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
-    own = document.values(path, [*keys.STRIP, *keys.OWN], given, label)
+    own = document.values(path, [*keys.STRIP, *keys.OWN], renamed(path, given), label)
     refuse_both(path, own, label)
     found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]

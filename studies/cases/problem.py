@@ -11,7 +11,7 @@ from studies.cases.document import CaseError, is_mechanism, parsed, refuse_secti
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LISTS, LOADS_FIRST
 from studies.cases.mechanism import Body, Point, Strip, read_points
-from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, renamed, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -21,8 +21,9 @@ FOLDER = Path(__file__).parent
 
 #: Parameters that are passed on only where the case gives them: the sides of a rectangular section.
 SIDES = ("width", "thickness")
+TAPER = ("width_end", "thickness_end")
 #: What only answers ask for, or stands for other values.
-_BESIDE = (*SIDES, "section_depth", "yield_strength", "material")
+_BESIDE = (*SIDES, *TAPER, "outer_fibre", "yield_strength", "material")
 #: Parameters that both models take by keyword, under the same names as the attributes of `Problem`.
 PIVOT_PARAMETERS = tuple(
     key.attribute for key in KEYS if key.section != "drive" and key.attribute not in _BESIDE
@@ -44,6 +45,7 @@ class Problem(Sectioned):
         area: section area A [m^2].
         second_moment_of_area: I [m^4].
         width, thickness: of a rectangular section with that A and I [m]; None where only A and I are known.
+        width_end, thickness_end: of a tapered one, at the body [m]; None of a constant one.
         youngs_modulus: E [Pa].
         poisson_ratio: nu [1].
         density: rho [kg/m^3].
@@ -55,8 +57,8 @@ class Problem(Sectioned):
         rotation: end of the driven path, counter-clockwise positive [rad].
         increments: equal increments of the path [1].
         order: of loads and rotation, "loads first" or "together".
-        section_depth: depth of the section in the plane of bending [m]; None for the rectangle that A and I
-            imply.
+        outer_fibre: distance of the outermost fibre from the neutral axis [m]; None of a rectangle, and where
+            it is not known.
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
             begin and end [s]; None for one that lets go.
@@ -80,9 +82,11 @@ class Problem(Sectioned):
     rotation: float
     increments: int
     order: str = LOADS_FIRST
-    section_depth: float | None = None
+    outer_fibre: float | None = None
     width: float | None = None
     thickness: float | None = None
+    width_end: float | None = None
+    thickness_end: float | None = None
     yield_strength: float | None = None
     orientation: float = 0.0
     effects: Effects = field(default_factory=Effects)
@@ -109,11 +113,11 @@ class Problem(Sectioned):
 
     def _check_section(self) -> None:
         """Raise CaseError if the sides of the section are not those of its area and second moment."""
-        if self.width is None and self.thickness is None:
+        if all(getattr(self, name) is None for name in (*SIDES, *TAPER)):
             return
-        if self.section_depth is not None:
-            got = f"strip.section_depth_m: got {self.section_depth:g} beside thickness_m"
-            raise CaseError(f"{got}, expected none: a rectangle's depth is its thickness")
+        if self.outer_fibre is not None:
+            got = f"strip.outer_fibre_m: got {self.outer_fibre:g} beside thickness_m"
+            raise CaseError(f"{got}, expected none: that of a rectangle is half of its thickness")
         made = {} if None in (self.width, self.thickness) else of_sides(self.width, self.thickness)
         if not made or any(abs(getattr(self, n) / value - 1.0) > ROUNDED for n, value in made.items()):
             got = f"strip.width_m: got {self.width} by {self.thickness}"
@@ -161,7 +165,7 @@ class Problem(Sectioned):
 
     def pivot_parameters(self) -> dict[str, Any]:
         """Return the keyword arguments that `cross_axis_pivot` of either model takes."""
-        sides = SIDES if self.width is not None else ()
+        sides = [name for name in (*SIDES, *TAPER) if getattr(self, name) is not None]
         return {name: getattr(self, name) for name in (*PIVOT_PARAMETERS, *sides)}
 
 
@@ -186,7 +190,7 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
     found: dict[str, Any] = {}
     for section in sections:
         keys = [key for key in KEYS if key.section == section]
-        given = table(path, content, section)
+        given = renamed(path, table(path, content, section))
         if section not in content:
             needed = ", ".join(key.name for key in [key for key in keys if not key.optional] or keys)
             raise CaseError(f"{path}: [{section}]: got no such section, expected one with {needed}")

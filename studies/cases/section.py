@@ -1,60 +1,82 @@
-"""Sections of strips: sides, or area and second moment; depth; and what a case gives of them."""
+"""Sections of strips: sides, or area and second moment; outermost fibre; and what a case gives of them."""
 
+import logging
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from studies.cases import keys
 from studies.cases.document import CaseError
-from studies.cases.keys import DEPTH, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES
+from studies.cases.keys import FIBRE, MATERIAL, MATERIALS, MOMENTS, NAMED, SECTION, SIDES, TAPER
 
 if TYPE_CHECKING:  # a template of a case waits for no arrays
     from studies.kinds import Array
 
 Values = Mapping[str, Any]
 
+#: Older name of the key of the outermost fibre: twice its distance.
+OLD_DEPTH = "section_depth_m"
 
 #: Numbers of a strip that double precision bears: stiffness [N] or mass per length [kg/m], slenderness [1].
 SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
 
 
 class Sectioned:
-    """What has a section: modulus, area, second moment and, where it is no rectangle, its depth [m]."""
+    """What has a section: modulus, area, second moment, all at its start, and what is known of its form [m]:
+    both sides and those at its end, or the distance of its outermost fibre; None of what is not."""
 
     youngs_modulus: float
     area: float
     second_moment_of_area: float
-    section_depth: float | None
+    outer_fibre: float | None
     width: float | None
+    thickness: float | None
+    width_end: float | None
+    thickness_end: float | None
 
     @property
     def depth(self) -> float:
-        """Depth of the section [m]: as given, or that of the rectangle with its A and I."""
-        depth: float = self.rectangle()["thickness"] if self.section_depth is None else self.section_depth
-        return depth
+        """Depth of the section [m]: twice the distance of its outermost fibre, where this is not known that
+        of the rectangle with its A and I."""
+        fibre = self.fibre
+        return self.rectangle()["thickness"] if math.isnan(fibre) else 2.0 * fibre
 
     @property
-    def depth_is_assumed(self) -> bool:
-        """Whether the depth is that of a rectangle which no one named: only A and I are known."""
-        return self.width is None and self.section_depth is None
+    def fibre(self) -> float:
+        """Distance of the outermost fibre from the neutral axis [m]; NaN where it is not known."""
+        if self.outer_fibre is not None:
+            return self.outer_fibre
+        return math.nan if self.thickness is None else self.thickness / 2.0
+
+    def growth(self, places: Any) -> tuple[Any, Any]:
+        """Return width and thickness at places, parts of the length, over those at the start."""
+        sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
+        b, t = (1.0 + places * (end / start - 1.0 if start and end else 0.0) for start, end in sides)
+        return b, t
 
     def rectangle(self) -> dict[str, Any]:
         """Return width and thickness [m] of the rectangle with its A and I."""
         return rectangle_of(self.area, self.second_moment_of_area)
 
     def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
-        """Return max |N/(EA) +- M d/(2 EI)|, the larger magnitude of the two extreme fibres (d: the depth).
+        """Return max |N/(EA) +- M c/(EI)|, the larger magnitude of the two extreme fibres (c: `fibre`).
 
         Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the
-        clamps' notches.
+        clamps' notches. NaN where the outermost fibre is not known.
 
         Args:
-            axial_force: N, any shape [N].
+            axial_force: N (..., P) [N] at P stations, evenly spaced from start to end.
             bending_moment: M, the same shape [N m].
         """
         modulus, inertia = self.youngs_modulus, self.second_moment_of_area
         axial = axial_force / (modulus * self.area)
-        bending = bending_moment * self.depth / (2.0 * modulus * inertia)
+        bending = bending_moment * self.fibre / (modulus * inertia)
+        if self.width_end or self.thickness_end:
+            from numpy import linspace
+
+            b, t = self.growth(linspace(0.0, 1.0, axial_force.shape[-1]))
+            axial, bending = axial / (b * t), bending / (b * t * t)
         return abs(axial) + abs(bending)
 
 
@@ -77,7 +99,7 @@ def completed(
     if named is not None:
         own = MATERIALS[named]
         values = {key.attribute: own[key.attribute] for key in MATERIAL if key.attribute in own} | values
-    pair = SIDES if any(key.attribute in values for key in SIDES) else MOMENTS
+    pair = SIDES if any(key.attribute in values for key in (*SIDES, *TAPER)) else MOMENTS
     if not any(key.attribute in values for key in SECTION):
         expected = "width_m and thickness_m, or area_m2 and second_moment_m4"
         missing = " there nor in [section]" if shared else ""
@@ -99,15 +121,19 @@ def _root(area: float, inertia: float) -> float:
 
 
 def out_of_scale(strip: Any) -> str:
-    """Return in words the first number made of a strip that no solve can bear, or nothing."""
-    area, inertia, modulus = strip.area, strip.second_moment_of_area, strip.youngs_modulus
-    made = {
-        "stiffness EA [N]": (modulus * area, SCALES),
-        "slenderness L sqrt(A/I) [1]": (strip.length * _root(area, inertia), SLENDERNESS),
-        "stiffness EI/L^2 [N]": (modulus * inertia / strip.length / strip.length, SCALES),
-        "mass per length [kg/m]": (strip.density * area, SCALES),
-    }
-    return _beyond(made)
+    """Return in words the first number made of a strip, at its ends, that no solve can bear, or nothing."""
+    modulus, length = strip.youngs_modulus, strip.length
+    for b, t in (strip.growth(0.0), strip.growth(1.0)):
+        area, inertia = strip.area * b * t, strip.second_moment_of_area * b * t * t * t
+        made = {
+            "stiffness EA [N]": (modulus * area, SCALES),
+            "slenderness L sqrt(A/I) [1]": (length * _root(area, inertia), SLENDERNESS),
+            "stiffness EI/L^2 [N]": (modulus * inertia / length / length, SCALES),
+            "mass per length [kg/m]": (strip.density * area, SCALES),
+        }
+        if said := _beyond(made):
+            return said
+    return ""
 
 
 def too_heavy(mass: float, inertia: float) -> str:
@@ -138,6 +164,8 @@ def of_moments(area: float, second_moment_of_area: float) -> dict[str, Any]:
         "second_moment_of_area": second_moment_of_area,
         "width": None,
         "thickness": None,
+        "width_end": None,
+        "thickness_end": None,
     }
 
 
@@ -149,11 +177,33 @@ def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:
 
 def refuse_both(where: str, found: Values, label: str) -> None:
     """Raise CaseError if both pairs, or parts of them, are given for one section."""
-    one = [key.name for key in SIDES if key.attribute in found]
-    other = [key.name for key in (*MOMENTS, DEPTH) if key.attribute in found]
+    one = [key.name for key in (*SIDES, *TAPER) if key.attribute in found]
+    other = [key.name for key in (*MOMENTS, FIBRE) if key.attribute in found]
     if one and other:
-        expected = "width_m and thickness_m, or area_m2 and second_moment_m4 (with section_depth_m), not both"
+        expected = f"width_m and thickness_m, or area_m2 and second_moment_m4 (with {FIBRE.name}), not both"
         raise CaseError(f"{where}: {label}.{one[0]}: got it beside {other[0]}, expected {expected}")
+
+
+def refuse_tapers(where: str, strips: Iterable[Any], what: str) -> None:
+    """Raise CaseError if a strip is tapered, which `what` does not know."""
+    for strip in strips:
+        if strip.width_end or strip.thickness_end:
+            raise CaseError(f"{where}: {strip.name}: got a taper, expected a constant section for {what}")
+
+
+def renamed(where: str, content: Values) -> Values:
+    """Return a table with the key of the outermost fibre in place of its older name; a warning says so."""
+    depth = content.get(OLD_DEPTH)
+    if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
+        return content
+    _warn_of_name(where)
+    return {FIBRE.name: depth / 2.0} | without(content, [OLD_DEPTH])
+
+
+@cache
+def _warn_of_name(where: str) -> None:
+    use = f"{OLD_DEPTH} will be removed in the next version (use: {FIBRE.name} = half of its value)"
+    logging.getLogger("studies").warning("warning: %s: %s", where, use)
 
 
 def inherited(shared: Values, own: Values) -> dict[str, Any]:
@@ -163,9 +213,9 @@ def inherited(shared: Values, own: Values) -> dict[str, Any]:
     material that of all values of theirs.
     """
     left = dict(shared)
-    for pair, other in ((SIDES, MOMENTS), (MOMENTS, SIDES)):
+    for pair, other in (((*SIDES, *TAPER), MOMENTS), (MOMENTS, (*SIDES, *TAPER))):
         if any(key.attribute in own for key in pair):
-            left = without(left, [key.attribute for key in (*other, DEPTH)])
+            left = without(left, [key.attribute for key in (*other, FIBRE)])
     if NAMED.attribute in own:
         left = without(left, [key.attribute for key in keys.ELASTIC] + ["yield_strength"])
     return left | dict(own)

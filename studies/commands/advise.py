@@ -24,6 +24,7 @@ import pandas as pd
 
 from studies.answers.reference import NoReference
 from studies.cases.design import Design
+from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
@@ -45,6 +46,8 @@ DYNAMIC = (advise_swing, ("rotation", "frequency"), ("rotation", "frequency"))
 def main(arguments: argparse.Namespace) -> int:
     """Try, report; return the exit code."""
     problem = take.turned_design(arguments, "rotation to relate errors to")
+    if problem.crossing_point is not None:  # of pivots codes and surrogates that know no taper are tried
+        refuse_tapers(arguments.case, problem.strips, "the models that are tried")
     advise, judged, told = STATIC if not arguments.dynamic else DYNAMIC
     try:
         with Bar("advise") as bar:

@@ -176,7 +176,7 @@ def not_estimated(answer: Any) -> list[str]:
         "stiffness": bool(np.isfinite(answer.stiffness).any()),
         "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
         "energy": True,
-        "stress": True,
+        "stress": bool(np.isfinite(answer.max_stress).any()),
     }
     return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
 
@@ -191,6 +191,8 @@ def ending(answer: Answer) -> str:
 def strength_told(answer: Response) -> Iterator[str]:
     """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
     found = strength(answer)
+    if math.isnan(found.stress):
+        return
     if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
         yield "no stress: nothing is turned, and no load acts"
         return
@@ -219,6 +221,8 @@ def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
 def strength_document(answer: Response) -> dict[str, Any]:
     """Return the largest stress and what of it the material bears, as JSON has it."""
     found = strength(answer)
+    if math.isnan(found.stress):
+        return {}
     error = found.yields and {"relative_error": found.yields.error}
     return {
         "max_stress_Pa": found.stress,

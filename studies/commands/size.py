@@ -39,6 +39,7 @@ from studies.cases.design import as_toml
 from studies.cases.document import is_mechanism, parsed
 from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
+from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.parser import Argument, command, positive, reads, whole_number
@@ -148,9 +149,10 @@ def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
     """Return what is asked of a pivot, within bounds; BadInput where it cannot be sized."""
     start = take.turned_design(arguments, "range to size for")
     assert isinstance(start, Problem)
+    refuse_tapers(arguments.case, start.strips, "sizing")
     got, expected = "", ""
-    if start.section_depth is not None:
-        got = f"strip.section_depth_m: got {start.section_depth:g}"
+    if start.outer_fibre is not None:
+        got = f"strip.outer_fibre_m: got {start.outer_fibre:g}"
         expected = "none: both sides of a rectangular section are sized"
     elif "driven_displacement" in start.effects.names:
         got, expected = "scene.effects: got driven_displacement", "a body that is free to shift"

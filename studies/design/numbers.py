@@ -11,6 +11,7 @@ import numpy as np
 from spline_model.parameters import CENTRES, MATERIAL, POINTS
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
+from studies.cases.section import refuse_tapers
 from studies.design.evaluate import STRESS, VARIATION
 from studies.design.question import Question, Variable
 from studies.errors import BadInput
@@ -53,6 +54,7 @@ class MechanismQuestion(Question):
         numbers = enumerate(texts, start=1)
         variables = tuple(_variable(where, document, text, str(place)) for place, text in numbers)
         start = read_mechanism(where, document)
+        refuse_tapers(where, start.strips, "sizing")
         objectives = OBJECTIVES[:1] if start.rotation is None else OBJECTIVES
         given = {"start": start, "variables": variables, "objectives": objectives, **asked}
         return cls(where=where, content=document, **given)

@@ -187,7 +187,7 @@ def _sided(design: Either) -> Either:
     """Return a design whose strips have the sides of the rectangles with their A and I."""
     if isinstance(design, Problem):
         known = design.width is not None
-        return design if known else replace(design, section_depth=None, **design.rectangle())
+        return design if known else replace(design, outer_fibre=None, **design.rectangle())
     strips = [each if each.width is not None else replace(each, **each.rectangle()) for each in design.strips]
     return replace(design, strips=tuple(strips))
 

@@ -16,7 +16,7 @@ from studies.cases.document import parsed
 from studies.cases.effects import DEFAULT
 from studies.cases.keys import GROUND, MATERIALS
 from studies.cases.problem import FOLDER, Problem
-from studies.cases.section import of_sides
+from studies.cases.section import of_sides, refuse_tapers
 from studies.errors import BadInput
 
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
@@ -160,6 +160,7 @@ class Piece:
 def _read(document: Mapping[str, Any]) -> Design:
     """Return the design of a case file; BadInput unless it is one body on strips from the ground."""
     design = design_of("design.toml", document)
+    refuse_tapers("design.toml", design.strips, "the interactive environment")
     if len(design.bodies) != 1:
         raise BadInput(f"bodies: got {len(design.bodies)}, expected one body on strips from the ground")
     if odd := [strip.name for strip in design.strips if strip.root != GROUND or strip.tip != design.body]:
@@ -169,7 +170,7 @@ def _read(document: Mapping[str, Any]) -> Design:
 
 def _of_strips(design: Design) -> dict[str, float | None]:
     """Return the parameters of which all strips have one value."""
-    every = [asdict(strip) | ({} if strip.section_depth else strip.rectangle()) for strip in design.strips]
+    every = [asdict(strip) | ({} if strip.outer_fibre else strip.rectangle()) for strip in design.strips]
     found = {n: every[0][n] for n in PARAMETERS if n in every[0] and len({each[n] for each in every}) == 1}
     section = found.get("width") and found.get("thickness")
     return found if section else {n: v for n, v in found.items() if n not in ("width", "thickness")}

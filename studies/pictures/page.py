@@ -83,7 +83,7 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     yield from chart(x, SHIFT, over, lambda each: each.shift)
     yields = [each.limit for each in shown if each.limit is not None]
     level = (min(yields), "yield" if len(set(yields)) == 1 else "lowest yield") if yields else None
-    yield from chart(x, STRESS, over, lambda each: each.max_stress, level=level)
+    yield from chart(x, STRESS, over, _stress, level=level)
     if path:
         yield from _energies(chart, answers, x, over)
 
@@ -111,6 +111,11 @@ def _chart(
             curves.append((look, along, values))
     if curves:
         yield Chart(x=x, y=y, curves=tuple(curves), **more)
+
+
+def _stress(answer: Answer) -> Array | None:
+    """Return the largest stress (S,) [Pa]; None where an outermost fibre is not known."""
+    return None if np.isnan(answer.max_stress).any() else answer.max_stress
 
 
 def _of_path(quantity: Quantity, turned: bool, answer: Answer) -> Array | None:
@@ -257,7 +262,7 @@ def plot(
             `natural_frequencies` of `spline_model` or `fe_reference` returned, or an answer of
             `studies.answers.adapters`.
         design: the pivot or mechanism of the model that was solved; None of an answer, which knows its own.
-            Sections of a model's own are taken as rectangles of their area and second moment.
+            Sections of a model's own have stress where they have width and thickness.
         name: heading; the model's name where none is given.
         yield_strength: drawn across the stress [Pa]; None for that of the case, if it has one.
 

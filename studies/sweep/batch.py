@@ -91,11 +91,13 @@ def takes(task: Task) -> bool:
 
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
-    own, design = {*_KEYS, *_PARTS, plan.SLENDERNESS}, design_of("case", task.case)
+    own, design = {*_KEYS, *_PARTS, plan.SLENDERNESS} - plan.TAPER, design_of("case", task.case)
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
     if not asked <= set(_Known().quantities()):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
+        return False
+    if any(f"strip.{name}" in plan.TAPER for name in task.case["strip"]):
         return False
     effects = set(design.effects.names)
     return (
@@ -135,7 +137,7 @@ def _attributes(task: Task, columns: Mapping[str, list[Any]], count: int) -> Col
     design = task.design({key: columns[key][0] for key in shaping if key in columns})
     assert isinstance(design, Problem)
     sides = () if design.width is None else SIDES
-    names = (*PIVOT_PARAMETERS, *sides, "rotation", "section_depth", "yield_strength")
+    names = (*PIVOT_PARAMETERS, *sides, "rotation", "outer_fibre", "yield_strength")
     given = {name: np.array([getattr(design, name)] * count, dtype=float) for name in names}  # None: nan
     for name, column in columns.items():
         pair, _, part = name.rpartition(".")
@@ -149,8 +151,9 @@ def _attributes(task: Task, columns: Mapping[str, list[Any]], count: int) -> Col
     if sides:
         given |= of_sides(given.pop("width"), given.pop("thickness"))
     rectangle = np.sqrt(12.0 * given["second_moment_of_area"] / given["area"])
-    depth, strength = given.pop("section_depth"), given["yield_strength"]
-    given["depth"] = np.where(np.isnan(depth), rectangle, depth)
+    fibre, strength = given.pop("outer_fibre"), given["yield_strength"]
+    given["depth"] = np.where(np.isnan(fibre), rectangle, 2.0 * fibre)
+    given["known"] = np.where(np.isnan(fibre) & (not sides), np.nan, 1.0)  # whether there is a stress
     given["yield_strength"] = np.where(np.isnan(strength), np.inf, strength)
     return given
 
@@ -176,7 +179,8 @@ def _paths(
     except model_of(settings).InvalidParameter:
         return np.zeros(len(given["rotation"]), dtype=bool), {}
     turning = (batch.stiffness[:, 1:] * batch.stiffness[:, :-1] < 0.0).any(axis=1)
-    stress = batch.strain * given["youngs_modulus"][:, None]
+    strain = batch.strain * given["known"][:, None]
+    stress = strain * given["youngs_modulus"][:, None]
     shift = centre_shift(_crossing(given), batch.rotation, batch.centre)
     shift_errs = shift_error(batch.errors["trajectory"], batch.centre, shift)
     error = np.fmax.reduce((*batch.errors.values(), shift_errs))
@@ -192,7 +196,7 @@ def _paths(
             "shift": shift,
             "defect": batch.moment_defect,
             "inertia": batch.inertia.astype(float),
-            "strain": batch.strain[..., None],
+            "strain": strain[..., None],
             **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
         },
         strips=(strip,),

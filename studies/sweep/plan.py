@@ -116,7 +116,8 @@ SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
 #: Keys of a section without known sides, and what a slenderness takes the place of.
-MOMENTS = ("strip.area_m2", "strip.second_moment_m4", "strip.section_depth_m")
+MOMENTS = ("strip.area_m2", "strip.second_moment_m4", "strip.outer_fibre_m")
+TAPER = {f"strip.{key.name}" for key in keys.TAPER}
 SECTION = (*MOMENTS, "strip.thickness_m")
 #: Parts of a key that holds two numbers.
 PARTS = {"x": 0, "y": 1}

@@ -130,7 +130,7 @@ def _refuse_overlaps(where: str, varied: list[str], case: Mapping[str, Any]) -> 
             raise CaseError(f"{where}: vary.{key}: got it beside {whole}, expected one of them")
     if plan.SLENDERNESS in varied:
         both = [key for key in plan.SECTION if key in varied]
-        given = "section_depth_m" in case.get("strip", {})
+        given = "outer_fibre_m" in case.get("strip", {})
         if both or given:
             other = both[0] if both else plan.SECTION[-1]
             raise CaseError(f"{where}: vary.{plan.SLENDERNESS}: got it beside {other}, which it sets itself")

@@ -160,7 +160,7 @@ def test_a_mechanism_is_sized_by_numbers_of_its_file(tmp_path, capsys):
 
 
 SIDES = "width_m = 0.01000320153681966\nthickness_m = 0.0049983997439180475"
-MOMENTS = "area_m2 = 5e-5\nsecond_moment_m4 = 1.041e-10\nsection_depth_m = 0.005"
+MOMENTS = "area_m2 = 5e-5\nsecond_moment_m4 = 1.041e-10\nouter_fibre_m = 0.0025"
 LED = """effects = ["+driven_displacement"]
 [effects.driven_displacement]
 displacement_m = [0, 0]
@@ -170,7 +170,7 @@ displacement_m = [0, 0]
 @pytest.mark.parametrize(
     ("begin", "instead", "message"),
     [
-        (SIDES, MOMENTS, "strip.section_depth_m: got 0.005, expected none"),
+        (SIDES, MOMENTS, "strip.outer_fibre_m: got 0.0025, expected none"),
         ("[strip]", f"[scene]\n{LED}", "got driven_displacement, expected a body that is free to shift"),
         (
             "[drive]",

@@ -85,7 +85,7 @@ def test_extreme_fibre_strain_is_the_larger_of_the_two_fibres():
     )
     assert TABLE_1.depth == pytest.approx(5e-3, rel=1e-3)
     rod = of_moments(TABLE_1.area, TABLE_1.second_moment_of_area)
-    assert dataclasses.replace(TABLE_1, section_depth=0.004, **rod).depth == 0.004
+    assert dataclasses.replace(TABLE_1, outer_fibre=0.002, **rod).depth == 0.004
 
 
 def test_largest_stress_is_that_of_all_strips_and_sections():

@@ -1,8 +1,9 @@
-"""Sections of case files: their depth, and what is assumed of it."""
+"""Sections of case files: their outermost fibre, tapers, and what is refused of them."""
 
 import json
 import math
 
+import numpy as np
 import pytest
 
 from tests.one_strip import SECOND_MOMENT, one_strip
@@ -16,7 +17,7 @@ effects = ["bending", "stretching", "tip_force"]
 strip = "strip"
 force_N = [0, {-LOAD}]
 """
-DEPTH = f"section_depth_m = {DIAMETER}"
+FIBRE = f"outer_fibre_m = {DIAMETER / 2.0}"
 
 
 def rod(shared="", own=""):
@@ -27,23 +28,76 @@ def rod(shared="", own=""):
 
 
 @pytest.mark.parametrize(
-    "given", [{"shared": DEPTH}, {"own": f"{DEPTH}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}"}]
+    "given", [{"shared": FIBRE}, {"own": f"{FIBRE}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}"}]
 )
 def test_stress_of_a_round_rod(given, tmp_path, command):
-    """A section names its depth in [section] or of its own: the stress is that of the rod."""
+    """A section names its outermost fibre in [section] or of its own: the stress is that of the rod."""
     (tmp_path / "rod.toml").write_text(rod(**given))
     found = json.loads(command("solve", tmp_path / "rod.toml", "--json", "-").out)
     right = 32.0 * LOAD * LENGTH / (math.pi * DIAMETER**3)
     assert found["strength"]["max_stress_Pa"] == pytest.approx(right, rel=1e-3)
-    assert not any("stress: takes" in each for each in found["validity"]["outside"])
+    assert not any("outer_fibre_m" in each for each in found["validity"]["outside"])
 
 
-def test_a_rectangle_that_no_one_named_is_said(tmp_path, command):
-    """Without a depth the stress is that of a rectangle, and the answer says so and asks for the depth."""
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_no_stress_without_an_outermost_fibre(model, tmp_path, command):
+    """Of a section by area and second moment alone no stress is printed, and the answer names the key."""
     (tmp_path / "rod.toml").write_text(rod())
-    said = command("solve", tmp_path / "rod.toml").out
-    assert "stress: takes strip as 6.928 mm deep, rectangles of the area and second moment" in said
-    assert "section_depth_m" in said
+    asked = ("solve", tmp_path / "rod.toml", "--model", model)
+    said = command(*asked).out
+    assert "MPa" not in said and "stress: none without the distance of the outermost fibre of strip" in said
+    found = json.loads(command(*asked, "--json", "-").out)
+    assert found["strength"] == {} and set(found["max_stress_Pa"]) == {None}
+
+
+def test_the_older_name_of_the_outermost_fibre(tmp_path, command, caplog):
+    """The depth of a section is read as twice the distance of its outermost fibre, with a warning."""
+    found = []
+    for name, given in (("old", f"section_depth_m = {DIAMETER}"), ("new", FIBRE)):
+        (tmp_path / f"{name}.toml").write_text(rod(given))
+        found.append(json.loads(command("solve", tmp_path / f"{name}.toml", "--json", "-").out)["strength"])
+    assert found[0] == found[1]
+    assert "old.toml: section_depth_m will be removed in the next version (use: outer_fibre_m" in caplog.text
+
+
+TAPERED = "width_m = 0.01\nthickness_m = 1e-3\nwidth_end_m = 0.008\nthickness_end_m = 0.5e-3"
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_stress_of_a_tapered_strip(model, tmp_path, command):
+    """The largest stress is that of the section at hand, M/W inside a strip that gets thin fast enough."""
+    text = rod().replace(f"area_m2 = {AREA}", TAPERED).replace(f"second_moment_m4 = {MOMENT}", "")
+    (tmp_path / "taper.toml").write_text(text.replace(f"{-LOAD}", "-1e-3"))
+    asked = ("solve", tmp_path / "taper.toml", "--model", model, "--accuracy", 1e-5, "--json", "-")
+    x = np.linspace(0.0, 1.0, 100_001)
+    right = 1e-3 * LENGTH * (1.0 - x) / (0.01 * (1.0 - 0.2 * x) * (1e-3 * (1.0 - 0.5 * x)) ** 2 / 6.0)
+    found = json.loads(command(*asked).out)["strength"]
+    assert found["max_stress_Pa"] == pytest.approx(right.max(), rel=1e-4)
+    assert found["station"] == pytest.approx(x[right.argmax()], abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("thickness_end_m = 1e-3", "section.thickness_end_m: got it beside area_m2, expected width_m and"),
+        (f"{FIBRE}\nsection_depth_m = 1", "section.section_depth_m: got an unknown key"),
+        ("section_depth_m = -1", "section.outer_fibre_m: got -0.5, expected a positive number [m]"),
+        ("outer_fibre_m = 0", "section.outer_fibre_m: got 0, expected a positive number [m]"),
+    ],
+)
+def test_sections_that_are_refused(given, said, tmp_path, command):
+    """What makes no section is refused in one line."""
+    (tmp_path / "rod.toml").write_text(rod(given))
+    outcome = command("solve", tmp_path / "rod.toml")
+    assert outcome.code == 2 and said in outcome.err
+
+
+@pytest.mark.parametrize("asked", [("size", "--objective", "centre-shift"), ("advise",)])
+def test_commands_without_tapers_refuse_them(asked, case, command):
+    """Sizing, and the models that `advise` tries on a pivot, refuse a tapered strip in one line."""
+    outcome = command(asked[0], case(("thickness_m =", "thickness_end_m = 0.002\nthickness_m =")), *asked[1:])
+    assert outcome.code == 2
+    assert "strip_1: got a taper, expected a constant section for" in outcome.err
 
 
 def test_a_byte_order_mark_is_no_fault(tmp_path, command):

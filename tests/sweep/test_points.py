@@ -45,7 +45,7 @@ quantities = ["torque_Nm", "stiffness_end_Nm_per_rad", "stress_max_Pa", "energy_
         # the shift is a difference of places that are up to a thousand times as large
         (RANDOM.replace("points = 200", "points = 12") + "[settings]\ncontrol_points = 6", 1e-10),
         (GRID + "drive.rotation_deg = [-40, 20]", 1e-11),
-        (GRID + "drive.increments = [3, 5]\nstrip.section_depth_m = [0.002, 0.005]", 1e-11),
+        (GRID + "drive.increments = [3, 5]\nstrip.outer_fibre_m = [0.001, 0.0025]", 1e-11),
         (GRID + "strip.slenderness = [15, 40]\nstrip.length_m = [0.05, 0.1]", 1e-11),
         (GRID + "material.youngs_modulus_Pa = [1e9, 2e11]\nstrip.area_m2 = [2e-5, 5e-5]", 1e-11),
         (GRID + "material.yield_strength_Pa = [1e8, 1e12]", 1e-11),
