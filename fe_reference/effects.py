@@ -3,7 +3,7 @@
 A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Annotated, Any, Self, TypeVar
 
@@ -39,6 +39,11 @@ class _Effect(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
+class _Several(_Effect):
+    """An effect of which a model definition may have any number, each with its own parameters."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Gravity(_Effect):
     """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
 
@@ -68,29 +73,34 @@ class BodyDamping(_Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedForce(_Effect):
-    """Dead force (f_x, f_y) [N] at the centre of a body, times load factor or history."""
+class BodyLoad(_Several):
+    """A load on a body, times load factor or history."""
+
+    body: str | None = None
+    history: Annotated[History, read_history] = ALWAYS_FULL
+
+
+@dataclass(frozen=True, kw_only=True)
+class AppliedForce(BodyLoad):
+    """Dead force (f_x, f_y) [N] at the centre of a body."""
 
     force: Annotated[Pair, pair, "N"]
-    body: str | None = None
-    history: Annotated[History, read_history] = ALWAYS_FULL
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedMoment(_Effect):
-    """Moment [N m] on a body, times load factor or history."""
+class AppliedMoment(BodyLoad):
+    """Moment [N m] on a body."""
 
     moment: Annotated[float, finite, "N m"]
-    body: str | None = None
-    history: Annotated[History, read_history] = ALWAYS_FULL
 
 
 @dataclass(frozen=True, kw_only=True)
-class TipForce(_Effect):
-    """Dead force (f_x, f_y) [N] at the free end of a strip, times load factor or history."""
+class TipForce(_Several):
+    """Dead force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history."""
 
     strip: str
     force: Annotated[Pair, pair, "N"]
+    moment: Annotated[float, finite, "N m"] = 0.0
     history: Annotated[History, read_history] = ALWAYS_FULL
 
 
@@ -160,23 +170,27 @@ KNOWN: Mapping[str, type[_Effect]] = {
     "shear": _Effect,  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-T = TypeVar("T", bound=_Effect)
+T = TypeVar("T")
+#: Parameters of an effect, or of each one of several.
+Given = Mapping[str, Any] | Sequence[Mapping[str, Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Effects:
-    """The named effects of one scene, in the order they were named."""
+    """The named effects of one scene, in the order they were named: one of each name, or several."""
 
-    named: Mapping[str, _Effect] = field(default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, _Effect()))
+    named: Mapping[str, tuple[_Effect, ...]] = field(
+        default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, (_Effect(),))
+    )
 
     @classmethod
-    def read(cls, effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> "Effects":
+    def read(cls, effects: Iterable[str], parameters: Mapping[str, Given]) -> "Effects":
         """Return the effects of these names with their parameters.
 
         Raises:
             InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out,
                 rotary inertia of strips without inertia, parameters that are missing, unknown or of no named
-                effect.
+                effect, several sets of them for an effect that acts once.
         """
         names = tuple(effects)
         for name in names:
@@ -192,7 +206,7 @@ class Effects:
         if stray := [name for name in parameters if name not in names]:
             expected = f"one of the named effects {', '.join(names)} [name]"
             raise InvalidParameter("parameters", stray[0], expected)
-        return cls(named={name: _made(name, parameters.get(name, {})) for name in names})
+        return cls(named={name: tuple(_each(name, parameters.get(name, {}))) for name in names})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -207,13 +221,17 @@ class Effects:
         if not {"strip_inertia", "body_inertia"} & set(self.names):
             raise InvalidParameter("effects", self.names, "strip_inertia or body_inertia for a motion [name]")
 
+    def every(self, kind: type[T]) -> list[T]:
+        """Return all effects of this class."""
+        return [each for same in self.named.values() for each in same if isinstance(each, kind)]
+
     def find(self, kind: type[T]) -> T | None:
         """Return the effect of this class, or None if it is not named."""
-        return next((each for each in self.named.values() if isinstance(each, kind)), None)
+        return next(iter(self.every(kind)), None)
 
-    def changed(self, name: str, effect: _Effect) -> "Effects":
-        """Return the effects with another one of this name."""
-        return Effects(named={**self.named, name: effect})
+    def changed(self, name: str, *effects: _Effect) -> "Effects":
+        """Return the effects with others of this name."""
+        return Effects(named={**self.named, name: effects})
 
 
 def _known(name: str) -> None:
@@ -223,6 +241,19 @@ def _known(name: str) -> None:
             "effects", name, f"{there}: these elements stretch, and a penalty would only hide that"
         )
     choice("effects", name, tuple(KNOWN))
+
+
+def _each(name: str, given: Given) -> Iterable[_Effect]:
+    """Yield the effects `name`, one for each set of parameters."""
+    if isinstance(given, Mapping):
+        yield _made(name, given)
+        return
+    if not issubclass(KNOWN[name], _Several):
+        raise InvalidParameter(name, given, "the parameters of one effect, which acts once [name]")
+    if not given or not all(isinstance(each, Mapping) for each in given):
+        raise InvalidParameter(name, given, "parameters, or a sequence of them, one for each [name]")
+    for each in given:
+        yield _made(name, each)
 
 
 def _made(name: str, parameters: Mapping[str, Any]) -> _Effect:

@@ -17,7 +17,7 @@ from typing import Annotated
 import numpy as np
 
 from .arrays import Array, Flags, rotation_matrix
-from .effects import ALWAYS_FULL, AppliedForce, AppliedMoment, DrivenDisplacement, TipForce, factor_of
+from .effects import ALWAYS_FULL, BodyLoad, DrivenDisplacement, TipForce, factor_of
 from .errors import Checked, History, InvalidParameter, finite, read_history
 from .mass import RigidBodies
 from .model import Model
@@ -42,16 +42,15 @@ class Pull:
 def applied(structure: Structure) -> list[Pull]:
     """Return the named loads of a scene: at free ends, and at the centres of bodies."""
     pulls, model = [], structure.model
-    for effect in model.effects.named.values():
-        if isinstance(effect, TipForce):
-            node, row = (model.strip_index(effect.strip) + 1) * structure.stations - 1, np.zeros(5)
-            row[:2] = effect.force
-            pulls.append(Pull(target=-1 - node, row=row, history=effect.history))
-        elif isinstance(effect, AppliedForce | AppliedMoment):
-            k = model.body_index(effect.body)
-            pull = (*effect.force, 0.0) if isinstance(effect, AppliedForce) else (0.0, 0.0, effect.moment)
-            row = np.array([*pull, *(model.bodies[k].centre - structure.points[k])])
-            pulls.append(Pull(target=k, row=row, history=effect.history))
+    for tip in model.effects.every(TipForce):
+        node = (model.strip_index(tip.strip) + 1) * structure.stations - 1
+        row = np.array([*tip.force, tip.moment, 0.0, 0.0])
+        pulls.append(Pull(target=-1 - node, row=row, history=tip.history))
+    for load in model.effects.every(BodyLoad):
+        k = model.body_index(load.body)
+        force, moment = getattr(load, "force", (0.0, 0.0)), getattr(load, "moment", 0.0)
+        row = np.array([*force, moment, *(model.bodies[k].centre - structure.points[k])])
+        pulls.append(Pull(target=k, row=row, history=load.history))
     return pulls
 
 

@@ -16,8 +16,7 @@ from .arrays import Array, Indices
 from .effects import (
     CURL,
     SIDES,
-    AppliedForce,
-    AppliedMoment,
+    BodyLoad,
     DrivenDisplacement,
     Effects,
     PreStrain,
@@ -203,12 +202,11 @@ class Model:
 
     def _check_places(self) -> None:
         """Refuse loads and drives on what is not there."""
-        for load in (self.effects.find(AppliedForce), self.effects.find(AppliedMoment)):
-            if load is not None:
-                self.body_index(load.body)
-        tip = self.effects.find(TipForce)
-        if tip is not None and self.ends[self.strip_index(tip.strip), 1] != FREE:
-            raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
+        for load in self.effects.every(BodyLoad):
+            self.body_index(load.body)
+        for tip in self.effects.every(TipForce):
+            if self.ends[self.strip_index(tip.strip), 1] != FREE:
+                raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
         led = self.effects.find(DrivenDisplacement)
         if led is not None and not self.bodies:
             raise InvalidParameter("driven_displacement", "no bodies", "a body to lead [name]")
