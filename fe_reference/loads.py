@@ -17,10 +17,11 @@ from typing import Annotated
 import numpy as np
 
 from .arrays import Array, Flags, rotation_matrix
-from .effects import ALWAYS_FULL, BodyLoad, DrivenDisplacement, TipForce, factor_of
 from .errors import Checked, History, InvalidParameter, finite, read_history
+from .loading import ALWAYS_FULL, BodyLoad, TipForce, factor_of
 from .mass import RigidBodies
 from .model import Model
+from .places import prescribed, twice
 from .structure import Structure
 
 
@@ -166,13 +167,15 @@ class Span:
 
 def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
     """Return the spans of a motion, in order: one where nothing is led."""
-    drives: list[tuple[int, Sequence[float | None], History, tuple[float, float]]] = []
+    drives: list[tuple[int, float, History, tuple[float, float]]] = []
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2
-        drives.append((turn, (drive.angle,), drive.history, drive.held))
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None and led.history is not None:
-        drives.append((3 * model.body_index(led.body), led.displacement, led.history, ALWAYS))
+        drives.append((turn, drive.angle, drive.history, drive.held))
+    for at, (end, history) in prescribed(model, None).items():
+        if history is not None:
+            if drives and at == drives[0][0]:
+                raise twice(model, at)
+            drives.append((at, end, history, ALWAYS))
     times = {duration}
     for _, _, history, held in drives:
         times |= {*held, *(time for time, _ in history)}
@@ -183,11 +186,9 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     spans: list[Span] = []
     for begin, end in pairwise([*instants[:-1], duration]):
         rates = {
-            at + k: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * part
+            at: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * target
             for at, target, history, held in drives
             if held[0] < 0.5 * (begin + end) < held[1]
-            for k, part in enumerate(target)
-            if part is not None
         }
         before = spans[-1].rates if spans else {}
         spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))
