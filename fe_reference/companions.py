@@ -18,8 +18,9 @@ import numpy as np
 from .arrays import Array
 from .errors import ConvergenceError, InvalidParameter
 from .mass import about_mass_centre
-from .model import FREE, Model
+from .model import Model
 from .motion import Trajectory
+from .places import FREE
 from .refined import finer
 from .schemes import critical_step
 from .solution import Status

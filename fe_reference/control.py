@@ -1,9 +1,5 @@
 """How a structure is led along an equilibrium path, what is held and loaded, and Newton's method to it.
 
-Parts of a model that hang on no clamp can move rigidly along x, along y and about the origin. What their held
-coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones that
-the null space moves, make a path determinate. In equilibrium they bear nothing.
-
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
 values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
 span says otherwise. The residual is r = f(y) - a F, with f the gradient of the potential. While a scene
@@ -11,19 +7,17 @@ settles, p is the share of gravity and natural strains instead, and nothing else
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import null_space
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from .arrays import Array, Flags, Indices
-from .errors import InvalidParameter
+from .loading import ALWAYS_FULL, factor_of
 from .matrix import Factors, Singular
-from .model import FREE, GROUND, Model
+from .places import prescribed, twice
+from .rigid import loose_coordinates
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -48,6 +42,7 @@ class State:
         norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
         rate: d y / d p (size,).
         conjugate, slope: first and second derivative of the total potential along the path [J].
+        drive (H,): what has to be exerted on the held coordinates [N, N m].
         torque, stiffness: generalised force on the driven turn [N m] and its derivative [N m/rad], all that
             is not held being free; nan if no turn is driven.
         work: of loads and drives since the first state of the path [J].
@@ -66,6 +61,7 @@ class State:
     rate: Array = field(default_factory=lambda: np.zeros(0))
     conjugate: float = 0.0
     slope: float = 0.0
+    drive: Array = field(default_factory=lambda: np.zeros(0))
     torque: float = np.nan
     stiffness: float = np.nan
     work: float = 0.0
@@ -171,18 +167,27 @@ def spans(
     rotations: Sequence[float] | None = None,
     load: Array | None = None,
     first: bool = False,
+    starts: bool = False,
 ) -> list[Control]:
     """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
 
-    The driven displacement of the scene and the load grow with the load factor over all legs, or `first`: in
-    a leg of their own before the rotation, and then they stay.
+    What else is driven and the load grow with the load factor over all legs, or `first`: in a leg of their
+    own before the rotation, and then they stay. Drives are led to their ends, or to where their histories
+    begin if a motion `starts` there.
     """
     turn = structure.body_slice(0 if body is None else body).stop - 1
     legs = max(len(rotations or ()), 1) + first
     parameters = [leg / legs for leg in range(legs + 1)]
     shares = [min(float(leg), 1.0) for leg in range(legs + 1)] if first else parameters
-    ways = {at: np.multiply(shares, d) for at, d in structure.led(body).items()}
+    ways = {
+        structure.first_body + at: np.multiply(
+            shares, end * factor_of((starts and history) or ALWAYS_FULL, 0.0)
+        )
+        for at, (end, history) in prescribed(structure.model, body).items()
+    }
     if rotations is not None:
+        if turn in ways:
+            raise twice(structure.model, turn - structure.first_body)
         ways[turn] = np.array([0.0] * (1 + first) + [*rotations])
     props = loose_coordinates(structure, ways)
     ways |= {int(k): np.zeros(legs + 1) for k in props}
@@ -238,59 +243,3 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         if not done:
             counters["newton_iterations"] += 1
     return replace(found, y=y, norms=tuple(norms), failure=failure, factors=factors)
-
-
-#: Largest part of a row of unit size that is round-off.
-RIGID = 1e-9
-#: Largest force over EI/L^2, or moment over EI/L, that is none, beside that part of the largest load.
-NONE = 1e-8
-WAYS = ("in the direction x", "in the direction y", "against turning")
-UNITS = ("N", "N", "N m")
-
-
-class NothingHolds(InvalidParameter):
-    """A load along a rigid motion that nothing resists."""
-
-    def __init__(self, body: str, axis: int, load: float) -> None:
-        expected = f"none, or a clamp or a drive that bears it: nothing holds body {body} {WAYS[axis]}"
-        super().__init__(f"load on body {body}", f"{load:.4g} {UNITS[axis]}", f"{expected} [{UNITS[axis]}]")
-
-
-def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
-    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
-    chosen: list[int] = []
-    for bodies in _parts(structure.model):
-        places = np.concatenate([np.arange(3) + structure.body_slice(b).start for b in bodies])
-        motions = np.vstack([_motions(structure, b) for b in bodies])
-        free = null_space(motions[np.isin(places, list(held))], rcond=RIGID) if len(bodies) else np.eye(3)
-        for place, row in zip(places.tolist(), motions, strict=True):
-            if np.abs(row @ free).max(initial=0.0) > RIGID:
-                chosen.append(place)
-                free = free @ null_space((row @ free)[None], rcond=RIGID)
-    return np.array(sorted(chosen), dtype=np.int64)
-
-
-def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
-    """Refuse a state in which coordinates that are held for want of anything else bear something."""
-    largest = 0.0 if load is None else float(np.abs(load).max())
-    for k in props:
-        if abs(residual[k]) > NONE * (structure.scale[k] + largest):
-            body, axis = divmod(int(k) - structure.first_body, 3)
-            raise NothingHolds(structure.model.body_names[body], axis, abs(float(residual[k])))
-
-
-def _parts(model: Model) -> list[Indices]:
-    """Return the bodies of each part that hangs together by strips but not with the ground."""
-    count = len(model.bodies)
-    joined = np.where(model.ends == GROUND, count, model.ends)
-    rows, columns = joined[(joined != FREE).all(axis=1)].T
-    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
-    label = connected_components(graph, directed=False)[1]
-    loose = sorted(set(label[:count].tolist()) - {int(label[count])})
-    return [np.flatnonzero(label[:count] == each) for each in loose]
-
-
-def _motions(structure: Structure, body: int) -> Array:
-    """Return the rates of a body's coordinates in the rigid motions of its part (3, 3), lengths over L."""
-    x, y = structure.points[body] / structure.length
-    return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])

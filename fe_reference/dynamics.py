@@ -10,15 +10,16 @@ import numpy as np
 
 from .arrays import Array
 from .companions import with_companions
-from .control import loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
 from .loads import DrivenRotation, drive_spans
 from .mass import about_mass_centre, carried_over
-from .model import GROUND, Model, require_model
+from .model import Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, Trajectory, course, trajectory
+from .places import GROUND
 from .refined import limit_of
+from .rigid import loose_coordinates
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
 from .statics import settled_state

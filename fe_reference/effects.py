@@ -3,28 +3,22 @@
 A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units.
 """
 
-from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, dataclass, field, fields, replace
-from typing import Annotated, Any, Self, TypeVar
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields
+from typing import Annotated, Any, TypeVar
 
-import numpy as np
-
-from .errors import (
-    Checked,
-    History,
-    InvalidParameter,
-    Pair,
-    choice,
-    finite,
-    not_negative,
-    optional,
-    pair,
-    partly,
-    read_history,
+from .errors import InvalidParameter, Pair, choice, finite, not_negative, pair
+from .loading import (
+    AppliedForce,
+    AppliedMoment,
+    DrivenDisplacement,
+    Effect,
+    PrescribedRotation,
+    Several,
+    Support,
+    TipForce,
 )
 
-#: The history of what does not change.
-ALWAYS_FULL: History = ((0.0, 1.0),)
 #: Extra length of a strip cut from one block with its body: a half-plane at a sharp corner, plane stress.
 #: W. J. O'Donnell measured 0.44, J. Appl. Mech. 27 (1960) 461-464.
 MONOLITHIC = 0.416
@@ -34,33 +28,28 @@ CURL = SIDES[:2]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Effect(Checked):
-    """An effect without parameters."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Gravity(_Effect):
+class Gravity(Effect):
     """Weight of strips and bodies: acceleration (g_x, g_y) [m/s^2]. Acts whether or not they have inertia."""
 
     acceleration: Annotated[Pair, pair, "m/s^2"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDamping(_Effect):
+class StripDamping(Effect):
     """Kelvin-Voigt material: stress E (strain + b d strain/dt) with relaxation time b [s] in every strain."""
 
     relaxation_time: Annotated[float, not_negative, "s"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class StripDrag(_Effect):
+class StripDrag(Effect):
     """Force -a mu v per unit length on the strips, in proportion to their mass, with the rate a [1/s]."""
 
     rate: Annotated[float, not_negative, "1/s"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BodyDamping(_Effect):
+class BodyDamping(Effect):
     """Damper between every body and ground: translation of its centre [N s/m] and rotation [N m s]."""
 
     translation: Annotated[float, not_negative, "N s/m"] = 0.0
@@ -68,54 +57,7 @@ class BodyDamping(_Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedForce(_Effect):
-    """Dead force (f_x, f_y) [N] at the centre of a body, times load factor or history."""
-
-    force: Annotated[Pair, pair, "N"]
-    body: str | None = None
-    history: Annotated[History, read_history] = ALWAYS_FULL
-
-
-@dataclass(frozen=True, kw_only=True)
-class AppliedMoment(_Effect):
-    """Moment [N m] on a body, times load factor or history."""
-
-    moment: Annotated[float, finite, "N m"]
-    body: str | None = None
-    history: Annotated[History, read_history] = ALWAYS_FULL
-
-
-@dataclass(frozen=True, kw_only=True)
-class TipForce(_Effect):
-    """Dead force (f_x, f_y) [N] at the free end of a strip, times load factor or history."""
-
-    strip: str
-    force: Annotated[Pair, pair, "N"]
-    history: Annotated[History, read_history] = ALWAYS_FULL
-
-
-@dataclass(frozen=True, kw_only=True)
-class DrivenDisplacement(_Effect):
-    """Displacement (d_x, d_y) [m] that the centre of a body is led to, times the load factor.
-
-    None in place of one of them leaves the body free that way.
-    body: None for the one whose rotation is driven, or the only one. In a motion it lets go at the start, or
-    with a history goes on leading, times that.
-    """
-
-    displacement: Annotated[tuple[float | None, float | None], partly, "m"]
-    body: str | None = None
-    history: Annotated[History | None, optional, read_history] = None
-
-    def at(self, time: float) -> Self:
-        """Return the same effect with the displacement that it has at an instant [s]."""
-        part = 1.0 if self.history is None else factor_of(self.history, time)
-        x, y = (None if moved is None else part * moved for moved in self.displacement)
-        return replace(self, displacement=(x, y))
-
-
-@dataclass(frozen=True, kw_only=True)
-class PreStrain(_Effect):
+class PreStrain(Effect):
     """Natural curvature [1/m] and natural strain [1] of every strip: where it is free of stress.
 
     They are counted from the shape at rest: the section laws are M = EI (kappa - curvature) and
@@ -132,19 +74,19 @@ def _root_length(name: str, value: Any) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RootCompliance(_Effect):
+class RootCompliance(Effect):
     """Clamped ends turn against springs of EI / (root t) [N m]; root: number or "monolithic", the default."""
 
     root: Annotated[float, _root_length] = MONOLITHIC
 
 
 #: Every effect that these elements can have.
-KNOWN: Mapping[str, type[_Effect]] = {
-    "bending": _Effect,
-    "stretching": _Effect,
-    "strip_inertia": _Effect,
-    "section_rotary_inertia": _Effect,  # shear-deformable elements have it in any case
-    "body_inertia": _Effect,
+KNOWN: Mapping[str, type[Effect]] = {
+    "bending": Effect,
+    "stretching": Effect,
+    "strip_inertia": Effect,
+    "section_rotary_inertia": Effect,  # shear-deformable elements have it in any case
+    "body_inertia": Effect,
     "gravity": Gravity,
     "strip_damping": StripDamping,
     "strip_drag": StripDrag,
@@ -153,30 +95,36 @@ KNOWN: Mapping[str, type[_Effect]] = {
     "applied_moment": AppliedMoment,
     "tip_force": TipForce,
     "driven_displacement": DrivenDisplacement,
+    "driven_rotation": PrescribedRotation,
+    "support": Support,
     "pre_strain": PreStrain,
-    "clamped_width": _Effect,
-    "anticlastic": _Effect,
+    "clamped_width": Effect,
+    "anticlastic": Effect,
     "root_compliance": RootCompliance,
-    "shear": _Effect,  # of shear-deformable elements, which have it in any case
+    "shear": Effect,  # of shear-deformable elements, which have it in any case
 }
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
-T = TypeVar("T", bound=_Effect)
+T = TypeVar("T")
+#: Parameters of an effect, or of each one of several.
+Given = Mapping[str, Any] | Sequence[Mapping[str, Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Effects:
-    """The named effects of one scene, in the order they were named."""
+    """The named effects of one scene, in the order they were named: one of each name, or several."""
 
-    named: Mapping[str, _Effect] = field(default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, _Effect()))
+    named: Mapping[str, tuple[Effect, ...]] = field(
+        default_factory=lambda: dict.fromkeys(DEFAULT_EFFECTS, (Effect(),))
+    )
 
     @classmethod
-    def read(cls, effects: Iterable[str], parameters: Mapping[str, Mapping[str, Any]]) -> "Effects":
+    def read(cls, effects: Iterable[str], parameters: Mapping[str, Given]) -> "Effects":
         """Return the effects of these names with their parameters.
 
         Raises:
             InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out,
                 rotary inertia of strips without inertia, parameters that are missing, unknown or of no named
-                effect.
+                effect, several sets of them for an effect that acts once.
         """
         names = tuple(effects)
         for name in names:
@@ -192,7 +140,7 @@ class Effects:
         if stray := [name for name in parameters if name not in names]:
             expected = f"one of the named effects {', '.join(names)} [name]"
             raise InvalidParameter("parameters", stray[0], expected)
-        return cls(named={name: _made(name, parameters.get(name, {})) for name in names})
+        return cls(named={name: tuple(_each(name, parameters.get(name, {}))) for name in names})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -207,13 +155,17 @@ class Effects:
         if not {"strip_inertia", "body_inertia"} & set(self.names):
             raise InvalidParameter("effects", self.names, "strip_inertia or body_inertia for a motion [name]")
 
+    def every(self, kind: type[T]) -> list[T]:
+        """Return all effects of this class."""
+        return [each for same in self.named.values() for each in same if isinstance(each, kind)]
+
     def find(self, kind: type[T]) -> T | None:
         """Return the effect of this class, or None if it is not named."""
-        return next((each for each in self.named.values() if isinstance(each, kind)), None)
+        return next(iter(self.every(kind)), None)
 
-    def changed(self, name: str, effect: _Effect) -> "Effects":
-        """Return the effects with another one of this name."""
-        return Effects(named={**self.named, name: effect})
+    def changed(self, name: str, *effects: Effect) -> "Effects":
+        """Return the effects with others of this name."""
+        return Effects(named={**self.named, name: effects})
 
 
 def _known(name: str) -> None:
@@ -225,9 +177,22 @@ def _known(name: str) -> None:
     choice("effects", name, tuple(KNOWN))
 
 
-def _made(name: str, parameters: Mapping[str, Any]) -> _Effect:
+def _each(name: str, given: Given) -> Iterable[Effect]:
+    """Yield the effects `name`, one for each set of parameters."""
+    if isinstance(given, Mapping):
+        yield _made(name, given)
+        return
+    if not issubclass(KNOWN[name], Several):
+        raise InvalidParameter(name, given, "the parameters of one effect, which acts once [name]")
+    if not given or not all(isinstance(each, Mapping) for each in given):
+        raise InvalidParameter(name, given, "parameters, or a sequence of them, one for each [name]")
+    for each in given:
+        yield _made(name, each)
+
+
+def _made(name: str, parameters: Mapping[str, Any]) -> Effect:
     """Return the effect `name` with its parameters, refused by name if they are not those it has."""
-    known = {each.name: each.default is MISSING for each in fields(KNOWN[name])}
+    known = {each.name: each.default is MISSING for each in fields(KNOWN[name]) if each.init}
     for key in parameters:
         if key not in known:
             raise InvalidParameter(name, key, f"one of {', '.join(known) or 'no parameters'} [name]")
@@ -235,8 +200,3 @@ def _made(name: str, parameters: Mapping[str, Any]) -> _Effect:
     if missing:
         raise InvalidParameter(name, dict(parameters), f"a value of {', '.join(missing)} [name]")
     return KNOWN[name](**parameters)
-
-
-def factor_of(points: History, time: float) -> float:
-    """Return the factor at an instant [s]: constant before the first and after the last."""
-    return float(np.interp(time, *np.transpose(points)))

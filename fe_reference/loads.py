@@ -17,10 +17,11 @@ from typing import Annotated
 import numpy as np
 
 from .arrays import Array, Flags, rotation_matrix
-from .effects import ALWAYS_FULL, AppliedForce, AppliedMoment, DrivenDisplacement, TipForce, factor_of
 from .errors import Checked, History, InvalidParameter, finite, read_history
+from .loading import ALWAYS_FULL, BodyLoad, TipForce, factor_of
 from .mass import RigidBodies
 from .model import Model
+from .places import prescribed, twice
 from .structure import Structure
 
 
@@ -42,16 +43,15 @@ class Pull:
 def applied(structure: Structure) -> list[Pull]:
     """Return the named loads of a scene: at free ends, and at the centres of bodies."""
     pulls, model = [], structure.model
-    for effect in model.effects.named.values():
-        if isinstance(effect, TipForce):
-            node, row = (model.strip_index(effect.strip) + 1) * structure.stations - 1, np.zeros(5)
-            row[:2] = effect.force
-            pulls.append(Pull(target=-1 - node, row=row, history=effect.history))
-        elif isinstance(effect, AppliedForce | AppliedMoment):
-            k = model.body_index(effect.body)
-            pull = (*effect.force, 0.0) if isinstance(effect, AppliedForce) else (0.0, 0.0, effect.moment)
-            row = np.array([*pull, *(model.bodies[k].centre - structure.points[k])])
-            pulls.append(Pull(target=k, row=row, history=effect.history))
+    for tip in model.effects.every(TipForce):
+        node = (model.strip_index(tip.strip) + 1) * structure.stations - 1
+        row = np.array([*tip.force, tip.moment, 0.0, 0.0])
+        pulls.append(Pull(target=-1 - node, row=row, history=tip.history))
+    for load in model.effects.every(BodyLoad):
+        k = model.body_index(load.body)
+        force, moment = getattr(load, "force", (0.0, 0.0)), getattr(load, "moment", 0.0)
+        row = np.array([*force, moment, *(model.bodies[k].centre - structure.points[k])])
+        pulls.append(Pull(target=k, row=row, history=load.history))
     return pulls
 
 
@@ -167,13 +167,15 @@ class Span:
 
 def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
     """Return the spans of a motion, in order: one where nothing is led."""
-    drives: list[tuple[int, Sequence[float | None], History, tuple[float, float]]] = []
+    drives: list[tuple[int, float, History, tuple[float, float]]] = []
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2
-        drives.append((turn, (drive.angle,), drive.history, drive.held))
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None and led.history is not None:
-        drives.append((3 * model.body_index(led.body), led.displacement, led.history, ALWAYS))
+        drives.append((turn, drive.angle, drive.history, drive.held))
+    for at, (end, history) in prescribed(model, None).items():
+        if history is not None:
+            if drives and at == drives[0][0]:
+                raise twice(model, at)
+            drives.append((at, end, history, ALWAYS))
     times = {duration}
     for _, _, history, held in drives:
         times |= {*held, *(time for time, _ in history)}
@@ -184,11 +186,9 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     spans: list[Span] = []
     for begin, end in pairwise([*instants[:-1], duration]):
         rates = {
-            at + k: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * part
+            at: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * target
             for at, target, history, held in drives
             if held[0] < 0.5 * (begin + end) < held[1]
-            for k, part in enumerate(target)
-            if part is not None
         }
         before = spans[-1].rates if spans else {}
         spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))

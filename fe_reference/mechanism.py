@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, rotation_matrix
-from .effects import DEFAULT_EFFECTS, Effects
+from .effects import DEFAULT_EFFECTS, Effects, Given
 from .errors import finite, pair, positive, within
 from .model import BodyDesign, Model, StripDesign
 
@@ -19,14 +19,15 @@ def compliant_mechanism(
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),
     effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    parameters: Mapping[str, Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
 ) -> Model:
     """Return the model of a mechanism at rest, free of stress unless it has natural strains.
 
     Args:
-        strips, bodies: the designs. effects, parameters: named effects and their parameters.
+        strips, bodies: the designs. effects: their names. parameters: of the named effects; some of these may
+            have several sets of parameters, and then act once with each.
         elements: number of elements a strip. element: "corotational" or "reissner".
 
     Raises:
@@ -52,7 +53,7 @@ def cross_axis_pivot(
     centre_offset: Sequence[float] = (0.0, 0.0),
     orientation: float = 0.0,
     effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    parameters: Mapping[str, Given] | None = None,
     elements: int = 20,
     element: str = "corotational",
     **section: Any,

@@ -23,7 +23,8 @@ from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 from .arrays import Array, Flags, Indices, kernel
 from .effects import CURL, PreStrain, RootCompliance
 from .law import Energies, Given, Written, elements
-from .model import FREE, Model
+from .model import Model
+from .places import FREE
 from .plate import left_by_clamps, shares
 
 #: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of

@@ -13,16 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from .arrays import Array, Indices
-from .effects import (
-    CURL,
-    SIDES,
-    AppliedForce,
-    AppliedMoment,
-    DrivenDisplacement,
-    Effects,
-    PreStrain,
-    TipForce,
-)
+from .effects import CURL, SIDES, Effects, PreStrain
 from .errors import (
     Checked,
     InvalidParameter,
@@ -36,12 +27,11 @@ from .errors import (
     require_kind,
     within,
 )
+from .places import FREE, GROUND, check_places
 
 ELEMENTS = ("corotational", "reissner")
 #: Name of what does not move.
 FIXED = "ground"
-#: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
-GROUND, FREE = -1, -2
 #: Area and second moment of a section that is told by its sides.
 NOT_GIVEN = math.nan
 #: How far area and second moment may be from those of the sides beside them: printed values are rounded.
@@ -217,22 +207,8 @@ class Model:
             raise InvalidParameter("strips", self.strips, "one or more strips")
         if not (np.diff(self.arcs) > 0.0).all():
             raise InvalidParameter("strips", "ends that coincide", "elements of a length above 0 [m]")
-        self._check_places()
+        check_places(self)
         self._check_sides()
-
-    def _check_places(self) -> None:
-        """Refuse loads and drives on what is not there."""
-        for load in (self.effects.find(AppliedForce), self.effects.find(AppliedMoment)):
-            if load is not None:
-                self.body_index(load.body)
-        tip = self.effects.find(TipForce)
-        if tip is not None and self.ends[self.strip_index(tip.strip), 1] != FREE:
-            raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
-        led = self.effects.find(DrivenDisplacement)
-        if led is not None and not self.bodies:
-            raise InvalidParameter("driven_displacement", "no bodies", "a body to lead [name]")
-        if led is not None and led.body is not None:
-            self.body_index(led.body)
 
     def _check_sides(self) -> None:
         """Refuse effects of the strips' sides where they do not hold."""

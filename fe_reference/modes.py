@@ -8,13 +8,13 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
-from .control import NothingHolds, loose_coordinates
-from .effects import DrivenDisplacement
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
 from .model import Model, require_model
+from .places import prescribed
 from .refined import Quantities, missed, refine
+from .rigid import NothingHolds, loose_coordinates
 from .solution import ErrorEstimate
 from .statics import settled_state
 from .structure import Structure, structure_of
@@ -140,10 +140,8 @@ def _held(model: Model, body: str | None, turn: bool) -> Flags:
     held = np.zeros(structure.size, dtype=bool)
     if turn:
         held[structure.turns[model.body_index(body)]] = True
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None and led.history is not None:
-        held[[*structure.led(None if body is None else model.body_index(body))]] = True
-    return held
+    led = prescribed(model, None if body is None else model.body_index(body))
+    return held | structure.flags([structure.first_body + at for at, (_, history) in led.items() if history])
 
 
 def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int) -> tuple[Array, Array]:

@@ -161,7 +161,8 @@ TURN = 1e-2
 LEAST = 1e-6
 #: Arrays with a row a state.
 BY_STATE = (
-    *("inertia", "load_factor", "torque", "stiffness", *ENERGIES, "clamp_reactions", "largest_stress"),
+    *("inertia", "load_factor", "torque", "stiffness", *ENERGIES, "largest_stress"),
+    *("reactions", "clamp_reactions"),
     *("shape", "axial_force", "shear_force", "bending_moment", "states"),
 )
 
@@ -223,6 +224,7 @@ def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[
         answer,
         **rows,
         bodies={name: place[:kept] for name, place in answer.bodies.items()},
+        tips={name: place[:kept] for name, place in answer.tips.items()},
         critical_points=answer.critical_points[:known],
         status=Status.CONVERGED if whole else Status.NOT_CONVERGED,
         message=message,

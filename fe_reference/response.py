@@ -6,11 +6,11 @@ import numpy as np
 
 from .arrays import Array, kernel
 from .control import Control, State
-from .effects import DrivenDisplacement
 from .law import Written
 from .matrix import Singular
 from .mesh import Tables, turned
 from .model import Model
+from .places import prescribed
 from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
@@ -46,6 +46,7 @@ def respond(control: Control, found: State) -> State:
         rate=rate,
         conjugate=first + float(drive @ control.slope),
         slope=second + float(rate @ tangent.times(rate)),
+        drive=drive,
         torque=torque,
         stiffness=stiffness,
     )
@@ -139,16 +140,15 @@ def body_stiffness(
     held[place] = True
     if driven is not None:
         held[structure.turns[model.body_index(driven)]] = True
-    led = model.effects.find(DrivenDisplacement)
-    if led is not None and led.body is not None:  # without a name it is of the body that is asked for
-        held[[*structure.led(None)]] = True
-    prescribed, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
-    prescribed[:, place] = np.eye(3)
+    # without a name it is of the body that is asked for
+    held[[structure.first_body + at for at in prescribed(model, model.body_index(body))]] = True
+    units, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
+    units[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)
     for k, y in enumerate(np.asarray(states)):
         at = structure.evaluate(y)
         try:
-            moves = prescribed - at.tangent.factors(held).solve(at.tangent.times(prescribed))
+            moves = units - at.tangent.factors(held).solve(at.tangent.times(units))
         except Singular:
             continue
         found[k] = [[_stiffness_between(structure, at, y, a, b, nothing) for b in moves] for a in moves]

@@ -11,6 +11,7 @@ from .errors import InvalidParameter
 from .law import FORCES
 from .mesh import nodal_shares
 from .model import Model, require_model
+from .places import FREE
 from .structure import Structure, structure_of
 
 
@@ -46,6 +47,14 @@ class StripFields:
     reactions: Array
     rest_bodies: Array
     bodies: Array
+
+    def tips(self, model: Model) -> dict[str, Array]:
+        """Return the places x, y [m] of free ends and the turns of their sections [rad] (S, 3), by strips."""
+        free = {k: -end for k, ends in enumerate(model.ends) for end in (0, 1) if ends[end] == FREE}
+        return {
+            model.strip_names[k]: np.hstack([self.shape[:, k, at], self.rotation[:, k, at, None]])
+            for k, at in free.items()
+        }
 
     def outer_stress(self, model: Model) -> Array:
         """Return the largest magnitude of stress at the nodes (S, G, P) [Pa], sections taken as rectangles.

@@ -146,6 +146,9 @@ class StaticSolution(Answer):
         bending_energy, axial_energy, shear_energy (S,): strain energy of all strips by part [J].
         gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
+        prescribed: the D coordinates that are driven or supported: name of the body, and "x", "y" or
+            "rotation". reactions (S, D): the force [N] or moment [N m] that is exerted on the body for it.
+        tips: by strip, place x, y [m] of its free end and turn of the section there [rad], (S, 3).
         clamp_reactions (S, G, 2, 3): force x, y [N] and moment [N m] exerted on the strip at its root (0) and
             at its tip (1).
         largest_stress (S,): over all strips, of sections taken as rectangles [Pa].
@@ -175,6 +178,9 @@ class StaticSolution(Answer):
     shear_energy: Array
     gravity_energy: Array
     work: Array
+    prescribed: tuple[tuple[str, str], ...]
+    reactions: Array
+    tips: Mapping[str, Array]
     clamp_reactions: Array
     largest_stress: Array
     stations: Array

@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .control import Control, require_balance, spans
-from .effects import DrivenDisplacement
+from .control import Control, spans
 from .errors import InvalidParameter, choice, count, finite, pair, several
 from .law import FORCES
+from .loading import WAYS, DrivenDisplacement, Prescribed
 from .loads import full_load
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import confirmed, limit_of
+from .rigid import require_balance
 from .section_forces import strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
@@ -100,8 +101,8 @@ def _answered(
     length, force, moment = structure.length, structure.force_unit, structure.moment_unit
     section = model.strips[0]
     units = dict.fromkeys((*ENERGIES, "strain_energy", "torque", "stiffness", "bending_moment"), moment)
-    units |= dict.fromkeys(("clamp_reactions", "axial_force", "shear_force"), force)
-    units |= dict.fromkeys(("bodies", "shape"), length)
+    units |= dict.fromkeys(("clamp_reactions", "reactions", "axial_force", "shear_force"), force)
+    units |= dict.fromkeys(("bodies", "tips", "shape"), length)
     units["largest_stress"] = moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area))
 
     def path(places: Array) -> Array:
@@ -133,13 +134,11 @@ def settled_state(
     histories begin; then rigid motions that nothing resists are held until then, whatever it takes. Errors as
     above.
     """
-    structure, led = structure_of(model), model.effects.find(DrivenDisplacement)
+    structure, led = structure_of(model), model.effects.every(Prescribed)
     load = full_load(structure, time=0.0 if starts else None)
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
-    if not rotation and load is None and led is None and not structure.constant_words:
+    if not rotation and load is None and not _moving(led) and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
-    if starts and led is not None:
-        model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
     solution = _solved(model, body, ends, increments, None, starts=starts).checked()
     return solution.states[-1], solution.message
 
@@ -156,18 +155,19 @@ def _solved(
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
     clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
-    led = model.effects.find(DrivenDisplacement)
-    driven = rotations is not None or (led is not None and led.body is None)
+    led = model.effects.every(Prescribed)
+    driven = rotations is not None or any(each.body is None for each in led)
     which = model.body_index(body) if driven or body is not None else None
     acting = full_load(structure, time=0.0 if starts else None)
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
-    first = first and acting is not None and led is None  # a body that is led goes where both lead it
+    first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
     controls = spans(
         structure,
         body=which,
         rotations=rotations,
         load=acting,
         first=first,
+        starts=starts,
     )
     clock.stop("compile")
     path = follow(controls, steps, progress)
@@ -176,6 +176,11 @@ def _solved(
         require_balance(structure, path.control.props, state.residual, acting)
     name = None if which is None else model.body_names[which]
     return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)
+
+
+def _moving(led: Sequence[Prescribed]) -> bool:
+    """Return whether any of these is led away from rest."""
+    return any(any(each.ends) for each in led)
 
 
 def _packed(
@@ -188,6 +193,11 @@ def _packed(
     model, here = structure.model, [structure.evaluate(state.y, asked=FORCES) for state in states]
     y, strain = np.array([state.y for state in states]), np.array([at.strain for at in here])
     fields = strip_fields(model, y, np.array([at.ends for at in here]))
+    held = [
+        (k, at - structure.first_body)
+        for k, at in enumerate(path.control.held)
+        if at not in path.control.props
+    ]
     answers: dict[str, Any] = {
         name: np.array([getattr(state, name) for state in states])
         for name in ("torque", "stiffness", "inertia", "work")
@@ -203,6 +213,9 @@ def _packed(
         axial_energy=strain[:, 1],
         shear_energy=strain[:, 2],
         gravity_energy=np.array([at.gravity for at in here]),
+        prescribed=tuple((model.body_names[at // 3], WAYS[at % 3]) for _, at in held),
+        reactions=np.array([state.drive for state in states])[:, [k for k, _ in held]],
+        tips=fields.tips(model),
         clamp_reactions=fields.reactions,
         largest_stress=fields.outer_stress(model).max(axis=(1, 2)),
         stations=structure.basis.mesh.p[0, : structure.stations] / model.lengths[0],

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Array, Flags, Indices
 from .bending import CURL
-from .effects import DrivenDisplacement, Gravity, PreStrain
+from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import (
@@ -29,7 +29,8 @@ from .mesh import (
     root_stiffness,
     strip_basis,
 )
-from .model import FREE, Model
+from .model import Model
+from .places import FREE
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,19 +179,6 @@ class Structure:
     def body_slice(self, body: int) -> slice:
         """Return where the coordinates of a body lie."""
         return slice(self.first_body + 3 * body, self.first_body + 3 * body + 3)
-
-    def led(self, body: int | None) -> dict[int, float]:
-        """Return the coordinates that the driven displacement of the scene leads, and how far [m].
-
-        They are those of this body where the effect names none.
-        """
-        effect = self.model.effects.find(DrivenDisplacement)
-        if effect is None:
-            return {}
-        if effect.body is not None or body is None:
-            body = self.model.body_index(effect.body)
-        at = self.body_slice(body).start
-        return {at + k: part for k, part in enumerate(effect.displacement) if part is not None}
 
     def extent(self, change: Array) -> float:
         """Return the largest component of a change of the coordinates, in strip lengths and rad."""

@@ -1,0 +1,124 @@
+"""Effects of which a model definition may have any number: loads, drives and supports."""
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+import numpy as np
+
+from .errors import Checked, History, InvalidParameter, Pair, finite, optional, pair, partly, read_history
+
+#: The history of what does not change.
+ALWAYS_FULL: History = ((0.0, 1.0),)
+#: Coordinates of a body: those of its centre, and its turn.
+WAYS = ("x", "y", "rotation")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect(Checked):
+    """An effect without parameters."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Several(Effect):
+    """An effect of which a model definition may have any number, each with its own parameters."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyLoad(Several):
+    """A load on a body, times load factor or history."""
+
+    body: str | None = None
+    history: Annotated[History, read_history] = ALWAYS_FULL
+
+
+@dataclass(frozen=True, kw_only=True)
+class AppliedForce(BodyLoad):
+    """Dead force (f_x, f_y) [N] at the centre of a body."""
+
+    force: Annotated[Pair, pair, "N"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AppliedMoment(BodyLoad):
+    """Moment [N m] on a body."""
+
+    moment: Annotated[float, finite, "N m"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipForce(Several):
+    """Dead force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history."""
+
+    strip: str
+    force: Annotated[Pair, pair, "N"]
+    moment: Annotated[float, finite, "N m"] = 0.0
+    history: Annotated[History, read_history] = ALWAYS_FULL
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prescribed(Several):
+    """Coordinates of a body that are led, times the load factor.
+
+    body: None for the one whose rotation is driven, or the only one. In a motion it lets go at the start, or
+    with a history goes on leading, times that.
+    """
+
+    body: str | None = None
+    history: Annotated[History | None, optional, read_history] = None
+
+    @property
+    def ends(self) -> tuple[float | None, ...]:
+        """Displacement x, y [m] and turn [rad] that the body is led to, None where it is free."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenDisplacement(Prescribed):
+    """Displacement (d_x, d_y) [m] that the centre of a body is led to.
+
+    None in place of one of them leaves the body free that way.
+    """
+
+    displacement: Annotated[tuple[float | None, float | None], partly, "m"]
+
+    @property
+    def ends(self) -> tuple[float | None, ...]:
+        """Both displacements."""
+        return (*self.displacement, None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrescribedRotation(Prescribed):
+    """Angle [rad] that a body is turned to, besides the one whose rotation is driven."""
+
+    angle: Annotated[float, finite, "rad"]
+
+    @property
+    def ends(self) -> tuple[float | None, ...]:
+        """The angle alone."""
+        return None, None, self.angle
+
+
+def _ways(name: str, value: Any) -> tuple[str, ...]:
+    """Return the names of coordinates of a body, each once and one at least."""
+    if not isinstance(value, list | tuple) or not value or len(set(value) & set(WAYS)) != len(value):
+        raise InvalidParameter(name, value, f"one or more of {', '.join(WAYS)}, each once [name]")
+    return tuple(value)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support(Prescribed):
+    """Coordinates of a body, of WAYS, that stay where they are at rest, in a motion too."""
+
+    history: History | None = field(init=False, default=ALWAYS_FULL)
+    fixed: Annotated[tuple[str, ...], _ways]
+
+    @property
+    def ends(self) -> tuple[float | None, ...]:
+        """Zeros where it is fixed."""
+        return tuple(0.0 if way in self.fixed else None for way in WAYS)
+
+
+def factor_of(points: History, time: float) -> float:
+    """Return the factor at an instant [s]: constant before the first and after the last."""
+    return float(np.interp(time, *np.transpose(points)))

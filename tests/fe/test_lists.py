@@ -1,0 +1,120 @@
+"""Definitions that are lists: several loads, drives, supports and springs, against closed forms."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_reference import (
+    BodyDesign,
+    DrivenRotation,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    natural_frequencies,
+    solve_mechanism,
+    solve_motion,
+)
+from tests.fe.scenes import four_bar, free_cantilever
+from tests.refusals import refused, scene
+
+
+def test_loads_add_up() -> None:
+    """Several loads of a kind act as their sum: forces and moments, on bodies and at a free end."""
+    pulls = [{"force": (300.0, 0.0), "body": "coupler"}, {"force": (0.0, -200.0), "body": "coupler"}]
+    twists = [{"moment": 2.0, "body": "crank"}, {"moment": -5.0, "body": "crank"}]
+    sums = {"force": (300.0, -200.0), "body": "coupler"}, [{"moment": -3.0, "body": "crank"}]
+    one, other = (
+        solve_mechanism(four_bar({"applied_force": f, "applied_moment": m}, elements=3), increments=3).states
+        for f, m in ((pulls, twists), sums)
+    )
+    assert np.abs(one[-1]).max() > 1e-3
+    assert np.abs(one - other).max() < 1e-9 * np.abs(one).max()
+    ends = [{"strip": "strip", "force": (0.0, 2.0)}, {"strip": "strip", "force": (0.0, -2.0), "moment": 0.3}]
+    bent = solve_mechanism(free_cantilever(parameters={"tip_force": ends}, elements=4), increments=3)
+    assert bent.bending_moment[-1, 0] == pytest.approx(0.3, rel=1e-9)
+
+
+#: Bistable half beam: sides of its section and rise of its halves [m], place of its middle [m].
+BEAM: dict[str, Any] = {"width": 5e-7, "thickness": 5e-7, "youngs_modulus": 160e9, "poisson_ratio": 0.22}
+RISE, MIDDLE, SHUTTLE = 1.501347575453747e-7, (1e-5, 6e-7), (2e-5, 1.2e-6)
+
+
+def half_beam(*fixed: str) -> Model:
+    """Return a half beam whose shuttle is led down, of which more coordinates are fixed."""
+    halves = ({"end": MIDDLE, "tip": "mid", "rise": -RISE}, {"start": MIDDLE, "root": "mid", "rise": RISE})
+    ends = {"start": (0.0, 0.0), "end": SHUTTLE, "tip": "shuttle", "density": 2330.0}
+    led = {"body": "shuttle", "displacement": (None, -2.4e-6)}
+    return compliant_mechanism(
+        strips=[
+            StripDesign(name=name, **BEAM | ends | half) for name, half in zip("ab", halves, strict=True)
+        ],
+        bodies=[BodyDesign(name="mid", centre=MIDDLE), BodyDesign(name="shuttle", centre=SHUTTLE)],
+        **scene(
+            ("bending", "stretching"), driven_displacement=led, support={"body": "shuttle", "fixed": fixed}
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("fixed", "push", "pop"), [(("x", "rotation"), -3.231, 0.298), (("rotation",), -2.989, 0)]
+)
+def test_bistable_half_beam(fixed: tuple[str, ...], push: float, pop: float) -> None:
+    """The force of a guided shuttle has the extrema that shooting finds; free to slide it is monotonic."""
+    path = solve_mechanism(half_beam(*fixed), increments=48, check=False)
+    force = 1e6 * path.reactions[:, path.prescribed.index(("shuttle", "y"))]
+    assert (force.min(), force.max()) == pytest.approx((push, pop), abs=2e-3)  # as its digits, and elements
+
+
+def test_reactions_balance_loads() -> None:
+    """What drives, supports and clamps exert is in balance with the loads, and works as the books say."""
+    model = four_bar(
+        {
+            "applied_force": {"force": (300.0, -200.0), "body": "coupler"},
+            "driven_rotation": {"body": "rocker", "angle": 0.2},
+            "support": [{"body": "coupler", "fixed": ("y",)}, {"body": "crank", "fixed": ["x"]}],
+        },
+        elements=4,
+    )
+    path = solve_mechanism(model, increments=8)
+    assert path.prescribed == (("rocker", "rotation"), ("coupler", "y"), ("crank", "x"))
+    assert path.bodies["rocker"][-1, 2] == 0.2 and np.ptp(path.bodies["crank"][:, 0]) == 0.0
+    forces = path.clamp_reactions[-1][model.ends == -1][:, :2].sum(axis=0) + path.reactions[-1, [2, 1]]
+    assert np.abs(forces + np.array([300.0, -200.0])).max() < 1e-9 * np.abs(path.clamp_reactions[-1]).max()
+    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-5)  # by Hermite's rule
+    same = solve_mechanism(four_bar({}, elements=4), body="rocker", rotation=0.2, increments=2)
+    led = solve_mechanism(
+        four_bar({"driven_rotation": {"body": "rocker", "angle": 0.2}}, elements=4), increments=2
+    )
+    assert led.reactions[-1, 0] == pytest.approx(same.torque[-1], rel=1e-9)
+    assert same.reactions[:, 0].tolist() == same.torque.tolist()
+
+
+TWICE = "expected one drive or support for each coordinate"
+#: Parameters of effects that make no sense, and what is said of them.
+LED, ROLL = {"body": "crank", "displacement": (0.0, None)}, {"body": "crank", "fixed": ["x", "rotation"]}
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"gravity": [{"acceleration": (0.0, 1.0)}]}, "gravity: got ... expected the parameters of one effect"),
+    ({"applied_moment": []}, "applied_moment: got [], expected parameters, or a sequence of them"),
+    ({"support": {"body": "crank", "fixed": "x"}}, "fixed: got 'x', expected one or more of x, y, rotation"),
+    ({"support": {"body": "crank", "fixed": ("x", "x")}}, "fixed: got ('x', 'x'), expected one or more"),
+    ({"support": {"body": "crank"}}, "support: got ... expected a value of fixed"),
+    ({"support": ROLL, "driven_displacement": LED}, f"prescribed: got 'x of crank', {TWICE}"),
+    ({"driven_displacement": [LED, LED]}, f"prescribed: got 'x of crank', {TWICE}"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), WRONG, ids=[said for _, said in WRONG])
+def test_refusals(given: dict[str, Any], said: str) -> None:
+    """What makes no sense is refused in one line."""
+    refused(lambda: four_bar(given), said)
+
+
+def test_a_rotation_is_prescribed_once() -> None:
+    """A rotation that drives a path or a motion and a support or drive of it are refused."""
+    model = four_bar({"support": ROLL})
+    for ask in (solve_mechanism, partial(natural_frequencies, count=1)):
+        refused(lambda ask=ask: ask(model, body="crank", rotation=0.1), f"'rotation of crank', {TWICE}")
+    drive = DrivenRotation(body="crank", angle=0.1)
+    refused(lambda: solve_motion(model, drive=drive, duration=1e-5), f"'rotation of crank', {TWICE}")
