@@ -16,7 +16,7 @@ from spline_model.effects import (
     BodyDamper,
     BodyInertia,
     Clamp,
-    DrivenDisplacement,
+    Driven,
     MixedStretching,
     SectionRotaryInertia,
     Stretching,
@@ -202,6 +202,6 @@ class _Scales:
         for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
             if isinstance(constraint, Clamp):
                 unit[row : row + count] = (force, force, moment)
-            else:
-                unit[row : row + count] = force if isinstance(constraint, DrivenDisplacement) else moment
+            elif isinstance(constraint, Driven):
+                unit[row : row + count] = [(force, force, moment)[axis] for axis in constraint.parts]
         return unit

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import GROUND
 from spline_model.errors import InvalidParameter
@@ -36,7 +36,7 @@ def props_of(scene: Scene) -> list[Constraint]:
     """Props where rigid motions are free, to stand behind all other constraints."""
     props: list[Constraint] = []
     for part in loose(scene):
-        rows = [row for drive in scene.of(Constraint) for row in _rows(drive, part)]
+        rows = [row for drive in scene.of(Driven) for row in _rows(drive, part)]
         for body in part:
             for axis in range(3):
                 row = _row(body, axis, part)
@@ -48,19 +48,14 @@ def props_of(scene: Scene) -> list[Constraint]:
 
 def require_unborne(system: System, reactions: Array) -> None:
     """Refuse states whose props bear something: reactions (S, D) of the drives [N, N m]."""
-    scene, drives = system.scene, system.drives
-    held = zip(scene.of(Constraint), scene.layout.multipliers, strict=True)
-    props = {row for each, (row, _) in held if getattr(each, "prop", False)}
-    if not props:
+    drives = system.drives
+    if not drives.prop.any():
         return
     largest = float(np.abs(system.loads.value).max(initial=0.0))
     for d, row in enumerate(drives.row.tolist()):
         most = float(np.abs(reactions[:, d]).max(initial=0.0))
-        if row in props and most > BORNE * (system.scales.unit[row] + largest):
-            at = int(drives.coordinate[d])
-            name, axis = next(
-                (name, at - start) for name, start in system.layout.bodies.items() if 0 <= at - start < 3
-            )
+        if drives.prop[d] and most > BORNE * (system.scales.unit[row] + largest):
+            name, axis = system.layout.coordinate_of(int(drives.coordinate[d]))
             load, way = f"{most:.4g} {UNITS[axis]}", WAYS[axis]
             expected = f"none, or a clamp, a pin or a drive: nothing holds body {name} {way}"
             raise Unheld(f"load on body {name} {way}", load, expected)
@@ -96,14 +91,10 @@ def _row(body: Body, axis: int, part: list[Body]) -> Array:
     return np.array(rows[axis])
 
 
-def _rows(drive: Constraint, part: list[Body]) -> list[Array]:
+def _rows(drive: Driven, part: list[Body]) -> list[Array]:
     """What a drive holds of a part."""
-    body = next((each for each in part if each.name == getattr(drive, "body", None)), None)
-    if body is None:
-        return []
-    if isinstance(drive, DrivenDisplacement):
-        return [_row(body, axis, part) for axis in drive.parts]
-    return [_row(body, 2, part)] if isinstance(drive, DrivenRotation) else []
+    body = next((each for each in part if each.name == drive.body), None)
+    return [] if body is None else [_row(body, axis, part) for axis in drive.parts]
 
 
 def _rank(rows: list[Array]) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, MixedStretching
+from spline_model.effects import Clamp, Driven, MixedStretching
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
@@ -156,7 +156,7 @@ def _constraints(
         if isinstance(constraint, Clamp):
             key: tuple[str, str] = (constraint.strip, constraint.end)
             touched = (strips[constraint.strip], bodies.get(constraint.to, -1))
-        elif isinstance(constraint, DrivenRotation | DrivenDisplacement):
+        elif isinstance(constraint, Driven):
             key, touched = (constraint.body, "drive"), (bodies[constraint.body], -1)
         else:
             expected = "clamps, driven rotations and displacements"

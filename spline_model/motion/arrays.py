@@ -81,23 +81,13 @@ class Masses(NamedTuple):
             relaxation=np.array([time.get(name, 0.0) for name in layout.strips]),
             pairs=np.stack(pairs, axis=1).reshape(-1, 4, len(order) ** 2),
             loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
-            load_at=np.array([_pose_of(model, at) for at in loads.coordinate], dtype=np.int64),
+            load_at=loads.coordinate - begin,
             drives=drives._replace(origin=drives.origin / size, target=drives.target / size),
             drive_at=drives.coordinate - begin,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
-
-
-def _pose_of(model: Reduced, coordinate: int) -> int:
-    """Place among the poses of a coordinate of a body or of a free end."""
-    layout, strips = model.system.layout, model.strips
-    for s, (start, n) in enumerate(layout.strips.values()):
-        for body, first in ((strips.roots[s], start), (strips.tips[s], start + 2 * n - 2)):
-            if 0 <= coordinate - first < 2 and body >= len(layout.bodies):
-                return int(3 * body + coordinate - first)
-    return int(coordinate - layout.poses.start)
 
 
 class State(NamedTuple):

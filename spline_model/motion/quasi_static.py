@@ -46,7 +46,8 @@ def stepper(start: Start) -> Moves:
         )
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
-    if (motion.loads.coordinate < motion.system.layout.poses.start).any():
+    own = len(motion.system.scene.own_bodies)
+    if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
         raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:

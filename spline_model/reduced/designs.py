@@ -99,7 +99,7 @@ def _numbers(model: Reduced, base: Given, given: Given, longer: Array, force: Ar
 def _starts(model: Reduced, base: Given, given: Given, longer: Array, wide: Array) -> Array:
     """The designs' states at rest (D, Y)."""
     strips, scene, (cos, sin) = model.strips, model.system.scene, _turns(base, given)
-    count, own = len(longer), len(scene.bodies)
+    count, own = len(longer), given.centres.shape[1]
     start = np.repeat(at_rest(model)[None].astype(longer.dtype), count, axis=0)
     for body in range(own):
         start[:, 3 * body : 3 * body + 2] = given.centres[:, body] / wide
@@ -109,7 +109,7 @@ def _starts(model: Reduced, base: Given, given: Given, longer: Array, wide: Arra
         points = np.stack((c * x - d * y, d * x + c * y), axis=-1) + given.ends[:, s, None, 0]
         start[:, w.start : w.stop - 2] = (points / wide[..., None]).reshape(count, -1)
         for end, carriers in enumerate((strips.roots, strips.tips)):
-            if carriers[s] >= own:  # a free end is its own body
+            if carriers[s] >= own:  # a free end has a frame of its own
                 place = 3 * carriers[s]
                 start[:, place : place + 2] = given.ends[:, s, end] / wide
     return start
