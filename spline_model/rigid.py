@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import GROUND
 from spline_model.errors import InvalidParameter
@@ -34,15 +34,19 @@ class Unheld(InvalidParameter):
 
 def props_of(scene: Scene) -> list[Constraint]:
     """Props where rigid motions are free, to stand behind all other constraints."""
-    props: list[Constraint] = []
-    for part in loose(scene):
-        rows = [row for drive in scene.of(Driven) for row in _rows(drive, part)]
-        for body in part:
-            for axis in range(3):
-                row = _row(body, axis, part)
-                if _rank([*rows, row]) > _rank(rows):
-                    rows.append(row)
-                    props.append(_prop(body.name, axis))
+    parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
+    rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
+    for spring in scene.of(Spring):
+        for axis in range(3):
+            if spring.stiffness[axis] > 0.0:
+                other = 0.0 if spring.other is None else _row(scene, parts, spring.other, axis)
+                rows.append(_row(scene, parts, spring.body, axis) - other)
+    for body in (body for part in parts for body in part):
+        for axis in range(3):
+            row = _row(scene, parts, body.name, axis)
+            if _rank([*rows, row]) > _rank(rows):
+                rows.append(row)
+                props.append(_prop(body.name, axis))
     return props
 
 
@@ -83,18 +87,15 @@ def loose(scene: Scene) -> list[list[Body]]:
     return [part for name, part in parts.items() if name != root(GROUND)]
 
 
-def _row(body: Body, axis: int, part: list[Body]) -> Array:
-    """Rate of a body's coordinate as its part moves along x, along y and turns about its first body (3,)."""
-    x, y = (body.centre - part[0].centre).tolist()
-    size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
-    rows = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))
-    return np.array(rows[axis])
-
-
-def _rows(drive: Driven, part: list[Body]) -> list[Array]:
-    """What a drive holds of a part."""
-    body = next((each for each in part if each.name == drive.body), None)
-    return [] if body is None else [_row(body, axis, part) for axis in drive.parts]
+def _row(scene: Scene, parts: list[list[Body]], name: str, axis: int) -> Array:
+    """Rate of a coordinate as each part moves along x, along y and turns about its first body (3 P,)."""
+    rates = np.zeros((len(parts), 3))
+    for rate, part in zip(rates, parts, strict=True):
+        if name in [body.name for body in part]:
+            x, y = (scene.body(name).centre - part[0].centre).tolist()
+            size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
+            rate[:] = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))[axis]
+    return rates.ravel()
 
 
 def _rank(rows: list[Array]) -> int:

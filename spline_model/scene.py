@@ -91,11 +91,10 @@ class Scene:
             raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
         strips, bodies = names[: len(self.strips)], names[len(self.strips) :]
         for effect in self.effects:
-            strip, body = getattr(effect, "strip", None), getattr(effect, "body", None)
-            if strip is not None and strip not in strips:
-                raise InvalidParameter("strip", strip, f"one of {strips}")
-            if body is not None and body not in bodies:
-                raise InvalidParameter("body", body, f"one of {bodies}")
+            for name, known in (("strip", strips), ("body", bodies), ("other", bodies)):
+                named = getattr(effect, name, None)
+                if named is not None and named not in known:
+                    raise InvalidParameter(name, named, f"one of {known}")
         driven = [(drive.body, axis) for drive in self.of(Driven) for axis in drive.parts]
         if twice := [each for each in driven if driven.count(each) > 1]:
             body, axis = twice[0]

@@ -146,6 +146,11 @@ class StaticSolution(Tabulated, Path):
         return np.zeros(len(self.work))
 
     @kept
+    def spring_energy(self) -> Array:
+        """Of the springs (S,) [J], zero without any."""
+        return self.system.spring_energy(self.poses)
+
+    @kept
     def gravity_energy(self) -> Array:
         """Potential of the dead weight against the state at rest (S,) [J]; zero without gravity."""
         system, weight = self.system, self.system.weight

@@ -14,6 +14,7 @@ from spline_model.effects import (
     BodyGravity,
     Clamp,
     Driven,
+    Spring,
     StripGravity,
 )
 from spline_model.effects.base import Constraint
@@ -186,3 +187,20 @@ def weight(scene: Scene) -> Array:
         for place, value, _ in load.components(scene.layout):
             force[place] += value
     return force
+
+
+def between_bodies(scene: Scene, name: str) -> Array:
+    """Matrix over the poses of all bodies (3 B, 3 B) of what springs have by that name, stiffness or damping;
+    (0, 0) where none has any."""
+    springs = [spring for spring in scene.of(Spring) if any(getattr(spring, name))]
+    if not springs:
+        return np.zeros((0, 0))
+    matrix, begin = np.zeros((3 * len(scene.bodies), 3 * len(scene.bodies))), scene.layout.poses.start
+    for spring in springs:
+        ends = [scene.layout.body(each) for each in (spring.body, spring.other) if each is not None]
+        block = np.diag(getattr(spring, name))
+        for i, one in enumerate(ends):
+            for j, another in enumerate(ends):
+                rows, columns = (slice(at.start - begin, at.stop - begin) for at in (one, another))
+                matrix[rows, columns] += block if i == j else -block
+    return matrix

@@ -9,6 +9,7 @@ from spline_model.effects.boundary import Clamp as Clamp
 from spline_model.effects.boundary import Driven as Driven
 from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
 from spline_model.effects.boundary import DrivenRotation as DrivenRotation
+from spline_model.effects.boundary import Spring as Spring
 from spline_model.effects.boundary import StripGravity as StripGravity
 from spline_model.effects.elastic import MEASURES as MEASURES
 from spline_model.effects.elastic import Bending as Bending

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects.base import Constraint, Load, Potential
-from spline_model.errors import InvalidParameter, require_finite
+from spline_model.errors import InvalidParameter, require_finite, require_not_negative
 from spline_model.layout import Layout
 from spline_model.strip.compiled import kernel
 
@@ -237,3 +237,25 @@ class BodyGravity(Potential):
     body: str
     mass: float
     acceleration: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Spring(Potential):
+    """A spring and damper between the centres of two bodies, or of one and the ground.
+
+    It acts on ``body`` by -k (u - u') - d d(u - u')/dt and on ``other`` by the opposite, u and u' their
+    displacements and turns since rest in axes of the ground; in full at any load factor. Parameters:
+    stiffness k, two in N/m and one in N m/rad; damping d, two in N s/m and one in N m s.
+    """
+
+    body: str
+    other: str | None
+    stiffness: tuple[float, float, float]
+    damping: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        for name, values in (("stiffness", self.stiffness), ("damping", self.damping)):
+            for value in values:
+                require_not_negative(name, value, "N/m, N m, with s of damping")
+        if not any((*self.stiffness, *self.damping)):
+            raise InvalidParameter("stiffness", self.stiffness, "a spring or damper with a constant above 0")

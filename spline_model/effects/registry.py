@@ -242,6 +242,24 @@ def _support(design: Design, fixed: Sequence[str], body: str | None = None) -> I
         yield boundary.DrivenRotation(body=name, angle=0.0, beside=True)
 
 
+def _spring(
+    design: Design,
+    body: str | None = None,
+    other: str | None = None,
+    stiffness: Vector = (0.0, 0.0),
+    rotational_stiffness: float = 0.0,
+    damping: Vector = (0.0, 0.0),
+    rotational_damping: float = 0.0,
+) -> Iterator[Effect]:
+    """Spring and damper between a body's centre and another's or the ground, in axes of the ground."""
+    yield boundary.Spring(
+        body=design.body_named(body),
+        other=None if other is None else design.body_named(other),
+        stiffness=(*stiffness, rotational_stiffness),
+        damping=(*damping, rotational_damping),
+    )
+
+
 def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterable[Effect]:
     """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
     del design, curvature, strain  # the design carries them to the two potentials
@@ -288,6 +306,7 @@ REGISTRY: dict[str, Builder] = {
     "driven_displacement": _driven_displacement,
     "driven_rotation": _driven_rotation,
     "support": _support,
+    "spring": _spring,
     "pre_strain": _pre_strain,
     "clamped_width": _taken_up,
     "anticlastic": _taken_up,
@@ -305,6 +324,7 @@ SEVERAL = (
     "driven_displacement",
     "driven_rotation",
     "support",
+    "spring",
 )
 """Effects that may act several times, each with parameters of its own."""
 

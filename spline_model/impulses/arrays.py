@@ -69,6 +69,8 @@ class Problem(NamedTuple):
         """
         system = motion.system
         layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
+        if system.springs.size:
+            raise InvalidParameter("effects", "spring", "a motion by solve_motion, for impulses know none")
         strips = {name: g for g, name in enumerate(layout.strips)}
         bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
         start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())

@@ -134,7 +134,7 @@ class Trajectory(Tabulated):
     """A motion; T records, the start first.
 
     time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
-    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
+    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,), springs' in it [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
     the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions

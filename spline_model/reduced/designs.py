@@ -46,7 +46,16 @@ def designs_of(model: Reduced, base: Given, given: Given, length: Array, energy:
         start=_starts(model, base, given, longer, wide),
         force=np.stack((bodies.load, bodies.weight))[:, : len(bodies.rest)] * shares[:, None],
         target=model.drives[1] * np.where(turns, 1.0, model.length / wide),
+        springs=_springs(model, length, energy),
     )
+
+
+def _springs(model: Reduced, length: Array, energy: Array) -> Array:
+    """Springs of each design (D, 3 B, 3 B), or (D, 0, 0)."""
+    size, turns = len(model.bodies.springs), np.arange(len(model.bodies.springs)) % 3 == 2
+    unit = np.where(turns, 1.0, length[:, None] / model.length)
+    share = unit[:, :, None] * unit[:, None] * (model.energy / energy)[:, None, None]
+    return np.asarray(model.bodies.springs * share).reshape(len(length), size, size)
 
 
 def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, energy: Array) -> Array:
@@ -73,8 +82,13 @@ def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, e
 
 def of_design(model: Reduced, designs: Designs, d: int) -> Reduced:
     """The mechanism with the strips of one of the designs, which are over its own length and energy."""
-    own = {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")}
-    return replace(model, strips=model.strips._replace(**own))
+    own, bodies = (
+        {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")},
+        model.bodies,
+    )
+    if bodies.springs.size:
+        bodies = bodies._replace(rest=designs.start[d, : len(bodies.rest)])
+    return replace(model, bodies=bodies, strips=model.strips._replace(**own))
 
 
 def _numbers(model: Reduced, base: Given, given: Given, longer: Array, force: Array, wide: Array) -> Array:

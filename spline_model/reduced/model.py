@@ -178,7 +178,14 @@ def _bodies_of(system: System, outer: int) -> Bodies:
         free=np.setdiff1d(np.arange(len(rest) + outer), held),
         held=held,
         driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
+        springs=in_units(system, system.springs),
     )
+
+
+def in_units(system: System, matrix: Array) -> Array:
+    """A matrix over the poses of all bodies, or (0, 0), over units of work."""
+    unit = np.tile(system.scales.pose, len(matrix) // 3)
+    return np.asarray(matrix * (unit[:, None] * unit / system.scales.energy))
 
 
 def at_rest(model: Reduced) -> Array:
