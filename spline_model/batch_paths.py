@@ -208,7 +208,7 @@ def _solve_share(
     """
     strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
-    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight")})
+    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")})
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
     factors, held = np.linspace(0.0, 1.0, batch.torque.shape[1]), len(bodies.held)
     route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)

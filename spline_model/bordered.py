@@ -54,6 +54,10 @@ def evaluate(
     hessian[drives.row, drives.coordinate] = hessian[drives.coordinate, drives.row] = -1.0
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
     gradient[: tables.weight.size] -= tables.weight
+    if system.springs.size:
+        at = system.layout.poses
+        gradient[at] += system.springs @ (z[at] - system.rest[at])
+        hessian[at, at] += system.springs
     return bending, axial
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -16,7 +16,7 @@ from spline_model.effects import (
     BodyDamper,
     BodyInertia,
     Clamp,
-    DrivenDisplacement,
+    Driven,
     MixedStretching,
     SectionRotaryInertia,
     Stretching,
@@ -27,7 +27,7 @@ from spline_model.effects.base import Constraint
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, weight
+from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, between_bodies, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -78,6 +78,20 @@ class System:
         return self._table("weight", weight)
 
     @cached_property
+    def springs(self) -> Array:
+        """Stiffness of springs over all poses (3 B, 3 B) [N/m, N, N m]; empty where there are none."""
+        return self._table("springs", partial(between_bodies, name="stiffness"))
+
+    def spring_energy(self, poses: Array) -> Array:
+        """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
+        moved = poses - self.rest[self.layout.poses]
+        return np.asarray(
+            0.5 * ((moved @ self.springs) * moved).sum(axis=-1)
+            if self.springs.size
+            else 0.0 * moved.sum(axis=-1)
+        )
+
+    @cached_property
     def tables(self) -> Tables:
         """All tables, which the bordered form and the motions walk."""
         return Tables(
@@ -120,7 +134,8 @@ class System:
     def drag(self) -> Array:
         """D of the force - D v (Q, Q) [N s/m, N m s]; (0, 0) where no effect names any."""
         strips, bodies = self.scene.of(StripDrag), self.scene.of(BodyDamper)
-        if not strips and not bodies:
+        between = between_bodies(self.scene, "damping")
+        if not strips and not bodies and not between.size:
             return np.zeros((0, 0))
         drag = np.zeros((self.layout.coordinate_count, self.layout.coordinate_count))
         for each in strips:
@@ -130,6 +145,8 @@ class System:
         for body in bodies:
             at = self.layout.body(body.body)
             drag[at, at] += np.diag((body.translation, body.translation, body.rotation))
+        if between.size:
+            drag[self.layout.poses, self.layout.poses] += between
         return drag
 
     def _add(self, matrix: Array, strip: str, block: Array) -> None:
@@ -202,6 +219,6 @@ class _Scales:
         for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
             if isinstance(constraint, Clamp):
                 unit[row : row + count] = (force, force, moment)
-            else:
-                unit[row : row + count] = force if isinstance(constraint, DrivenDisplacement) else moment
+            elif isinstance(constraint, Driven):
+                unit[row : row + count] = [(force, force, moment)[axis] for axis in constraint.parts]
         return unit

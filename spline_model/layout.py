@@ -43,6 +43,10 @@ class Layout:
         start = self.bodies[name]
         return slice(start, start + 3)
 
+    def coordinate_of(self, place: int) -> tuple[str, int]:
+        """The body that a place in q belongs to, and which of its coordinates."""
+        return next((name, place - at) for name, at in self.bodies.items() if 0 <= place - at < 3)
+
     @property
     def poses(self) -> slice:
         """Slice of x, y, theta of all bodies."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
-from spline_model.effects import DrivenDisplacement
+from spline_model.effects import Driven
 from spline_model.effects.base import Load
 from spline_model.effects.boundary import Sized
 from spline_model.path import Progress, follow
@@ -39,13 +39,15 @@ class Leg(NamedTuple):
 
 def has_loads(scene: Scene) -> bool:
     """Whether loads act that may come on first: beside a driven displacement all grow together."""
-    return bool(scene.of(Load)) and not scene.of(DrivenDisplacement)
+    return bool(scene.of(Load)) and not any(drive.moves for drive in scene.of(Driven) if drive.beside)
 
 
 def steady(scene: Scene) -> Scene:
     """The scene with loads and driven displacements in full at any load factor."""
-    timed = Sized | DrivenDisplacement
-    effects = (replace(e, steady=True) if isinstance(e, timed) else e for e in scene.effects)
+    effects = (
+        replace(e, steady=True) if isinstance(e, Sized) or (isinstance(e, Driven) and e.beside) else e
+        for e in scene.effects
+    )
     return replace(scene, effects=tuple(effects))
 
 

@@ -12,14 +12,23 @@ import numpy as np
 
 from spline_model.design import BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
-from spline_model.effects.registry import DEFAULT_EFFECTS, INERTIA, ROOTS, build, check_names, root_length
+from spline_model.effects.registry import (
+    DEFAULT_EFFECTS,
+    INERTIA,
+    ROOTS,
+    Parameters,
+    build,
+    check_names,
+    root_length,
+    tip_of,
+)
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import loose, props_of
-from spline_model.scene import Body, Effect, Scene, Strip
+from spline_model.scene import AXES, Body, Effect, Scene, Strip
 
 LARGEST_OPENING = math.radians(100.0)
 """Angle of an arc at rest above which it is cut into segments."""
@@ -27,23 +36,21 @@ LARGEST_OPENING = math.radians(100.0)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mechanism:
-    """A design, the names of its effects with their parameters, and its scene without a driven rotation.
-
-    pins: bodies whose centres are held in place and that are free to turn.
-    """
+    """A design, the names of its effects with their parameters, and its scene without a driven rotation."""
 
     design: Design
     effects: tuple[str, ...]
-    parameters: Mapping[str, Mapping[str, Any]]
+    parameters: Parameters
     scene: Scene
-    pins: tuple[str, ...] = ()
 
     def pinned(self, *bodies: str) -> Self:
-        """The same mechanism with these bodies held in place, free to turn: a pin joint to the ground."""
-        held = (
-            DrivenDisplacement(body=self.design.body_named(name), displacement=(0.0, 0.0)) for name in bodies
-        )
-        return replace(self, pins=(*self.pins, *bodies), scene=self.with_effects(*held))
+        """The same mechanism with these bodies' centres supported, free to turn: pin joints to the ground."""
+        known = self.parameters.get("support", ())
+        known = (known,) if isinstance(known, Mapping) else known
+        supports = (*known, *({"body": name, "fixed": AXES[:2]} for name in bodies))
+        names = tuple(dict.fromkeys((*self.effects, "support"))) if supports else self.effects
+        parameters = {**self.parameters, "support": supports} if supports else self.parameters
+        return replace(self, effects=names, parameters=parameters).with_discretisation()
 
     def with_discretisation(self, **changes: Any) -> Self:
         """The same mechanism with other keywords of ``Discretisation``."""
@@ -55,8 +62,7 @@ class Mechanism:
             parameters=self.parameters,
             **(asdict(grid) | changes),
         )
-        own = replace(self, design=made.design, effects=made.effects, scene=made.scene, pins=())
-        return own.pinned(*self.pins)
+        return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
     def with_control_points(self, control_points: int | None) -> Self:
         """The same mechanism with so many control points a strip."""
@@ -106,7 +112,7 @@ class Mechanism:
         return self.scene.with_effects(*more)
 
     def released(self) -> Scene:
-        """The scene in motion (``in_motion``), without the driven displacements that let go.
+        """The scene in motion (``in_motion``), without the drives that let go.
 
         Refused if none of its effects has inertia, and with printed forces, which have no energy.
         """
@@ -116,12 +122,12 @@ class Mechanism:
             expected = "material or spatial for motions and modes: printed forces are of static paths alone"
             raise InvalidParameter("measure", "printed", expected)
         scene = self.in_motion().scene
-        kept = (e for e in scene.effects if not (isinstance(e, DrivenDisplacement) and e.lets_go))
+        kept = (e for e in scene.effects if not (isinstance(e, Driven) and e.lets_go))
         return replace(scene, effects=tuple(kept))
 
     def at_start(self) -> Self:
-        """The mechanism with loads and driven displacements as they are at the start of a motion."""
-        timed = Sized | DrivenDisplacement
+        """The mechanism with loads and drives as they are at the start of a motion."""
+        timed = Sized | Driven
         effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
 
@@ -131,15 +137,15 @@ def compliant_mechanism(
     strips: Sequence[StripDesign],
     bodies: Sequence[BodyDesign] = (),
     effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    parameters: Parameters | None = None,
     **described: Unpack[Described],
 ) -> Mechanism:
     """A mechanism whose scene holds the named effects and nothing else.
 
-    effects: names of ``spline_model.effects.registry``; parameters: of each named effect,
-    by effect; described: keywords of ``Discretisation``; strips are cut into more segments than these say
-    where one of a segment alone would be an arc of more than LARGEST_OPENING. ``stretch="inextensible"`` and
-    the effect "inextensible" are the same thing.
+    effects: names of ``spline_model.effects.registry``; parameters: of each named effect, by effect, or a
+    sequence of them for an effect that acts several times; described: keywords of ``Discretisation``; strips
+    are cut into more segments than these say where one of a segment alone would be an arc of more than
+    LARGEST_OPENING. ``stretch="inextensible"`` and the effect "inextensible" are the same thing.
     """
     grid = Discretisation(**described)
     fewest = max((math.ceil(2.0 * abs(strip.opening) / LARGEST_OPENING) for strip in strips), default=1)
@@ -151,20 +157,25 @@ def compliant_mechanism(
     check_names(names, given)
     if "inextensible" in names and grid.stretch == "consistent":
         raise InvalidParameter("stretch", "consistent", "mixed for inextensible strips")
-    pre_strain = dict(given.get("pre_strain", {}))
+    single = {name: each for name, each in given.items() if isinstance(each, Mapping)}
+    pre_strain = dict(single.get("pre_strain", {}))
     design = Design(
         strips=tuple(strips),
         bodies=tuple(bodies),
         discretisation=grid,
         pre_strain=pre_strain,
         curling=tuple(name for name in names if name in CURLING),
-        root_length=root_length(**given.get(ROOTS, {})) if ROOTS in names else 0.0,
+        root_length=root_length(**single.get(ROOTS, {})) if ROOTS in names else 0.0,
     )
+    built = build(names, given, design)
+    frames = {each.name: each for each in built if isinstance(each, Body)}
     attachments: list[Effect] = []
-    for strip, _, _ in design.pieces:
+    for strip, whole, reach in design.pieces:
         attachments.append(Clamp(strip=strip.name, end="start", to=strip.root))
         if strip.tip is not None:
             attachments.append(Clamp(strip=strip.name, end="end", to=strip.tip))
+        elif reach[1] == 1.0 and tip_of(whole.name) in frames:
+            attachments.append(Clamp(strip=strip.name, end="end", to=tip_of(whole.name), free=True))
     scene = Scene(
         strips=tuple(
             Strip(
@@ -176,12 +187,15 @@ def compliant_mechanism(
             )
             for piece, whole, _ in design.pieces
         ),
-        bodies=tuple(
-            Body(name=body.name, centre=np.asarray(body.centre, dtype=float), joint=joint)
-            for joint, frames in ((False, bodies), (True, design.joints))
-            for body in frames
+        bodies=(
+            *(
+                Body(name=body.name, centre=np.asarray(body.centre, dtype=float), joint=joint)
+                for joint, own in ((False, bodies), (True, design.joints))
+                for body in own
+            ),
+            *frames.values(),
         ),
-        effects=(*build(names, given, design), *attachments),
+        effects=(*(each for each in built if not isinstance(each, Body)), *attachments),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
 

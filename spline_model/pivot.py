@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, Unpack
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.design import NOT_GIVEN, BodyDesign, StripDesign
 from spline_model.discretisation import Described
-from spline_model.effects.registry import DEFAULT_EFFECTS
+from spline_model.effects.registry import DEFAULT_EFFECTS, Parameters
 from spline_model.errors import InvalidParameter, require_finite, require_positive
 from spline_model.mechanism import Mechanism, compliant_mechanism
 
@@ -74,7 +74,7 @@ def cross_axis_pivot(
     width_end: float | None = None,
     thickness_end: float | None = None,
     effects: Sequence[str] = DEFAULT_EFFECTS,
-    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    parameters: Parameters | None = None,
     **described: Unpack[Described],
 ) -> Pivot:
     """The pivot of Table 1, or any other design, in SI units and radians.
@@ -89,7 +89,8 @@ def cross_axis_pivot(
     poisson_ratio : of effects that know the section's curl; a shear-rigid strip is without it otherwise.
     centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
     orientation : turns the whole pivot about A1 [rad].
-    effects, parameters : names of the effects of the scene, and the parameters of each.
+    effects, parameters : names of the effects of the scene, and the parameters of each: see
+        ``compliant_mechanism``.
     described : control_points ... slide_stiffness, see ``design.Discretisation``; without control_points
         answers take as many as an accuracy of 1e-4 needs.
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import GROUND
 from spline_model.errors import InvalidParameter
@@ -34,33 +34,32 @@ class Unheld(InvalidParameter):
 
 def props_of(scene: Scene) -> list[Constraint]:
     """Props where rigid motions are free, to stand behind all other constraints."""
-    props: list[Constraint] = []
-    for part in loose(scene):
-        rows = [row for drive in scene.of(Constraint) for row in _rows(drive, part)]
-        for body in part:
-            for axis in range(3):
-                row = _row(body, axis, part)
-                if _rank([*rows, row]) > _rank(rows):
-                    rows.append(row)
-                    props.append(_prop(body.name, axis))
+    parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
+    rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
+    for spring in scene.of(Spring):
+        for axis in range(3):
+            if spring.stiffness[axis] > 0.0:
+                other = 0.0 if spring.other is None else _row(scene, parts, spring.other, axis)
+                rows.append(_row(scene, parts, spring.body, axis) - other)
+    for body in (body for part in parts for body in part):
+        for axis in range(3):
+            row = _row(scene, parts, body.name, axis)
+            if _rank([*rows, row]) > _rank(rows):
+                rows.append(row)
+                props.append(_prop(body.name, axis))
     return props
 
 
 def require_unborne(system: System, reactions: Array) -> None:
     """Refuse states whose props bear something: reactions (S, D) of the drives [N, N m]."""
-    scene, drives = system.scene, system.drives
-    held = zip(scene.of(Constraint), scene.layout.multipliers, strict=True)
-    props = {row for each, (row, _) in held if getattr(each, "prop", False)}
-    if not props:
+    drives = system.drives
+    if not drives.prop.any():
         return
     largest = float(np.abs(system.loads.value).max(initial=0.0))
     for d, row in enumerate(drives.row.tolist()):
         most = float(np.abs(reactions[:, d]).max(initial=0.0))
-        if row in props and most > BORNE * (system.scales.unit[row] + largest):
-            at = int(drives.coordinate[d])
-            name, axis = next(
-                (name, at - start) for name, start in system.layout.bodies.items() if 0 <= at - start < 3
-            )
+        if drives.prop[d] and most > BORNE * (system.scales.unit[row] + largest):
+            name, axis = system.layout.coordinate_of(int(drives.coordinate[d]))
             load, way = f"{most:.4g} {UNITS[axis]}", WAYS[axis]
             expected = f"none, or a clamp, a pin or a drive: nothing holds body {name} {way}"
             raise Unheld(f"load on body {name} {way}", load, expected)
@@ -88,22 +87,15 @@ def loose(scene: Scene) -> list[list[Body]]:
     return [part for name, part in parts.items() if name != root(GROUND)]
 
 
-def _row(body: Body, axis: int, part: list[Body]) -> Array:
-    """Rate of a body's coordinate as its part moves along x, along y and turns about its first body (3,)."""
-    x, y = (body.centre - part[0].centre).tolist()
-    size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
-    rows = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))
-    return np.array(rows[axis])
-
-
-def _rows(drive: Constraint, part: list[Body]) -> list[Array]:
-    """What a drive holds of a part."""
-    body = next((each for each in part if each.name == getattr(drive, "body", None)), None)
-    if body is None:
-        return []
-    if isinstance(drive, DrivenDisplacement):
-        return [_row(body, axis, part) for axis in drive.parts]
-    return [_row(body, 2, part)] if isinstance(drive, DrivenRotation) else []
+def _row(scene: Scene, parts: list[list[Body]], name: str, axis: int) -> Array:
+    """Rate of a coordinate as each part moves along x, along y and turns about its first body (3 P,)."""
+    rates = np.zeros((len(parts), 3))
+    for rate, part in zip(rates, parts, strict=True):
+        if name in [body.name for body in part]:
+            x, y = (scene.body(name).centre - part[0].centre).tolist()
+            size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
+            rate[:] = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))[axis]
+    return rates.ravel()
 
 
 def _rank(rows: list[Array]) -> int:

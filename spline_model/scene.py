@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.basis import Bezier
-from spline_model.effects import GROUND, Clamp, DrivenRotation, MixedStretching, StripGravity
+from spline_model.effects import GROUND, Clamp, Driven, DrivenRotation, MixedStretching, StripGravity
 from spline_model.effects.base import Constraint, Dissipation, Inertia, Load, Potential
 from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter
 from spline_model.layout import Layout
 
+AXES = ("x", "y", "rotation")
+"""What the coordinates of a body are called."""
 Effect = Potential | Inertia | Dissipation | Load | Constraint
 Kind = TypeVar("Kind", bound=Effect)
 
@@ -77,7 +79,8 @@ class Strip:
 class Body:
     """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero.
 
-    joint: whether it is the frame between two pieces of a strip, without mass and behind all bodies.
+    joint: whether it is a frame without mass, between two pieces of a strip or at its free end, behind all
+    bodies.
     """
 
     name: str
@@ -99,11 +102,15 @@ class Scene:
             raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
         strips, bodies = names[: len(self.strips)], names[len(self.strips) :]
         for effect in self.effects:
-            strip, body = getattr(effect, "strip", None), getattr(effect, "body", None)
-            if strip is not None and strip not in strips:
-                raise InvalidParameter("strip", strip, f"one of {strips}")
-            if body is not None and body not in bodies:
-                raise InvalidParameter("body", body, f"one of {bodies}")
+            for name, known in (("strip", strips), ("body", bodies), ("other", bodies)):
+                named = getattr(effect, name, None)
+                if named is not None and named not in known:
+                    raise InvalidParameter(name, named, f"one of {known}")
+        driven = [(drive.body, axis) for drive in self.of(Driven) for axis in drive.parts]
+        if twice := [each for each in driven if driven.count(each) > 1]:
+            body, axis = twice[0]
+            expected = "one drive, support or rotation of the path for each coordinate of a body"
+            raise InvalidParameter(f"{AXES[axis]} of {body}", "two", expected)
 
     def with_effects(self, *more: Effect) -> Scene:
         """The scene with some effects more."""
@@ -158,14 +165,23 @@ class Scene:
         return total
 
     @property
+    def turned(self) -> DrivenRotation | None:
+        """The rotation that a path drives, if there is one."""
+        turns = self.of(DrivenRotation)
+        return next((each for each in turns if not (each.prop or each.beside)), None)
+
+    @property
     def driven_row(self) -> int | None:
         """Index in z of the driven rotation's torque, if there is one."""
-        turns = (
-            i
-            for i, each in enumerate(self.of(Constraint))
-            if isinstance(each, DrivenRotation) and not each.prop
-        )
-        return next((self.layout.multipliers[i][0] for i in turns), None)
+        turned = self.turned
+        held = zip(self.of(Constraint), self.layout.multipliers, strict=True)
+        return next((row for each, (row, _) in held if each is turned), None)
+
+    @cached_property
+    def free_ends(self) -> tuple[str, ...]:
+        """The strips whose tips are free, with a frame or without one."""
+        held = {each.strip for each in self.of(Clamp) if each.end == "end" and not each.free}
+        return tuple(strip.name for strip in self.strips if strip.name not in held)
 
     @cached_property
     def clamps(self) -> dict[tuple[str, str], slice]:

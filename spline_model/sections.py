@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System
 from spline_model.continuation.resolution import balance
-from spline_model.effects import Bending, MixedStretching, Stretching, StripGravity
+from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.read_only import read_only
 from spline_model.scene import Scene, Strip
 
@@ -150,5 +150,25 @@ def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Arra
     pieces = system.scene.whole.get(strip)
     if pieces is not None:
         strip = pieces[0 if end == "start" else -1].name
-    rows = system.scene.clamps.get((strip, end))
+    rows = None if end == "end" and strip in system.scene.free_ends else system.scene.clamps.get((strip, end))
     return np.zeros((len(states), 3)) if rows is None else states[:, rows]
+
+
+def free_tips(system: System, states: Array) -> dict[str, Array]:
+    """x, y [m] of the free ends, and how far their sections have turned since rest [rad], (S, 3) by strip.
+
+    The turn is that of the root's frame and, from station to station, along the last piece.
+    """
+    scene, found = system.scene, {}
+    roots = {each.strip: each.to for each in scene.of(Clamp) if each.end == "start"}
+    for name in scene.free_ends:
+        strip = scene.strip(name)
+        points = states[:, system.layout.strip(name)].reshape(len(states), -1, 2)
+        slopes = strip.basis.evaluate(STATIONS, 1) @ np.concatenate((points, strip.control_points[None]))
+        angles = np.unwrap(np.arctan2(slopes[..., 1], slopes[..., 0]), axis=1)
+        turn = angles[:, -1] - angles[:, 0]
+        turn = turn[:-1] - turn[-1]
+        if roots[name] != GROUND:
+            turn = turn + states[:, system.layout.body(roots[name]).start + 2]
+        found[strip.of or name] = np.column_stack((points[:, -1], turn))
+    return found

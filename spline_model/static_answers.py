@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import DrivenRotation
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
 from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
-from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, sections
+from spline_model.scene import AXES
+from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, free_tips, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,
     ErrorEstimate,
@@ -71,9 +71,10 @@ class StaticSolution(Tabulated, Path):
         """The answer of a mechanism with these effects from its path; balanced: see ``Sections``; asked: the
         body that was asked for."""
         scene, known = system.scene, dict(vars(path))
-        if scene.of(DrivenRotation):
+        if scene.turned:
             points = (replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
             known |= {"load_factor": np.abs(path.load_factor), "critical_points": tuple(points)}
+        known["reactions"] = path.reactions[:, system.drives.prop == 0]
         return cls(
             **known,
             system=system,
@@ -99,7 +100,8 @@ class StaticSolution(Tabulated, Path):
     @cached_property
     def driven(self) -> str | None:
         """The body whose rotation is driven, if there is one."""
-        return next((drive.body for drive in self.system.scene.of(DrivenRotation)), None)
+        turned = self.system.scene.turned
+        return None if turned is None else turned.body
 
     @kept
     def bodies(self) -> dict[str, Array]:
@@ -110,8 +112,23 @@ class StaticSolution(Tabulated, Path):
     @kept
     def torque(self) -> Array:
         """lambda_13 of the driven rotation (S,) [N m], nan without one."""
-        turns = self.system.drives.turns.tolist()
-        return self.reactions[:, turns.index(1)] if 1 in turns else np.full(len(self.work), np.nan)
+        driven = (self.driven, AXES[2])
+        if driven not in self.prescribed:
+            return np.full(len(self.work), np.nan)
+        return np.asarray(self.reactions[:, self.prescribed.index(driven)])
+
+    @cached_property
+    def prescribed(self) -> tuple[tuple[str, str], ...]:
+        """Body and "x", "y" or "rotation" of all coordinates that drives and supports prescribe, of which
+        ``reactions`` (S, D) are the forces [N] and moments [N m] that have to act on the bodies."""
+        drives, layout = self.system.drives, self.system.layout
+        places = (layout.coordinate_of(int(at)) for at in drives.coordinate[drives.prop == 0])
+        return tuple((name, AXES[axis]) for name, axis in places)
+
+    @kept
+    def tips(self) -> dict[str, Array]:
+        """x, y [m] and turn of the section since rest [rad] (S, 3) of the free ends, by strip."""
+        return free_tips(self.system, self.states)
 
     @property
     def bending_energy(self) -> Array:
@@ -127,6 +144,11 @@ class StaticSolution(Tabulated, Path):
     def shear_energy(self) -> Array:
         """Of the strips (S,) [J], zero: they are rigid in shear."""
         return np.zeros(len(self.work))
+
+    @kept
+    def spring_energy(self) -> Array:
+        """Of the springs (S,) [J], zero without any."""
+        return self.system.spring_energy(self.poses)
 
     @kept
     def gravity_energy(self) -> Array:

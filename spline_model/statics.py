@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.accuracy import answered
 from spline_model.confirmed import Grid
-from spline_model.effects import DrivenDisplacement
+from spline_model.effects import Driven
 from spline_model.effects.base import Constraint, Load
 from spline_model.errors import (
     InvalidParameter,
@@ -170,11 +170,7 @@ def static_state(
     driven = mechanism.scene if rotation is None else mechanism.driven(rotation, body)
     layout = driven.layout
     constraints = enumerate(driven.of(Constraint))
-    kept = [
-        i
-        for i, each in constraints
-        if not (getattr(each, "prop", False) or (isinstance(each, DrivenDisplacement) and each.lets_go))
-    ]
+    kept = [i for i, each in constraints if not (isinstance(each, Driven) and (each.prop or each.lets_go))]
     return np.concatenate((z[: layout.multiplier_start], *(z[layout.rows(i)] for i in kept)))
 
 
@@ -188,7 +184,7 @@ def settle(
 ) -> StaticSolution:
     """The path to that state, with the mechanism's own control points."""
     grid = mechanism.design.discretisation
-    grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(DrivenDisplacement))
+    grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(Driven))
     return solve_mechanism(
         mechanism.on(grid.segments, grid.points),
         rotation=rotation,

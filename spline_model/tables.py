@@ -13,13 +13,12 @@ from spline_model.effects import (
     GROUND,
     BodyGravity,
     Clamp,
-    DrivenDisplacement,
-    DrivenRotation,
+    Driven,
+    Spring,
     StripGravity,
 )
-from spline_model.effects.base import Constraint, Load
+from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import STEADY, History, Sized
-from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
 
@@ -30,7 +29,7 @@ END, INNER, BODY, ROW = range(4)
 """Columns of ``ClampTable.place``."""
 SIGN, ACROSS, ALONG, DIRECTION = range(4)
 """Columns of ``ClampTable.numbers``."""
-PLACES = ("coordinate", "row", "turns")
+PLACES = ("coordinate", "row", "turns", "prop")
 """Columns of whole numbers of the other two tables."""
 
 
@@ -74,8 +73,8 @@ class DriveTable(NamedTuple):
     """One row a driven coordinate, D in all.
 
     coordinate (D,) its index in z; origin (D,) its value at rest; target (D,) its change at
-    factor 1; row (D,) index of its multiplier; turns (D,) 1 for a rotation; first, pairs (D,)
-    its piece of times and factors (H,), the history in a motion; begin, until (D,) when it
+    factor 1; row (D,) index of its multiplier; turns (D,) 1 for a rotation; prop (D,) 1 for one; first, pairs
+    (D,) its piece of times and factors (H,), the history in a motion; begin, until (D,) when it
     holds [s].
     """
 
@@ -84,6 +83,7 @@ class DriveTable(NamedTuple):
     target: Array
     row: Indices
     turns: Indices
+    prop: Indices
     first: Indices
     pairs: Indices
     times: Array
@@ -96,24 +96,16 @@ class DriveTable(NamedTuple):
         """The driven rotations and displacements, one row a coordinate."""
         rows, histories = [], []  # type: list[tuple[float, ...]], list[History]
         for i, drive in enumerate(scene.of(Constraint)):
-            if isinstance(drive, DrivenRotation):
-                parts = [(2, 0.0, drive.angle)]
-            elif isinstance(drive, DrivenDisplacement):
-                centre = scene.body(drive.body).centre
-                grown = 0.0 if drive.steady else 1.0
-                parts = [
-                    (axis, float(centre[axis]) + (1.0 - grown) * moved, grown * moved)
-                    for axis, moved in drive.parts.items()
-                ]
-            else:
+            if not isinstance(drive, Driven):
                 continue
-            for k, (offset, origin, target) in enumerate(parts):
-                place = scene.layout.bodies[drive.body] + offset
-                rows.append(
-                    (place, origin, target, scene.layout.multipliers[i][0] + k, int(offset == 2), *drive.held)
-                )
+            place, at_rest = scene.layout.bodies[drive.body], (*scene.body(drive.body).centre.tolist(), 0.0)
+            grown = 0.0 if drive.steady else 1.0
+            for k, (axis, part) in enumerate(drive.parts.items()):
+                origin, row = at_rest[axis] + (1.0 - grown) * part, scene.layout.multipliers[i][0] + k
+                kind = place + axis, origin, grown * part, row, int(axis == 2), int(drive.prop)
+                rows.append((*kind, *drive.held))
                 histories.append(drive.history or STEADY)
-        names = ("coordinate", "origin", "target", "row", "turns", "begin", "until")
+        names = ("coordinate", "origin", "target", "row", "turns", "prop", "begin", "until")
         return cls(**_columns(names, rows), **_histories(histories))
 
 
@@ -134,8 +126,8 @@ class LoadTable(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene) -> LoadTable:
-        """Forces on bodies and strip ends and moments on bodies that grow, one row a component."""
-        growing = [load for load in scene.of(Load) if isinstance(load, Sized) and not load.steady]
+        """Forces and moments on bodies that grow, one row a component."""
+        growing = [load for load in scene.of(Sized) if not load.steady]
         return _table_of_loads(scene, growing) if growing else NO_LOADS
 
 
@@ -179,16 +171,10 @@ def _histories(histories: Sequence[History]) -> dict[str, Any]:
 NO_LOADS = _table_of_loads(Scene(strips=(), bodies=(), effects=()), ())
 
 
-def steady_loads(scene: Scene, layout: Layout) -> list[tuple[int, float]]:
-    """Place and value of each component of the loads that act in full at any load factor."""
-    steady = [load for load in scene.of(Load) if isinstance(load, Sized) and load.steady]
-    return [(place, value) for load in steady for place, value, _ in load.components(layout)]
-
-
 def weight(scene: Scene) -> Array:
     """Generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names any."""
     strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
-    steady = steady_loads(scene, scene.layout)
+    steady = [load for load in scene.of(Sized) if load.steady]
     if not (strips or bodies or steady):
         return np.zeros(0)
     force = np.zeros(scene.layout.coordinate_count)
@@ -197,6 +183,24 @@ def weight(scene: Scene) -> Array:
         force[scene.layout.strip(strip.strip)] += np.outer(share, strip.acceleration).ravel()
     for body in bodies:
         force[scene.layout.body(body.body)][:2] += body.mass * np.asarray(body.acceleration)
-    for place, value in steady:
-        force[place] += value
+    for load in steady:
+        for place, value, _ in load.components(scene.layout):
+            force[place] += value
     return force
+
+
+def between_bodies(scene: Scene, name: str) -> Array:
+    """Matrix over the poses of all bodies (3 B, 3 B) of what springs have by that name, stiffness or damping;
+    (0, 0) where none has any."""
+    springs = [spring for spring in scene.of(Spring) if any(getattr(spring, name))]
+    if not springs:
+        return np.zeros((0, 0))
+    matrix, begin = np.zeros((3 * len(scene.bodies), 3 * len(scene.bodies))), scene.layout.poses.start
+    for spring in springs:
+        ends = [scene.layout.body(each) for each in (spring.body, spring.other) if each is not None]
+        block = np.diag(getattr(spring, name))
+        for i, one in enumerate(ends):
+            for j, another in enumerate(ends):
+                rows, columns = (slice(at.start - begin, at.stop - begin) for at in (one, another))
+                matrix[rows, columns] += block if i == j else -block
+    return matrix

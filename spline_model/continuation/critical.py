@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.point import NOT_TRACKED, directed, hermite, reached
-from spline_model.effects import DrivenRotation
-from spline_model.effects.base import Constraint
 from spline_model.newton import correct
 from spline_model.solution import CriticalPoint
 
@@ -113,8 +111,8 @@ def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
     if bracket.before.slope * bracket.after.slope > 0.0:
         kind = BIFURCATION
     else:
-        drives = (each for each in work.system.scene.of(Constraint) if isinstance(each, DrivenRotation))
-        kind = TURN if any(drive.angle != 0.0 for drive in drives) else LIMIT
+        turned = work.system.scene.turned
+        kind = TURN if turned and turned.angle != 0.0 else LIMIT
     return _crossing(work, kind, point, modes[t], bracket.after.inertia)
 
 
@@ -138,11 +136,11 @@ def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -
     """Complete a critical point; ``mode`` in dimensionless coordinates of the system."""
     system, moved = work.system, work.moved(at.z, mode)
     scale = _sense(system, moved) / np.abs(moved).max()
-    drives = [d for d in system.scene.of(Constraint) if isinstance(d, DrivenRotation)]
+    turned = system.scene.turned
     told = CriticalPoint(
         kind=kind,
         load_factor=at.load_factor,
-        rotation=at.load_factor * drives[0].angle if drives else np.nan,
+        rotation=at.load_factor * turned.angle if turned else np.nan,
         z=work.unknowns(at.z),
         mode=scale * moved * system.scales.unit[: len(moved)],
         inertia=inertia,

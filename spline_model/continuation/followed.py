@@ -242,10 +242,14 @@ class Followed:
         return less - apart.gradient
 
     def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
-        """Energy of strips, dead weight and loads."""
+        """Energy of strips, springs, dead weight and loads."""
         factor, share = self.acting(load_factor)
         loads, weight = self.external(z)
-        return sum(energies) - factor * loads - share * weight
+        return sum(energies) + self.in_springs(z) - factor * loads - share * weight
+
+    def in_springs(self, z: Array) -> float:
+        """Energy of the springs."""
+        return float(self.system.spring_energy(z[self.system.layout.poses]))
 
     def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
         """First and second derivative of the potential in the load factor, drives released."""

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from spline_model.compile import System
-from spline_model.effects import AppliedForce, AppliedMoment, DrivenDisplacement, DrivenRotation, TipForce
-from spline_model.effects.base import Constraint, Load
+from spline_model.effects import AppliedForce, AppliedMoment, Driven, DrivenRotation
+from spline_model.effects.base import Load
 
 PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
 """Prefixes by their powers of ten."""
@@ -60,13 +60,15 @@ class Place:
 
 def _drives(system: System, load_factor: float, rotation: float) -> list[str]:
     parts = []
-    for drive in system.scene.of(Constraint):
-        if isinstance(drive, DrivenRotation) and drive.angle != 0.0:
-            angle = load_factor * drive.angle if math.isnan(rotation) else rotation
+    for drive in (each for each in system.scene.of(Driven) if each.moves):
+        share = 1.0 if drive.steady else load_factor
+        if isinstance(drive, DrivenRotation):
+            known = not (drive.beside or math.isnan(rotation))
+            angle = rotation if known else share * drive.angle
             parts.append(f"rotation {math.degrees(angle):.5g} deg")
-        elif isinstance(drive, DrivenDisplacement) and any(drive.parts.values()):
-            share = 1.0 if drive.steady else abs(load_factor)
-            parts.append(f"displacement {1e3 * share * math.hypot(*drive.parts.values()):.4g} mm")
+        else:
+            size = 1e3 * abs(share) * math.hypot(*drive.parts.values())
+            parts.append(f"displacement {size:.4g} mm")
     return parts
 
 
@@ -76,7 +78,7 @@ def _loads(system: System, load_factor: float) -> list[str]:
         share = 1.0 if getattr(load, "steady", False) else load_factor
         if isinstance(load, AppliedMoment) and load.moment:
             parts.append(f"moment {_sized(share * load.moment)}N m")
-        elif isinstance(load, AppliedForce | TipForce) and any(load.force):
+        elif isinstance(load, AppliedForce) and any(load.force):
             parts.append(f"force {_sized(abs(share) * math.hypot(*load.force))}N")
     return parts
 

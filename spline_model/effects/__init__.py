@@ -6,10 +6,11 @@ from spline_model.effects.boundary import AppliedForce as AppliedForce
 from spline_model.effects.boundary import AppliedMoment as AppliedMoment
 from spline_model.effects.boundary import BodyGravity as BodyGravity
 from spline_model.effects.boundary import Clamp as Clamp
+from spline_model.effects.boundary import Driven as Driven
 from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
 from spline_model.effects.boundary import DrivenRotation as DrivenRotation
+from spline_model.effects.boundary import Spring as Spring
 from spline_model.effects.boundary import StripGravity as StripGravity
-from spline_model.effects.boundary import TipForce as TipForce
 from spline_model.effects.elastic import MEASURES as MEASURES
 from spline_model.effects.elastic import Bending as Bending
 from spline_model.effects.elastic import MixedStretching as MixedStretching

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects.base import Constraint, Load, Potential
-from spline_model.errors import InvalidParameter, require_finite
+from spline_model.errors import InvalidParameter, require_finite, require_not_negative
 from spline_model.layout import Layout
 from spline_model.strip.compiled import kernel
 
@@ -55,57 +55,98 @@ class Clamp(Constraint):
     Eq 6 over |C'| where it vanishes, so that its multiplier is the end moment, and
     unlike Eq 6 it does not vanish for a reversed tangent.
 
-    The multipliers are the force [N] and the moment [N m] of the clamp on the strip.
+    The multipliers are the force [N] and the moment [N m] of the clamp on the strip. free: whether it is a
+    free end, whose frame only carries what acts there.
     """
 
     rows: ClassVar[int] = 3
     strip: str
     end: Literal["start", "end"]
     to: str = GROUND
+    free: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class DrivenRotation(Constraint):
-    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
+class Driven(Constraint):
+    """Coordinates of a body that are prescribed, each from where it is at rest by a part x load factor.
 
-    In a motion it acts in ``held``, from - to [s], and changes by angle x the change of
-    history(t) from where the body is when it begins; a body that is caught loses the velocity
-    that the drive does not have. Its multiplier is the torque
-    that has to be applied to the body [N m]; positive counter-clockwise. A ``prop`` only keeps a free
+    A ``steady`` one is there in full at any load factor. Without a history it holds the start of a motion and
+    lets go; with one it goes on through the motion, in which it acts in ``held``, from - to [s], and changes
+    by its part x the change of history(t) from where the body is when it begins; a body that is caught loses
+    the velocity that the drive does not have. The multipliers are the force [N] or the torque [N m],
+    counter-clockwise positive, that has to be applied to the body.
+
+    beside: whether another rotation than this is what a path is driven by; prop: whether it only keeps a free
     rigid motion from being indeterminate (``spline_model.rigid``).
     """
 
-    rows: ClassVar[int] = 1
     body: str
-    angle: float
-    history: History = STEADY
+    history: History | None = None
     held: tuple[float, float] = ALWAYS
+    steady: bool = False
+    beside: bool = True
     prop: bool = False
+
+    @property
+    def parts(self) -> dict[int, float]:
+        """The prescribed parts by their axis, 0, 1 and 2 for x, y and rotation [m, rad]."""
+        raise NotImplementedError
+
+    @property
+    def rows(self) -> int:  # type: ignore[override]
+        """One for each prescribed part."""
+        return len(self.parts)
+
+    @property
+    def moves(self) -> bool:
+        """Whether any of them changes."""
+        return any(self.parts.values())
+
+    @property
+    def lets_go(self) -> bool:
+        """Whether it holds the start of a motion alone."""
+        return self.history is None and self.held == ALWAYS
+
+    def at(self, time: float) -> Self:
+        """The drive with what it has at an instant [s] of a motion."""
+        return self if self.history is None else self._times(_factor_of(self.history, time))
+
+    def _times(self, factor: float) -> Self:
+        """The drive times a factor."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DrivenRotation(Driven):
+    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad."""
+
+    angle: float
+    history: History | None = STEADY
+    beside: bool = False
 
     def __post_init__(self) -> None:
         require_finite("angle", self.angle, "rad")
         if not self.held[0] < self.held[1]:
             raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
 
+    @property
+    def parts(self) -> dict[int, float]:
+        """The rotation."""
+        return {2: self.angle}
+
+    def _times(self, factor: float) -> Self:
+        return replace(self, angle=factor * self.angle)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class DrivenDisplacement(Constraint):
+class DrivenDisplacement(Driven):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    None in place of dx or dy leaves that way free, and its row out. A ``steady`` one is there in full at any
-    load factor.
-
-    The paper's "two other driving constraints" (section 4). Without a history it holds the start of
-    a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
-    multipliers are the applied force [N]. A ``prop`` is as that of ``DrivenRotation``.
+    None in place of dx or dy leaves that way free, and its row out. The paper's "two other driving
+    constraints" (section 4).
     """
 
-    body: str
     displacement: tuple[float | None, float | None]
-    history: History | None = None
-    held: tuple[float, float] = ALWAYS
-    steady: bool = False
-    prop: bool = False
 
     def __post_init__(self) -> None:
         if not self.parts or not all(math.isfinite(part) for part in self.parts.values()):
@@ -114,23 +155,11 @@ class DrivenDisplacement(Constraint):
 
     @property
     def parts(self) -> dict[int, float]:
-        """The prescribed parts by their axis, 0 or 1 [m]."""
+        """The displacements."""
         return {axis: part for axis, part in enumerate(self.displacement) if part is not None}
 
-    @property
-    def rows(self) -> int:  # type: ignore[override]
-        """One for each prescribed part."""
-        return len(self.parts)
-
-    @property
-    def lets_go(self) -> bool:
-        """Whether it holds the start of a motion alone."""
-        return self.history is None and self.held == ALWAYS
-
-    def at(self, time: float) -> DrivenDisplacement:
-        """The drive with the displacement that it has at an instant [s] of a motion."""
-        part = 1.0 if self.history is None else _factor_of(self.history, time)
-        x, y = (None if moved is None else part * moved for moved in self.displacement)
+    def _times(self, factor: float) -> Self:
+        x, y = (None if moved is None else factor * moved for moved in self.displacement)
         return replace(self, displacement=(x, y))
 
 
@@ -189,24 +218,6 @@ class AppliedMoment(Sized):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class TipForce(Sized):
-    """Dead force at one end of a strip: (fx, fy) x load factor, in a motion x history(t).    [N]"""
-
-    strip: str
-    end: Literal["start", "end"]
-    force: tuple[float, float]
-
-    def _times(self, factor: float) -> Self:
-        return replace(self, force=(factor * self.force[0], factor * self.force[1]))
-
-    def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """fx and fy of the strip's end."""
-        start, count = layout.strips[self.strip]
-        end = start if self.end == "start" else start + 2 * count - 2
-        return [(end + k, force, 0) for k, force in enumerate(self.force)]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class StripGravity(Potential):
     """Weight of a strip, V = - int mu g . C ds0 [J], linear in the control points.
 
@@ -226,3 +237,25 @@ class BodyGravity(Potential):
     body: str
     mass: float
     acceleration: tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Spring(Potential):
+    """A spring and damper between the centres of two bodies, or of one and the ground.
+
+    It acts on ``body`` by -k (u - u') - d d(u - u')/dt and on ``other`` by the opposite, u and u' their
+    displacements and turns since rest in axes of the ground; in full at any load factor. Parameters:
+    stiffness k, two in N/m and one in N m/rad; damping d, two in N s/m and one in N m s.
+    """
+
+    body: str
+    other: str | None
+    stiffness: tuple[float, float, float]
+    damping: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        for name, values in (("stiffness", self.stiffness), ("damping", self.damping)):
+            for value in values:
+                require_not_negative(name, value, "N/m, N m, with s of damping")
+        if not any((*self.stiffness, *self.damping)):
+            raise InvalidParameter("stiffness", self.stiffness, "a spring or damper with a constant above 0")

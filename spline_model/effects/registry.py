@@ -12,18 +12,20 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from spline_model.basis import AxialModes, SlideModes
 from spline_model.effects import boundary, elastic, moving
 from spline_model.effects.boundary import STEADY, History
 from spline_model.effects.elastic import Taper
-from spline_model.errors import InvalidParameter, is_finite
+from spline_model.errors import InvalidParameter, is_finite, require_choice
+from spline_model.scene import AXES, Body, Effect
 
 if TYPE_CHECKING:
     from spline_model.design import Design, StripDesign
-    from spline_model.scene import Effect
 
-Parameters = Mapping[str, Mapping[str, Any]]
-Builder = Callable[..., "Iterable[Effect]"]
+Parameters = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
+Builder = Callable[..., Iterable[Effect | Body]]
 Vector = tuple[float, float]
 
 ROOTS = "root_compliance"
@@ -194,12 +196,23 @@ def _applied_moment(
     yield boundary.AppliedMoment(body=design.body_named(body), moment=moment, history=history)
 
 
-def _tip_force(design: Design, strip: str, force: Vector, history: History = STEADY) -> Iterator[Effect]:
-    """Dead force [N] at the free end of a strip."""
-    if strip not in {s.name for s in design.strips if s.tip is None}:
+def _tip_force(
+    design: Design, strip: str, force: Vector, moment: float = 0.0, history: History = STEADY
+) -> Iterator[Effect | Body]:
+    """Dead force [N] and moment [N m] at the free end of a strip, on a frame there."""
+    whole = next((s for s in design.strips if s.name == strip and s.tip is None), None)
+    if whole is None:
         raise InvalidParameter("strip", strip, "a strip with a free end")
-    last = next(piece for piece, whole, reach in design.pieces if whole.name == strip and reach[1] == 1.0)
-    yield boundary.TipForce(strip=last.name, end="end", force=force, history=history)
+    frame = Body(name=tip_of(strip), centre=np.asarray(whole.end, dtype=float), joint=True)
+    yield frame
+    yield boundary.AppliedForce(body=frame.name, force=force, history=history)
+    if moment != 0.0:
+        yield boundary.AppliedMoment(body=frame.name, moment=moment, history=history)
+
+
+def tip_of(strip: str) -> str:
+    """What the frame at the free end of a strip is called."""
+    return f"tip of {strip}"
 
 
 def _driven_displacement(
@@ -212,6 +225,46 @@ def _driven_displacement(
     only with a history."""
     yield boundary.DrivenDisplacement(
         body=design.body_named(body), displacement=displacement, history=history
+    )
+
+
+def _driven_rotation(
+    design: Design, angle: float, body: str | None = None, history: History | None = None
+) -> Iterator[Effect]:
+    """Rotation [rad] of a body prescribed beside the one that drives the path; in a motion only with a
+    history."""
+    yield boundary.DrivenRotation(body=design.body_named(body), angle=angle, history=history, beside=True)
+
+
+def _support(design: Design, fixed: Sequence[str], body: str | None = None) -> Iterator[Effect]:
+    """Coordinates of a body, "x", "y" and "rotation", that stay where they are at rest, in a motion too."""
+    name = design.body_named(body)
+    if isinstance(fixed, str) or not fixed:
+        raise InvalidParameter("fixed", fixed, "a sequence of x, y, rotation, one at least")
+    for each in fixed:
+        require_choice("fixed", each, AXES)
+    x, y = (0.0 if axis in fixed else None for axis in AXES[:2])
+    if x is not None or y is not None:
+        yield boundary.DrivenDisplacement(body=name, displacement=(x, y), history=STEADY)
+    if "rotation" in fixed:
+        yield boundary.DrivenRotation(body=name, angle=0.0, beside=True)
+
+
+def _spring(
+    design: Design,
+    body: str | None = None,
+    other: str | None = None,
+    stiffness: Vector = (0.0, 0.0),
+    rotational_stiffness: float = 0.0,
+    damping: Vector = (0.0, 0.0),
+    rotational_damping: float = 0.0,
+) -> Iterator[Effect]:
+    """Spring and damper between a body's centre and another's or the ground, in axes of the ground."""
+    yield boundary.Spring(
+        body=design.body_named(body),
+        other=None if other is None else design.body_named(other),
+        stiffness=(*stiffness, rotational_stiffness),
+        damping=(*damping, rotational_damping),
     )
 
 
@@ -259,6 +312,9 @@ REGISTRY: dict[str, Builder] = {
     "applied_moment": _applied_moment,
     "tip_force": _tip_force,
     "driven_displacement": _driven_displacement,
+    "driven_rotation": _driven_rotation,
+    "support": _support,
+    "spring": _spring,
     "pre_strain": _pre_strain,
     "clamped_width": _taken_up,
     "anticlastic": _taken_up,
@@ -269,6 +325,16 @@ DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
 MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 """Effects that statics never asks for."""
+SEVERAL = (
+    "applied_force",
+    "applied_moment",
+    "tip_force",
+    "driven_displacement",
+    "driven_rotation",
+    "support",
+    "spring",
+)
+"""Effects that may act several times, each with parameters of its own."""
 
 
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
@@ -292,16 +358,21 @@ def check_names(names: Sequence[str], parameters: Parameters) -> None:
     for name in parameters:
         if name not in names:
             raise InvalidParameter(f"parameters of {name}", name, f"an effect of the scene, {list(names)}")
+        if not isinstance(parameters[name], Mapping) and name not in SEVERAL:
+            raise InvalidParameter(f"parameters of {name}", parameters[name], "one mapping")
 
 
-def build(names: Sequence[str], parameters: Parameters, design: Design) -> tuple[Effect, ...]:
-    """The effects of these names, which were checked, for a design, in the order of the names."""
-    effects: list[Effect] = []
+def build(names: Sequence[str], parameters: Parameters, design: Design) -> list[Effect | Body]:
+    """The effects of these names, which were checked, for a design, in the order of the names, and frames of
+    their own."""
+    built: list[Effect | Body] = []
     for name in names:
-        try:
-            effects += REGISTRY[name](design, **parameters.get(name, {}))
-        except TypeError as error:
-            given, known = sorted(parameters.get(name, {})), list(signature(REGISTRY[name]).parameters)[1:]
-            expected = "only " + ", ".join(known) if known else "none"
-            raise InvalidParameter(f"parameters of {name}", given, expected) from error
-    return tuple(effects)
+        given = parameters.get(name, {})
+        for each in [given] if isinstance(given, Mapping) else given:
+            try:
+                built += REGISTRY[name](design, **each)
+            except TypeError as error:
+                known = list(signature(REGISTRY[name]).parameters)[1:]
+                expected = "only " + ", ".join(known) if known else "none"
+                raise InvalidParameter(f"parameters of {name}", sorted(each), expected) from error
+    return built

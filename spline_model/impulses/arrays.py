@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, DrivenDisplacement, DrivenRotation, MixedStretching
+from spline_model.effects import Clamp, Driven, MixedStretching
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.motion.start import Motion
@@ -69,6 +69,8 @@ class Problem(NamedTuple):
         """
         system = motion.system
         layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
+        if system.springs.size:
+            raise InvalidParameter("effects", "spring", "a motion by solve_motion, for impulses know none")
         strips = {name: g for g, name in enumerate(layout.strips)}
         bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
         start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
@@ -156,7 +158,7 @@ def _constraints(
         if isinstance(constraint, Clamp):
             key: tuple[str, str] = (constraint.strip, constraint.end)
             touched = (strips[constraint.strip], bodies.get(constraint.to, -1))
-        elif isinstance(constraint, DrivenRotation | DrivenDisplacement):
+        elif isinstance(constraint, Driven):
             key, touched = (constraint.body, "drive"), (bodies[constraint.body], -1)
         else:
             expected = "clamps, driven rotations and displacements"

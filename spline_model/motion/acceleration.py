@@ -276,6 +276,9 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
         for j in range(i, load.size):
             tangent[i, j] = 0.0
         tangent[i, i] = masses.inertia[i] if i < poses else 0.0
+    for i in range(bodies.springs.shape[0]):
+        for j in range(bodies.springs.shape[0]):
+            load[i] -= bodies.springs[i, j] * (y[j] - bodies.rest[j])
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]

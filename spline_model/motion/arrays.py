@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from spline_model.effects import StripDamping
 from spline_model.motion.start import Motion
-from spline_model.reduced.model import Reduced
+from spline_model.reduced.model import Reduced, in_units
 from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
 from spline_model.tables import DriveTable, LoadTable
 
@@ -28,7 +28,8 @@ RECORDED = 5
 class Masses(NamedTuple):
     """What a mechanism in motion has beside its elasticity: B bodies, free strip ends among them, S strips.
 
-    inertia, drag (Q,) of the bodies, Q = 3 B; points, damping (S, n, n): mass and drag of control points,
+    inertia, drag (Q,) of the bodies, Q = 3 B; across: drag between them over the poses of the scene's bodies,
+    or (0, 0); points, damping (S, n, n): mass and drag of control points,
     along x as along y, in the order of elimination; relaxation (S,) [s]; pairs (G, 4, n n): products d1 d1,
     d1 d2, d2 d1, d2 d2 of the basis. loads (F) and drives (D) of the motion, at the coordinates load_at and
     drive_at of the bodies. gain (S, K): stiffness by which axial forces are condensed, of which the
@@ -46,6 +47,7 @@ class Masses(NamedTuple):
     drives: DriveTable
     drive_at: Places
     gain: Array
+    across: Array
     outer: int
     free_from: int
 
@@ -61,6 +63,8 @@ class Masses(NamedTuple):
         order, damped = model.shape.order, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
         for acts, whole in ((inertia, motion.mass), (drag, damped)):
             acts[:own] = np.diag(whole)[layout.poses] * np.tile(unit, own // 3)
+        across = in_units(model.system, damped[layout.poses, layout.poses])
+        across = across - np.diag(np.diag(across))
         points, damping = (
             np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
             for whole in (motion.mass, damped)
@@ -81,23 +85,14 @@ class Masses(NamedTuple):
             relaxation=np.array([time.get(name, 0.0) for name in layout.strips]),
             pairs=np.stack(pairs, axis=1).reshape(-1, 4, len(order) ** 2),
             loads=loads._replace(value=loads.value * np.where(loads.turns == 1, 1.0, length) / energy),
-            load_at=np.array([_pose_of(model, at) for at in loads.coordinate], dtype=np.int64),
+            load_at=loads.coordinate - begin,
             drives=drives._replace(origin=drives.origin / size, target=drives.target / size),
             drive_at=drives.coordinate - begin,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+            across=across if across.any() else across[:0, :0],
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
-
-
-def _pose_of(model: Reduced, coordinate: int) -> int:
-    """Place among the poses of a coordinate of a body or of a free end."""
-    layout, strips = model.system.layout, model.strips
-    for s, (start, n) in enumerate(layout.strips.values()):
-        for body, first in ((strips.roots[s], start), (strips.tips[s], start + 2 * n - 2)):
-            if 0 <= coordinate - first < 2 and body >= len(layout.bodies):
-                return int(3 * body + coordinate - first)
-    return int(coordinate - layout.poses.start)
 
 
 class State(NamedTuple):

@@ -96,6 +96,9 @@ def _accept(time, h, active, state, arrays, masses, work):
         totals[1] += h * masses.drag[i] * mean * mean
         state.push[i] = 2.0 * (mean - state.rate[i]) / h
         state.rate[i] = 2.0 * mean - state.rate[i]
+    for i in range(masses.across.shape[0]):
+        for j in range(masses.across.shape[0]):
+            totals[1] += masses.across[i, j] * dy[i] * dy[j] / h
     own, modes = work.line.size - 6, strips.compliance.shape[1]
     for s in range(strips.roots.size):
         at, move = masses.inertia.size + s * (own + modes) + own, work.move[s]
@@ -129,7 +132,7 @@ def look(state, arrays):
 def store(state, arrays, masses, row):
     """A record: what ``State.record`` holds, and energies.
 
-    These are, in EI/L: kinetic energy, potential of the weight, strain energy, work and losses.
+    These are, in EI/L: kinetic energy, potential of the weight, energy of strains and springs, work, losses.
     """
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     out, spare, n, at = arrays.space.out, arrays.space.states[SPARE], shape.order.size, state.record.size
@@ -138,6 +141,10 @@ def store(state, arrays, masses, row):
     for i in range(state.rate.size):
         kinetic += 0.5 * masses.inertia[i] * state.rate[i] * state.rate[i]
         out[DEAD] -= bodies.weight[i] * state.y[i]
+    for i in range(bodies.springs.shape[0]):
+        for j in range(bodies.springs.shape[0]):
+            moved = (state.y[i] - bodies.rest[i]) * (state.y[j] - bodies.rest[j])
+            out[AXIAL] += 0.5 * bodies.springs[i, j] * moved
     for s in range(strips.roots.size):
         first = state.rate.size + s * (own + modes)
         a = spare[first + own : first + own + modes]

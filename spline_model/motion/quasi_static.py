@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
+from spline_model.effects import Spring
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Masses, Poses
 from spline_model.motion.energy_consistent import forward, turned, why
@@ -44,9 +45,12 @@ def stepper(start: Start) -> Moves:
         raise InvalidParameter(
             "effects", "strip_damping", "strip_inertia with it: massless strips have no rate"
         )
+    if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
+        raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
-    if (motion.loads.coordinate < motion.system.layout.poses.start).any():
+    own = len(motion.system.scene.own_bodies)
+    if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
         raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp
 from spline_model.motion.start import Motion
 from spline_model.newton import Laps
 from spline_model.read_only import kept
@@ -55,8 +54,7 @@ class Whole:
     def free_ends(self, every: int) -> Array:
         """Places of the strips' ends that no clamp holds, of every so many of the records (R, E, 2) [m]."""
         system = self.motion.system
-        held = {(clamp.strip, clamp.end) for clamp in system.scene.of(Clamp)}
-        free = [strip.name for strip in system.scene.strips if (strip.name, "end") not in held]
+        free = system.scene.free_ends
         ends = np.array([system.layout.strip(name).stop for name in free], dtype=int)
         return self.both[0][::every, ends[:, None] + np.array([-2, -1])] if free else np.zeros((1, 0, 2))
 
@@ -136,7 +134,7 @@ class Trajectory(Tabulated):
     """A motion; T records, the start first.
 
     time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
-    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,) [J]; gravity_energy
+    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,), springs' in it [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
     the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions

@@ -80,7 +80,31 @@ def _add_bodies(h, state, bodies, masses, work):
                 load *= share
         raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
         raw[i] -= bodies.weight[i] + load
+    _add_springs(h, state, bodies, masses, work)
+    for i in range(masses.inertia.size):
         work.reduced[i] = raw[i]
+
+
+@part()
+def _add_springs(h, state, bodies, masses, work):
+    """Springs at the mean of a step, where their work is their gain of energy, and dampers between bodies."""
+    dy, raw, tangent = work.dy, work.residual, work.tangent
+    for i in range(bodies.springs.shape[0]):
+        share, slope, pull = 1.0, 0.0, 0.0
+        if i % 3 == 2:
+            share, slope = cayley(dy[i])
+        for j in range(bodies.springs.shape[0]):
+            k, move, turn = bodies.springs[i, j], dy[j], 1.0
+            if j % 3 == 2:
+                move, turn = 2.0 * math.atan(0.5 * dy[j]), 1.0 / (1.0 + 0.25 * dy[j] * dy[j])
+            pull += k * (state.y[j] - bodies.rest[j] + 0.5 * move)
+            tangent[i, j] += 0.5 * share * k * turn
+        raw[i] += share * pull
+        tangent[i, i] += slope * pull
+    for i in range(masses.across.shape[0]):
+        for j in range(masses.across.shape[0]):
+            raw[i] += masses.across[i, j] * dy[j] / h
+            tangent[i, j] += masses.across[i, j] / h
 
 
 @part()

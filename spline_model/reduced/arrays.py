@@ -31,7 +31,8 @@ class Bodies(NamedTuple):
 
     rest (3 B,); load (Q,) generalised force at load factor 1; weight (Q,) at any, Q = 3 B and one more
     for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these;
-    driven: place among the held ones of the rotation whose torque is asked for, or -1.
+    driven: place among the held ones of the rotation whose torque is asked for, or -1; springs: stiffness
+    over the poses of the scene's bodies, or (0, 0).
     """
 
     rest: Array
@@ -40,6 +41,7 @@ class Bodies(NamedTuple):
     free: NDArray[np.int64]
     held: NDArray[np.int64]
     driven: int
+    springs: Array
 
 
 class Space(NamedTuple):

@@ -96,6 +96,13 @@ def begin(y, load, bodies, space):
         force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
     for i in range(bodies.rest.size):
         out[DEAD] -= bodies.weight[i] * y[i]
+    for i in range(bodies.springs.shape[0]):
+        pull = 0.0 * y[i]
+        for j in range(bodies.springs.shape[0]):
+            pull += bodies.springs[i, j] * (y[j] - bodies.rest[j])
+        out[DEAD] += 0.5 * pull * (y[i] - bodies.rest[i])
+        force[i] += pull
+        raw[i] += pull
 
 
 @part()
@@ -126,6 +133,9 @@ def assemble(y, load, arrays):
     for i in range(bodies.load.size):
         for j in range(i, bodies.load.size):
             space.tangent[i, j] = 0.0
+    for i in range(bodies.springs.shape[0]):
+        for j in range(i, bodies.springs.shape[0]):
+            space.tangent[i, j] = bodies.springs[i, j]
     norm, space.out[NEGATIVE] = 0.0, 0.0
     begin(y, load, bodies, space)
     for s in range(strips.roots.size):

@@ -171,6 +171,9 @@ def take_product(rate, load_rate, arrays):
     own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
     for i in range(bodies.load.size):
         force[i] = -load_rate * bodies.load[i]
+    for i in range(bodies.springs.shape[0]):
+        for j in range(bodies.springs.shape[0]):
+            force[i] += bodies.springs[i, j] * rate[j]
     for s in range(strips.roots.size):
         at, along, covector = poses + s * (own + modes), local.nodal[s, ALONG], local.nodal[s, COVECTOR]
         move_points(s, at, rate, strips, local, along)

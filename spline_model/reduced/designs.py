@@ -46,7 +46,16 @@ def designs_of(model: Reduced, base: Given, given: Given, length: Array, energy:
         start=_starts(model, base, given, longer, wide),
         force=np.stack((bodies.load, bodies.weight))[:, : len(bodies.rest)] * shares[:, None],
         target=model.drives[1] * np.where(turns, 1.0, model.length / wide),
+        springs=_springs(model, length, energy),
     )
+
+
+def _springs(model: Reduced, length: Array, energy: Array) -> Array:
+    """Springs of each design (D, 3 B, 3 B), or (D, 0, 0)."""
+    size, turns = len(model.bodies.springs), np.arange(len(model.bodies.springs)) % 3 == 2
+    unit = np.where(turns, 1.0, length[:, None] / model.length)
+    share = unit[:, :, None] * unit[:, None] * (model.energy / energy)[:, None, None]
+    return np.asarray(model.bodies.springs * share).reshape(len(length), size, size)
 
 
 def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, energy: Array) -> Array:
@@ -73,8 +82,13 @@ def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, e
 
 def of_design(model: Reduced, designs: Designs, d: int) -> Reduced:
     """The mechanism with the strips of one of the designs, which are over its own length and energy."""
-    own = {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")}
-    return replace(model, strips=model.strips._replace(**own))
+    own, bodies = (
+        {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")},
+        model.bodies,
+    )
+    if bodies.springs.size:
+        bodies = bodies._replace(rest=designs.start[d, : len(bodies.rest)])
+    return replace(model, bodies=bodies, strips=model.strips._replace(**own))
 
 
 def _numbers(model: Reduced, base: Given, given: Given, longer: Array, force: Array, wide: Array) -> Array:
@@ -99,7 +113,7 @@ def _numbers(model: Reduced, base: Given, given: Given, longer: Array, force: Ar
 def _starts(model: Reduced, base: Given, given: Given, longer: Array, wide: Array) -> Array:
     """The designs' states at rest (D, Y)."""
     strips, scene, (cos, sin) = model.strips, model.system.scene, _turns(base, given)
-    count, own = len(longer), len(scene.bodies)
+    count, own = len(longer), given.centres.shape[1]
     start = np.repeat(at_rest(model)[None].astype(longer.dtype), count, axis=0)
     for body in range(own):
         start[:, 3 * body : 3 * body + 2] = given.centres[:, body] / wide
@@ -109,7 +123,7 @@ def _starts(model: Reduced, base: Given, given: Given, longer: Array, wide: Arra
         points = np.stack((c * x - d * y, d * x + c * y), axis=-1) + given.ends[:, s, None, 0]
         start[:, w.start : w.stop - 2] = (points / wide[..., None]).reshape(count, -1)
         for end, carriers in enumerate((strips.roots, strips.tips)):
-            if carriers[s] >= own:  # a free end is its own body
+            if carriers[s] >= own:  # a free end has a frame of its own
                 place = 3 * carriers[s]
                 start[:, place : place + 2] = given.ends[:, s, end] / wide
     return start

@@ -183,6 +183,10 @@ class Elements(Followed):
         origin, target = model.drives
         given = self.y(z), z[size:], origin + load_factor * target, load_factor
         _gather(*given, arrays, self.out, self.gradient, self.hessian)
+        if (springs := model.bodies.springs).size:
+            own = slice(0, len(springs))
+            self.gradient[own] += springs @ (z[own] - model.bodies.rest[own])
+            self.hessian[own, own] += springs
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:
@@ -192,6 +196,12 @@ class Elements(Followed):
         loads, weight = (float(moved @ force[: len(moved)]) for force in (bodies.load, bodies.weight))
         hung = preload.numbers[:, ON_POINTS:] * self.arrays.local.points
         return loads, weight + float(hung.sum() - preload.hung[0])
+
+    def in_springs(self, z: Array) -> float:
+        """Energy of the springs."""
+        springs = self.model.bodies.springs
+        moved = z[: len(springs)] - self.model.bodies.rest[: len(springs)]
+        return float(0.5 * moved @ springs @ moved)
 
     @cached_property
     def push_of_loads(self) -> Array:

@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Bending, BodyGravity, MixedStretching, Stretching
+from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
 from spline_model.scene import Scene
 from spline_model.strip.element import Local, Shape, Strips
-from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
@@ -72,7 +71,6 @@ class Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
         strips = self.strips
         bodies = _bodies_of(self.system, slender * len(strips.roots))
-        assert bodies is not None, "the mechanism is known already"
         coupled = slender * strips.split
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
@@ -114,12 +112,11 @@ def require_reduced(system: System) -> Reduced:
         expected = "material or spatial: printed forces are of static paths alone"
         raise InvalidParameter("measure", "printed", expected)
     if model is None:
-        unknown = "strips of several kinds or a load on a clamped end"
-        raise InvalidParameter("scene", unknown, "what the strips' elements know")
+        raise InvalidParameter("scene", "strips of several kinds", "what the strips' elements know")
     return model
 
 
-def _reduced(system: System) -> Reduced | None:
+def _reduced(system: System) -> Reduced:
     scene = system.scene
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
@@ -127,12 +124,9 @@ def _reduced(system: System) -> Reduced | None:
     shape = shape_of(basis, points)
     ends = ends_of(system)
     strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
-    bodies = _bodies_of(system, strips.outer * len(scene.strips))
-    if bodies is None:
-        return None
     return Reduced(
         system=system,
-        bodies=bodies,
+        bodies=_bodies_of(system, strips.outer * len(scene.strips)),
         strips=strips,
         shape=shape,
         rest=rest,
@@ -156,48 +150,42 @@ def _known(scene: Scene) -> bool:
     )
 
 
-def _bodies_of(system: System, outer: int) -> Bodies | None:
-    """The bodies and what acts on them; None where a load acts on a clamped end."""
+def _bodies_of(system: System, outer: int) -> Bodies:
+    """The bodies, free ends among them, and what acts on them."""
     scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
-    length, force = system.scales.length, system.scales.energy / system.scales.length
+    length, force, begin = (
+        system.scales.length,
+        system.scales.energy / system.scales.length,
+        layout.poses.start,
+    )
     rest = [v for body in scene.bodies for v in (*(at / length for at in body.centre.tolist()), 0.0)]
-    places = {
-        layout.bodies[body.name] + k: 3 * i + k for i, body in enumerate(scene.bodies) for k in range(3)
-    }
     for strip in scene.strips:
-        start, count = layout.strips[strip.name]
-        for end, at in (("start", start), ("end", start + 2 * count - 2)):
+        for end, at in (("start", 0), ("end", -1)):
             if (strip.name, end) not in scene.clamps:
-                for k in range(2):
-                    places[at + k] = len(rest) + k
-                point = strip.control_points[0 if end == "start" else -1]
-                rest += [*(point / length), 0.0]
+                rest += [*(strip.control_points[at] / length), 0.0]
     load, weight = np.zeros(len(rest) + outer), np.zeros(len(rest) + outer)
-    for coordinate, value in zip(loads.coordinate.tolist(), loads.value.tolist(), strict=True):
-        if coordinate not in places:
-            return None
-        load[places[coordinate]] += value
-    for coordinate, value in steady_loads(scene, layout):
-        if coordinate not in places:
-            return None
-        weight[places[coordinate]] += value
-    for gravity in scene.of(BodyGravity):
-        at = places[layout.bodies[gravity.body]]
-        weight[at : at + 2] += gravity.mass * np.asarray(gravity.acceleration)
+    np.add.at(load, loads.coordinate - begin, loads.value)
+    if system.weight.size:
+        weight[: layout.poses.stop - begin] = system.weight[layout.poses]
     for part in (load, weight):
         part[: len(rest)] /= force
         part[2 : len(rest) : 3] /= length
-    held, rows = [places[c] for c in drives.coordinate.tolist()], drives.row.tolist()
-    if len(set(held)) != len(held):
-        return None
+    held, rows = drives.coordinate - begin, drives.row.tolist()
     return Bodies(
         rest=np.array(rest),
         load=load,
         weight=weight,
-        free=np.array([i for i in range(len(rest) + outer) if i not in held], dtype=np.int64),
-        held=np.array(held, dtype=np.int64),
+        free=np.setdiff1d(np.arange(len(rest) + outer), held),
+        held=held,
         driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
+        springs=in_units(system, system.springs),
     )
+
+
+def in_units(system: System, matrix: Array) -> Array:
+    """A matrix over the poses of all bodies, or (0, 0), over units of work."""
+    unit = np.tile(system.scales.pose, len(matrix) // 3)
+    return np.asarray(matrix * (unit[:, None] * unit / system.scales.energy))
 
 
 def at_rest(model: Reduced) -> Array:

@@ -36,7 +36,6 @@ from spline_model.strip.element import (
     Shape,
     Strips,
 )
-from spline_model.tables import steady_loads
 
 Array = NDArray[np.float64]
 
@@ -192,9 +191,7 @@ def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
 
 def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
     """Dead loads on the control points, in the order of elimination, and per du."""
-    scene, weight = system.scene, system.weight.copy()
-    for place, value in steady_loads(scene, system.layout):  # they act on bodies and free ends
-        weight[place] -= value
+    scene, weight = system.scene, system.weight
     force = system.scales.energy / system.scales.length
     for row, strip in zip(numbers, scene.strips, strict=True):
         dead = weight[system.layout.strip(strip.name)].reshape(-1, 2)

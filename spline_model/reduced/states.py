@@ -113,14 +113,17 @@ def _condense_all(y, arrays, tangents):
 
 
 def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
-    """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' energy in y (S, Y), in EI/L, axial forces among y.
+    """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' and springs' energy in y (S, Y), in EI/L.
 
-    Dead loads on the strips are in it; weight of, and loads on, the bodies are not.
+    Axial forces are among y. Dead loads on the strips are in it; weight of, and loads on, the bodies are not.
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
     poses, local = len(model.bodies.rest), model.local()
     _assemble(y, poses, model.strips, model.shape, local, np.zeros(5), gradient, hessian)
+    own = slice(0, len(model.bodies.springs))
+    gradient[:, own] += (y[:, own] - model.bodies.rest[own]) @ model.bodies.springs
+    hessian[:, own, own] += model.bodies.springs
     return gradient, hessian
 
 
@@ -141,6 +144,9 @@ def products(model: Reduced, y: Array, rate: Array) -> tuple[Array, Array, Array
     gradient, product = np.zeros((2, *y.shape), dtype=y.dtype)
     energies = np.zeros((len(y), 2), dtype=y.dtype)
     _multiply(y, rate, model.arrays(), gradient, product, energies)
+    own = slice(0, len(model.bodies.springs))
+    gradient[:, own] += (y[:, own] - model.bodies.rest[own]) @ model.bodies.springs
+    product[:, own] += rate[:, own] @ model.bodies.springs
     return gradient, product, energies
 
 

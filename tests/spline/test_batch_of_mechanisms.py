@@ -27,10 +27,20 @@ VALUES = {
 
 
 def linkage() -> Mechanism:
-    """The four-bar linkage of flexures, under its weight."""
+    """The four-bar linkage of flexures, under its weight, with springs."""
     settings = SplineSettings(control_points=6)
     found: Mechanism = put(named_design("four_bar_of_flexures"), settings).modelled
-    return found
+    springs = [
+        {"body": "coupler", "other": "rocker", "stiffness": (50.0, 80.0), "rotational_stiffness": 0.02},
+        {"body": "crank", "stiffness": (100.0, 0.0)},
+    ]
+    return compliant_mechanism(
+        strips=found.design.strips,
+        bodies=found.design.bodies,
+        effects=(*found.effects, "spring"),
+        parameters={**found.parameters, "spring": springs},
+        control_points=6,
+    )
 
 
 def rebuilt(given: Mechanism, i: int) -> Mechanism:

@@ -28,7 +28,11 @@ BODIES = (
 LOADS = {
     "gravity": {},
     "applied_moment": {"body": "b", "moment": 0.1},
-    "tip_force": {"strip": "whisker", "force": (0.3, 0.5)},
+    "tip_force": {"strip": "whisker", "force": (0.3, 0.5), "moment": 0.01},
+    "spring": [
+        {"body": "b", "other": "d", "stiffness": (90.0, 50.0), "rotational_stiffness": 0.1},
+        {"body": "d", "stiffness": (0.0, 200.0)},
+    ],
     "pre_strain": {"curvature": 1.0, "strain": 1e-4},
 }
 QUANTITIES = ("torque", "stiffness", "centre", "bending_energy", "fibre_stress")
@@ -71,7 +75,7 @@ def changed(name, step):
     ],
 )
 def test_any_mechanism_agrees_with_differences(name, step, rotation, grid):
-    """A chain of strips with a free end, under loads, by one strip's section, by an end and by a centre."""
+    """A chain of strips with a free end, loaded and on springs, by a section, by an end and by a centre."""
     found, rows = solved(STRIPS, BODIES, rotation, grid, (name,)), []
     for level in range(4):
         h = step / 2**level

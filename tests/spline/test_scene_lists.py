@@ -1,0 +1,120 @@
+"""Lists of loads, supports and drives on one mechanism, and what has to act on it from outside."""
+
+import math
+
+import numpy as np
+
+from spline_model import (
+    BodyDesign,
+    StripDesign,
+    compliant_mechanism,
+    natural_frequencies,
+    solve_mechanism,
+    solve_motion,
+)
+from tests import gates
+
+#: A strip of unit length and rigidity, hardly stretched.
+STRIP = {"start": (0.0, 0.0), "end": (1.0, 0.0), "area": 1e3, "second_moment_of_area": 1.0}
+STRIP |= {"youngs_modulus": 1.0, "density": 1e-3}
+
+
+def beam(tip=None, points=8, segments=1, joints=None, more=(), **parameters):
+    """A strip from the ground to a body, or to nothing, with these effects beside its elasticity."""
+    names = ("bending", "inextensible", "strip_inertia", "body_inertia", *parameters)
+    bodies = [BodyDesign(name=tip, centre=(1.0, 0.0), mass=1.0, moment_of_inertia=1.0)] if tip else []
+    bodies += more
+    strip = StripDesign(name="beam", tip=tip, **STRIP | (joints or {}))
+    grid = {"control_points": points, "segments": segments}
+    return compliant_mechanism(strips=[strip], bodies=bodies, effects=names, parameters=parameters, **grid)
+
+
+def test_loads_superpose():
+    """Requirement: loads on a tip and on a body add up, each with parameters of its own."""
+    pull = [{"force": (0.3, 0.2)}, {"force": (-0.1, 1.8)}]
+    turn = [{"moment": 0.2}, {"moment": 0.3}]
+
+    def error(count=2):
+        at_tip = [{"strip": "beam", **each, **more} for each, more in zip(pull, turn, strict=True)]
+        several = beam("end", applied_force=pull[:count], applied_moment=turn)
+        one = beam("end", applied_force={"force": (0.2, 2.0)}, applied_moment={"moment": 0.5})
+        places = [solve_mechanism(each).bodies["end"] for each in (one, several)]
+        places.append(solve_mechanism(beam(tip_force=at_tip)).tips["beam"])
+        return max(np.abs(each - places[0]).max() for each in places)
+
+    gates.hold("spline_lists", error)
+
+
+def test_a_tip_moment_rolls_up_three_turns():
+    """Requirement: the turn of a free end is counted beyond a full one."""
+
+    def error(segments=8):
+        moment = {"strip": "beam", "force": (0.0, 0.0), "moment": 6.0 * math.pi}
+        path = solve_mechanism(beam(segments=segments, tip_force=moment), increments=30, check=False)
+        return np.abs(path.tips["beam"][:, 2] - 6.0 * math.pi * path.load_factor).max()
+
+    gates.hold("spline_turns", error)
+
+
+def test_reactions_balance_the_loads():
+    """Requirement: what drives and supports bear and the clamp bears is in balance with the loads."""
+    given = {
+        "driven_displacement": {"displacement": (None, 0.2)},
+        "driven_rotation": {"angle": 0.4},
+        "applied_force": [{"force": (1.0, 0.5)}, {"force": (0.3, -3.0)}],
+    }
+
+    def error(weigh=1.0):
+        path = solve_mechanism(beam("end", **given))
+        assert path.prescribed == (("end", "y"), ("end", "rotation"))
+        held, root, place = path.reactions[-1], path.clamp_reactions[-1, 0, 0], path.bodies["end"][-1]
+        force = root[:2] + np.array([1.3, held[0] - 2.5])
+        moment = root[2] + weigh * held[1] + place[0] * (held[0] - 2.5) - place[1] * 1.3
+        return max(abs(force).max(), abs(moment))
+
+    gates.hold("spline_reactions", error)
+
+
+#: Springs on the end of the beam, one of them to a body without strips on a spring to the ground.
+SPRINGS = [
+    {"body": "end", "rotational_stiffness": 0.7, "stiffness": (0.0, 2.0)},
+    {"body": "end", "other": "hung", "stiffness": (5.0, 3.0), "rotational_stiffness": 0.4},
+    {"body": "hung", "stiffness": (4.0, 6.0), "rotational_stiffness": 0.5},
+]
+
+
+HUNG = BodyDesign(name="hung", centre=(1.0, -0.5), mass=0.5, moment_of_inertia=0.2)
+
+
+def test_springs_bear_what_their_stiffness_says():
+    """Requirement: an end turns by M / (EI/L + k); a body on springs alone swings by their stiffness."""
+
+    def error(stiffness=0.7, method="condensed"):
+        given = {"spring": {"rotational_stiffness": stiffness}, "applied_moment": {"moment": 2.0}}
+        path = solve_mechanism(beam("end", **given), increments=4, method=method)
+        turn = path.rotation - path.load_factor * 2.0 / 1.7
+        stored = 0.35 * path.rotation**2 - path.spring_energy
+        found = natural_frequencies(
+            beam("end", more=[HUNG], spring=SPRINGS[2]), body="hung", count=8
+        ).frequency
+        rates = np.sqrt(np.array([4.0 / 0.5, 6.0 / 0.5, 0.5 / 0.2])) / (2.0 * math.pi)
+        missed = np.abs(found[:, None] / rates - 1.0).min(axis=0)
+        return max(np.abs(each).max() for each in (turn, stored, missed))
+
+    gates.hold("spline_springs", error)
+    gates.check("spline_springs", error(method="multipliers"))
+
+
+def test_motions_on_springs_keep_their_energy():
+    """Requirement: a motion on springs and dampers balances its energies, and its supports stay."""
+    springs = [each | {"damping": (0.05, 0.1), "rotational_damping": 0.02} for each in SPRINGS]
+    held = {"body": "hung", "fixed": ("x",)}
+
+    def error(booked=1.0):
+        made = beam("end", more=[HUNG], spring=springs, support=held)
+        run = solve_motion(made, start=1.0, body="end", duration=1.0, step=0.02, check=False)
+        assert run.status.value == "converged" and run.dissipated[-1] > 1e-2
+        energy = run.kinetic_energy + run.strain_energy + booked * run.dissipated
+        return max(np.abs(energy - energy[0]).max(), np.abs(run.bodies["hung"][:, 0] - 1.0).max())
+
+    gates.hold("spline_spring_motion", error)
