@@ -111,7 +111,10 @@ def test_arrays_of_vtk_are_described():
         points |= set(made.point_data)
         cells |= set(made.cell_data)
     assert {name for name, row in known.items() if row[1] == "points"} == points
-    quantities = {*described("## Quantities of a state"), *(each.key for each in named(solved("static").design))}
+    quantities = {
+        *described("## Quantities of a state"),
+        *(each.key for each in named(solved("static").design)),
+    }
     assert {name for name, row in known.items() if row[1] == "cells"} == cells - quantities
 
 
