@@ -27,7 +27,8 @@ POISSON = rules.number("a number above -1 and at most 0.5 [1]", -1.0, 0.5, close
 RATIO = rules.number("a number between 0 and 1, both excluded [1]", 0.0, 1.0)
 NAME, PLACE = text("a name"), text(f"{GROUND} or the name of a body")
 TIP = text(f"{PLACE.expected}, or {FREE}")
-JOINT = choice("clamp", "hinge")
+CLAMP, HINGE = "clamp", "hinge"
+JOINT = choice(CLAMP, HINGE)
 
 # Rows: name in the file, attribute, rule, default ("": it is needed), example, meaning.
 # fmt: off
@@ -129,8 +130,8 @@ STRIP = keys_of(
     ("end_m", "end", finite_pair("m"), "", "[0.1, 0]", "where it ends at rest"),
     ("root", "root", PLACE, f'"{GROUND}"', f'"{GROUND}"', "what its beginning is clamped to"),
     ("tip", "tip", TIP, "", '"body"', "what its end is clamped to"),
-    ("root_joint", "root_joint", JOINT, '"clamp"', '"hinge"', "whether its beginning turns freely there"),
-    ("tip_joint", "tip_joint", JOINT, '"clamp"', '"hinge"', "whether its end turns freely there"),
+    ("root_joint", "root_joint", JOINT, f'"{CLAMP}"', f'"{HINGE}"', "whether its root turns freely"),
+    ("tip_joint", "tip_joint", JOINT, f'"{CLAMP}"', f'"{HINGE}"', "whether its tip turns freely"),
     ("rise_m", "rise", rules.finite("m"), "0, straight",
      "0.002", "sagitta of the circular arc that it is at rest, to the left of start to end; half of the "
      "distance of its ends for a half circle, more for a longer arc"),

@@ -8,7 +8,7 @@ from typing import Any
 from studies.cases import document, keys
 from studies.cases.document import CaseError, tables
 from studies.cases.effects import Effects, read_effects
-from studies.cases.keys import GROUND, LOADS_FIRST, MATERIAL, SECTION, SIDES, TAPER
+from studies.cases.keys import CLAMP, GROUND, LOADS_FIRST, MATERIAL, SECTION, SIDES, TAPER
 from studies.cases.rules import FREE
 from studies.cases.section import (
     Sectioned,
@@ -34,7 +34,7 @@ class Strip(Sectioned):
     tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
     end. width, thickness: of a rectangular section [m], None where only A and I are known; width_end,
     thickness_end: at the end of a tapered one. outer_fibre: distance of the outermost fibre from the neutral
-    axis of one that is no rectangle [m]. yield_strength: that stresses must stay below [Pa]; None where
+    axis of one that is no rectangle [m]. root_joint, tip_joint: "clamp" or "hinge". yield_strength: that stresses must stay below [Pa]; None where
     unknown.
     """
 
@@ -43,6 +43,8 @@ class Strip(Sectioned):
     end: tuple[float, float]
     root: str = GROUND
     tip: str | None
+    root_joint: str = CLAMP
+    tip_joint: str = CLAMP
     rise: float = 0.0
     area: float
     second_moment_of_area: float
@@ -184,7 +186,9 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
     """Return what the models take of a part; the sides of a section only where they are given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     sides = [key.attribute for key in (*SIDES, *TAPER)]
-    return without(given, ["yield_strength", "outer_fibre", *(n for n in sides if given.get(n) is None)])
+    joints = [name for name in ("root_joint", "tip_joint") if given.get(name) == CLAMP]
+    left = [*joints, *(name for name in sides if given.get(name) is None)]
+    return without(given, ["yield_strength", "outer_fibre", *left])
 
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
