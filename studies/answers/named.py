@@ -20,6 +20,7 @@ from studies.answers.quantities import (
     QUANTITIES,
     Quantity,
 )
+from studies.answers.response import PLACES
 from studies.cases.design import Design
 from studies.cases.mechanism import Point
 from studies.kinds import Array
@@ -91,10 +92,14 @@ def _free_ends(design: Design) -> Iterator[Quantity]:
 def _points(design: Design) -> Iterator[Quantity]:
     """Yield displacements of the named points of bodies."""
     for point in design.points:
-        yield from _moved(f"{point.name}_displacement", point.name, partial(_point_moved, point), turns=False)
+        yield from _moved(
+            f"{point.name}_displacement", point.name, partial(_point_moved, point), estimated=PLACES
+        )
 
 
-def _moved(key: str, group: str, of: Moved, *, turns: bool = True) -> Iterator[Quantity]:
+def _moved(
+    key: str, group: str, of: Moved, *, turns: bool = False, estimated: tuple[str, ...] = ()
+) -> Iterator[Quantity]:
     """Yield the displacement of a place, and its rotation if it is one that turns."""
     for axis, part in enumerate("xy"):
         yield Quantity(
@@ -106,6 +111,7 @@ def _moved(key: str, group: str, of: Moved, *, turns: bool = True) -> Iterator[Q
             of=partial(_part, of, axis),
             floor=STILL,
             analyses=(PATH, MOTION),
+            estimated=estimated,
         )
     if turns:
         yield Quantity(
@@ -156,7 +162,7 @@ def _springs(design: Design) -> Iterator[Quantity]:
 def _drift(design: Design) -> Iterator[Quantity]:
     """Yield how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
     if design.rotation and design.crossing_point is None:
-        yield from _moved("centre_drift", "centre drift", _drifted, turns=False)
+        yield from _moved("centre_drift", "centre drift", _drifted)
 
 
 def _drifted(answer: Any) -> Array:

@@ -105,6 +105,7 @@ class Quantity(Scale):
         column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
         chart: whether a picture of a path has a curve of it over the states.
         drive: whether it is of a drive, which only a driven rotation has.
+        estimated: names of the errors that models estimate of it.
         group: what it is of, where that is a part of the design; above its column in a table.
     """
 
@@ -121,6 +122,7 @@ class Quantity(Scale):
     mechanisms: bool = False
     chart: bool = True
     drive: bool = False
+    estimated: tuple[str, ...] = ()
     group: str = ""
 
     def named(self, unit: str) -> str:

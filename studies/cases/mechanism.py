@@ -34,8 +34,8 @@ class Strip(Sectioned):
     tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
     end. width, thickness: of a rectangular section [m], None where only A and I are known; width_end,
     thickness_end: at the end of a tapered one. outer_fibre: distance of the outermost fibre from the neutral
-    axis of one that is no rectangle [m]. root_joint, tip_joint: "clamp" or "hinge". yield_strength: that stresses must stay below [Pa]; None where
-    unknown.
+    axis of one that is no rectangle [m]. root_joint, tip_joint: "clamp" or "hinge". yield_strength: that
+    stresses must stay below [Pa]; None where unknown.
     """
 
     name: str

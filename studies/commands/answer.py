@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from studies.answers.answer import Answer
+from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
 from studies.answers.response import PLACES, Response
 from studies.answers.settings import Settings
@@ -178,7 +179,9 @@ def not_estimated(answer: Any) -> list[str]:
         "energy": True,
         "stress": bool(np.isfinite(answer.max_stress).any()),
     }
-    return [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
+    parts = {each.group or each.heading: bool(errors & set(each.estimated)) for each in named(answer.design)}
+    known = [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
+    return known + [name for name, sure in parts.items() if not sure]
 
 
 def ending(answer: Answer) -> str:
