@@ -14,12 +14,20 @@ from numpy.typing import NDArray
 from spline_model.basis import Bezier
 from spline_model.discretisation import Discretisation
 from spline_model.effects.boundary import GROUND
-from spline_model.errors import InvalidParameter, is_finite, require_not_negative, require_positive
+from spline_model.errors import (
+    InvalidParameter,
+    is_finite,
+    require_choice,
+    require_not_negative,
+    require_positive,
+)
 
 Array = NDArray[np.float64]
 
 NOT_GIVEN = math.nan
 """Area and second moment of a strip that has them from its width and thickness."""
+CLAMP, HINGE = JOINTS = ("clamp", "hinge")
+"""How the end of a strip is joined to the ground or a body: built in, or free to turn about its point."""
 ROUNDED = 1e-3
 """Relative difference to which a printed area and second moment agree with those of the sides."""
 
@@ -33,7 +41,8 @@ class StripDesign:
     section, whose area b t and second moment b t^3 / 12 then need not be given, and where they are must
     agree to ROUNDED (and count as given); poisson_ratio is for the section's curl (``clamped_width``,
     ``anticlastic``); rise: sagitta of the circular arc at rest [m], positive to the left of
-    start -> end, 0 for a straight strip.
+    start -> end, 0 for a straight strip; root_joint, tip_joint: "clamp", or "hinge" of an end that turns
+    freely.
     """
 
     name: str
@@ -49,8 +58,14 @@ class StripDesign:
     rise: float = 0.0
     width: float | None = None
     thickness: float | None = None
+    root_joint: str = CLAMP
+    tip_joint: str = CLAMP
 
     def __post_init__(self) -> None:
+        for name in ("root_joint", "tip_joint"):
+            require_choice(f"{name} of {self.name}", getattr(self, name), JOINTS)
+        if self.tip is None and self.tip_joint != CLAMP:
+            raise InvalidParameter(f"tip_joint of {self.name}", self.tip_joint, "clamp of a free end")
         if self.width is not None or self.thickness is not None:
             self._take_sides()
         elif NOT_GIVEN in (self.area, self.second_moment_of_area):
@@ -168,6 +183,8 @@ class StripDesign:
                     rise=rise,
                     root=str(ends[k]),
                     tip=ends[k + 1],
+                    root_joint=self.root_joint if k == 0 else CLAMP,
+                    tip_joint=self.tip_joint if k == count - 1 else CLAMP,
                 ),
                 self,
                 (float(cuts[k]), float(cuts[k + 1])),
