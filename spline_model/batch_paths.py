@@ -186,7 +186,9 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     first: whether loads come on as weight does.
     """
     scene = mechanism.driven(1.0, body)
-    model = reduced(compile_scene(steady(scene) if first and has_loads(scene) else scene))
+    system = compile_scene(steady(scene) if first and has_loads(scene) else scene)
+    system.require_uncarried("designs")
+    model = reduced(system)
     if model is None:
         raise InvalidParameter("discretisation", "printed forces", "what the elements know")
     return model

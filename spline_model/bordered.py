@@ -54,6 +54,7 @@ def evaluate(
     hessian[drives.row, drives.coordinate] = hessian[drives.coordinate, drives.row] = -1.0
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
     gradient[: tables.weight.size] -= tables.weight
+    system.frames.subtract(z, gradient, hessian)
     if system.springs.size:
         at = system.layout.poses
         gradient[at] += system.springs @ (z[at] - system.rest[at])

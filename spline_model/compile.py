@@ -15,6 +15,7 @@ from spline_model.effects import (
     Bending,
     BodyDamper,
     BodyInertia,
+    Carried,
     Clamp,
     Driven,
     MixedStretching,
@@ -24,6 +25,8 @@ from spline_model.effects import (
     StripInertia,
 )
 from spline_model.effects.base import Constraint
+from spline_model.errors import InvalidParameter
+from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
@@ -81,6 +84,23 @@ class System:
     def springs(self) -> Array:
         """Stiffness of springs over all poses (3 B, 3 B) [N/m, N, N m]; empty where there are none."""
         return self._table("springs", partial(between_bodies, name="stiffness"))
+
+    @cached_property
+    def frames(self) -> Frames:
+        """Frames that bodies carry."""
+        return self._table("frames", Frames.of)
+
+    @cached_property
+    def prescribed(self) -> NDArray[np.int64]:
+        """Rows of the drives that hold coordinates of bodies, without props and frames."""
+        own = self.layout.poses.start + 3 * len(self.scene.own_bodies)
+        return np.flatnonzero((self.drives.prop == 0) & (self.drives.coordinate < own))
+
+    def require_uncarried(self, what: str) -> None:
+        """Refuse frames that bodies carry."""
+        if self.frames.place.size:
+            got = "a hinge on a body or a load beside its centre"
+            raise InvalidParameter(what, got, "none, but in statics, modes and the motion by default")
 
     def spring_energy(self, poses: Array) -> Array:
         """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
@@ -217,8 +237,8 @@ class _Scales:
         for start, count in layout.modes:
             unit[start : start + count] = force
         for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
-            if isinstance(constraint, Clamp):
-                unit[row : row + count] = (force, force, moment)
+            if isinstance(constraint, Clamp | Carried):
+                unit[row : row + count] = (force, force, moment)[:count]
             elif isinstance(constraint, Driven):
                 unit[row : row + count] = [(force, force, moment)[axis] for axis in constraint.parts]
         return unit

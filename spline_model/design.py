@@ -18,6 +18,7 @@ from spline_model.effects.elastic import Taper
 from spline_model.errors import (
     InvalidParameter,
     is_finite,
+    require_choice,
     require_finite,
     require_not_negative,
     require_positive,
@@ -27,6 +28,8 @@ Array = NDArray[np.float64]
 
 NOT_GIVEN = math.nan
 """Area and second moment of a strip that has them from its width and thickness."""
+CLAMP, HINGE = JOINTS = ("clamp", "hinge")
+"""How the end of a strip is joined to the ground or a body: built in, or free to turn about its point."""
 ROUNDED = 1e-3
 """Relative difference to which a printed area and second moment agree with those of the sides."""
 
@@ -43,6 +46,7 @@ class StripDesign:
     start -> end, 0 for a straight strip; half the chord of a half circle, more of longer arcs.
     width_end, thickness_end: sides at the end of a taper [m], between which they change linearly along the
     strip, None where they are constant; width, thickness, area and second moment are those at the start.
+    root_joint, tip_joint: "clamp", or "hinge" of an end that turns freely.
     """
 
     name: str
@@ -60,8 +64,14 @@ class StripDesign:
     thickness: float | None = None
     width_end: float | None = None
     thickness_end: float | None = None
+    root_joint: str = CLAMP
+    tip_joint: str = CLAMP
 
     def __post_init__(self) -> None:
+        for name in ("root_joint", "tip_joint"):
+            require_choice(f"{name} of {self.name}", getattr(self, name), JOINTS)
+        if self.tip is None and self.tip_joint != CLAMP:
+            raise InvalidParameter(f"tip_joint of {self.name}", self.tip_joint, "clamp of a free end")
         sides = (self.width, self.thickness, self.width_end, self.thickness_end)
         if any(side is not None for side in sides):
             self._take_sides()
@@ -188,6 +198,8 @@ class StripDesign:
                     root=str(ends[k]),
                     tip=ends[k + 1],
                     **sections[k],
+                    root_joint=self.root_joint if k == 0 else CLAMP,
+                    tip_joint=self.tip_joint if k == count - 1 else CLAMP,
                 ),
                 self,
                 (float(cuts[k]), float(cuts[k + 1])),

@@ -6,15 +6,15 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import Any, Self, Unpack
+from typing import Any, Literal, Self, Unpack
 
 import numpy as np
 
-from spline_model.design import BodyDesign, Design, StripDesign
+from spline_model.design import HINGE, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
-from spline_model.effects import Clamp, Driven, DrivenRotation
+from spline_model.effects import GROUND, Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import Sized
+from spline_model.effects.boundary import STEADY, Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import (
     DEFAULT_EFFECTS,
@@ -24,7 +24,6 @@ from spline_model.effects.registry import (
     build,
     check_names,
     root_length,
-    tip_of,
 )
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import loose, props_of
@@ -169,13 +168,14 @@ def compliant_mechanism(
     )
     built = build(names, given, design)
     frames = {each.name: each for each in built if isinstance(each, Body)}
-    attachments: list[Effect] = []
-    for strip, whole, reach in design.pieces:
-        attachments.append(Clamp(strip=strip.name, end="start", to=strip.root))
-        if strip.tip is not None:
-            attachments.append(Clamp(strip=strip.name, end="end", to=strip.tip))
-        elif reach[1] == 1.0 and tip_of(whole.name) in frames:
-            attachments.append(Clamp(strip=strip.name, end="end", to=tip_of(whole.name), free=True))
+    # nothing else keeps the frame where a load acts from turning
+    held = [DrivenRotation(body=name, angle=0.0, beside=True) for name, each in frames.items() if each.on]
+    ends: tuple[Literal["start", "end"], ...] = ("start", "end")
+    clamps: list[Effect] = []
+    for strip, whole, _ in design.pieces:
+        for end in ends:
+            clamps += _joined(strip, whole, end, frames)
+    carried = [_carried(frame) for frame in frames.values() if frame.on]
     scene = Scene(
         strips=tuple(
             Strip(
@@ -195,9 +195,32 @@ def compliant_mechanism(
             ),
             *frames.values(),
         ),
-        effects=(*(each for each in built if not isinstance(each, Body)), *attachments),
+        effects=(*(each for each in built if not isinstance(each, Body)), *held, *clamps, *carried),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
+
+
+def _joined(
+    strip: StripDesign, whole: StripDesign, end: Literal["start", "end"], frames: dict[str, Body]
+) -> list[Clamp]:
+    """The clamp of an end of a piece of a whole strip, if it has one; a hinge's frame joins the frames."""
+    at_root: tuple[str, str | None, str, tuple[float, float]]
+    at_root = "root", strip.root, strip.root_joint, strip.start
+    word, to, joint, place = at_root if end == "start" else ("tip", strip.tip, strip.tip_joint, strip.end)
+    frame = f"{word} of {whole.name}"
+    if joint == HINGE:
+        frames[frame] = Body(name=frame, centre=np.array(place, dtype=float), joint=True, on=to)
+        return [Clamp(strip=strip.name, end=end, to=frame)]
+    if to is not None:
+        return [Clamp(strip=strip.name, end=end, to=to)]
+    return [Clamp(strip=strip.name, end=end, to=frame, free=True)] if frame in frames else []
+
+
+def _carried(frame: Body) -> Effect:
+    """What holds the centre of a frame where it lies at rest, on the ground or on a body."""
+    if frame.on == GROUND:
+        return DrivenDisplacement(body=frame.name, displacement=(0.0, 0.0), history=STEADY)
+    return Carried(body=frame.name, by=str(frame.on))
 
 
 def require_mechanism(value: Any) -> None:

@@ -221,10 +221,14 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
 
     Axial forces that comply are eliminated; strips that cannot stretch are constraints.
     """
-    y, strips = from_unknowns(model, z), model.strips
-    hessian = model.energy * whole_tangents(model, y[None])[1][0]
+    y, strips, poses = from_unknowns(model, z), model.strips, len(model.bodies.rest)
+    (gradient,), (hessian,) = whole_tangents(model, y[None])
+    gradient[:poses] -= (model.bodies.load + model.bodies.weight)[:poses]
+    by, bend = model.frames.spread(y, gradient)
+    hessian = model.energy * (by.T @ hessian @ by + bend)
     axial = [np.arange(model.size)[model.places(s)[1]] for s in range(len(strips.compliance))]
-    free = np.setdiff1d(np.arange(model.size), np.concatenate([model.bodies.held, *axial]))
+    fixed = np.concatenate([model.bodies.held, model.frames.coordinates, *axial])
+    free = np.setdiff1d(np.arange(model.size), fixed)
     stiffness, rows = hessian[np.ix_(free, free)], [hessian[:0, free]]
     slide = np.zeros_like(stiffness)
     for places, compliance in zip(axial, strips.compliance, strict=True):
@@ -238,7 +242,7 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
             stiffness += share
             if slides:
                 slide += share
-    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
+    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y) @ by[:, free]
 
 
 def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Array]:

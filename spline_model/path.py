@@ -116,22 +116,22 @@ class _Track:
 
     def begin(self, start: Array | None) -> str:
         """The first state, and on the elements all those up to where something happens; why it is none."""
-        if isinstance(self.work, Elements):
+        if (work := self._compiled) is not None:
             if start is not None:
-                newton = equilibrium(self.work, start)
+                newton = equilibrium(work, start)
                 self.given = start if len(newton.norms) == 1 else None
-                self._run(self.work, self.work.y(newton.z))
-            elif not self.work.system.is_preloaded:
-                self.given = self.work.system.rest  # reactions at rest are none, not their round-off
-                self._run(self.work, at_rest(self.work.model))
-            elif (y := self.work.grown()) is not None:
-                self._run(self.work, y)
+                self._run(work, work.y(newton.z))
+            elif not work.system.is_preloaded:
+                self.given = work.system.rest  # reactions at rest are none, not their round-off
+                self._run(work, at_rest(work.model))
+            elif (y := work.grown()) is not None:
+                self._run(work, y)
         if self.states == 0:
             point, norms, message = first_point(self.watch, start)
             self.follower = Follower(self.watch, point, norms)
             self._keep(_first_rows(self.work, point, message), 0.0)
-            if isinstance(self.work, Elements) and not message:
-                self._run(self.work, self.work.y(point.z))
+            if work is not None and not message:
+                self._run(work, work.y(point.z))
             return message
         return ""
 
@@ -149,9 +149,14 @@ class _Track:
                 self.states -= 1
         else:
             self.work.counters.increments += 1
-            if isinstance(self.work, Elements):
-                self._run(self.work, self.work.y(follower.here.z))
+            if (work := self._compiled) is not None:
+                self._run(work, work.y(follower.here.z))
         return message
+
+    @property
+    def _compiled(self) -> Elements | None:
+        """The elements, where kernels follow a path on them."""
+        return self.work if isinstance(self.work, Elements) and self.work.compiled else None
 
     def _run(self, work: Elements, y: Array) -> None:
         """Go on from a state (Y,) of the first row or the last one, compiled."""

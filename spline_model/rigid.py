@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
+from spline_model.effects import Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import GROUND
 from spline_model.errors import InvalidParameter
@@ -36,6 +36,10 @@ def props_of(scene: Scene) -> list[Constraint]:
     """Props where rigid motions are free, to stand behind all other constraints."""
     parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
     rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
+    for each in scene.of(Carried):
+        for axis in range(2):
+            point = _row(scene, parts, each.by, axis, scene.body(each.body).centre)
+            rows.append(_row(scene, parts, each.body, axis) - point)
     for spring in scene.of(Spring):
         for axis in range(3):
             if spring.stiffness[axis] > 0.0:
@@ -87,19 +91,21 @@ def loose(scene: Scene) -> list[list[Body]]:
     return [part for name, part in parts.items() if name != root(GROUND)]
 
 
-def _row(scene: Scene, parts: list[list[Body]], name: str, axis: int) -> Array:
-    """Rate of a coordinate as each part moves along x, along y and turns about its first body (3 P,)."""
-    rates = np.zeros((len(parts), 3))
+def _row(scene: Scene, parts: list[list[Body]], name: str, axis: int, point: Array | None = None) -> Array:
+    """Rate of a coordinate of a body, or of a point of it, as each part moves and turns about its first body
+    (3 P,)."""
+    rates, at = np.zeros((len(parts), 3)), scene.body(name).centre if point is None else point
     for rate, part in zip(rates, parts, strict=True):
         if name in [body.name for body in part]:
-            x, y = (scene.body(name).centre - part[0].centre).tolist()
+            x, y = (at - part[0].centre).tolist()
             size = max((math.dist(each.centre, part[0].centre) for each in part), default=0.0) or 1.0
-            rate[:] = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0))[axis]
+            rate[:] = ((1.0, 0.0, -y / size), (0.0, 1.0, x / size), (0.0, 0.0, 1.0 / size))[axis]
     return rates.ravel()
 
 
 def _rank(rows: list[Array]) -> int:
-    return int(np.linalg.matrix_rank(np.array(rows), RANK)) if rows else 0
+    sizes = [float(np.linalg.norm(row)) or 1.0 for row in rows]
+    return int(np.linalg.matrix_rank(np.array(rows) / np.array(sizes)[:, None], RANK)) if rows else 0
 
 
 def _prop(body: str, axis: int) -> Constraint:

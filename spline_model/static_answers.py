@@ -74,7 +74,7 @@ class StaticSolution(Tabulated, Path):
         if scene.turned:
             points = (replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
             known |= {"load_factor": np.abs(path.load_factor), "critical_points": tuple(points)}
-        known["reactions"] = path.reactions[:, system.drives.prop == 0]
+        known["reactions"] = path.reactions[:, system.prescribed]
         return cls(
             **known,
             system=system,
@@ -122,7 +122,7 @@ class StaticSolution(Tabulated, Path):
         """Body and "x", "y" or "rotation" of all coordinates that drives and supports prescribe, of which
         ``reactions`` (S, D) are the forces [N] and moments [N m] that have to act on the bodies."""
         drives, layout = self.system.drives, self.system.layout
-        places = (layout.coordinate_of(int(at)) for at in drives.coordinate[drives.prop == 0])
+        places = (layout.coordinate_of(int(at)) for at in drives.coordinate[self.system.prescribed])
         return tuple((name, AXES[axis]) for name, axis in places)
 
     @kept
@@ -212,8 +212,8 @@ class StaticSolution(Tabulated, Path):
         it by its displacement [m] and turn [rad] in the axes of the ground, all loads fixed and all else in
         equilibrium: K_bb - K_br K_rr^-1 K_rb with the body's coordinates b and the rest r of the tangent,
         multipliers included. What drives the body is let go, what drives others holds them. Exact for the
-        discretisation; dead loads act at centres and have no stiffness there. nan where a strip that cannot
-        stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
+        discretisation; dead loads have a stiffness where they act beside centres. nan where a strip that
+        cannot stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
         """
         body = body or self._watched_name
         return self.own_stiffness if body == self.asked else self._stiffness_of(body)
@@ -228,7 +228,7 @@ class StaticSolution(Tabulated, Path):
         return self._stiffness_of(body)
 
     def _stiffness_of(self, body: str) -> Array:
-        return _body_stiffness(require_reduced(self.system), self.states, body)
+        return _body_stiffness(require_reduced(self.system), self.states, self.load_factor, body)
 
     @property
     def resolution(self) -> str:
@@ -259,12 +259,12 @@ class StaticSolution(Tabulated, Path):
         }
 
 
-def _body_stiffness(model: Reduced, states: Array, body: str) -> Array:
+def _body_stiffness(model: Reduced, states: Array, load: Array, body: str) -> Array:
     """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
     on a body's coordinates."""
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
-    own, held = np.arange(at, at + 3), model.bodies.held
-    tangents = model.energy * body_tangents(model, from_unknowns(model, states))
+    own, held = np.arange(at, at + 3), [*model.bodies.held, *model.frames.coordinates]
+    tangents = model.energy * body_tangents(model, from_unknowns(model, states), load)
     other = np.ones(tangents.shape[1], dtype=bool)
     other[own] = other[held] = False
     rest = np.flatnonzero(other)

@@ -183,10 +183,20 @@ def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.
 
 
 def _applied_force(
-    design: Design, force: Vector, body: str | None = None, history: History = STEADY
-) -> Iterator[Effect]:
-    """Dead force [N] on a body, the only one if it is not named."""
-    yield boundary.AppliedForce(body=design.body_named(body), force=force, history=history)
+    design: Design,
+    force: Vector,
+    body: str | None = None,
+    history: History = STEADY,
+    at: Vector | None = None,
+) -> Iterator[Effect | Body]:
+    """Dead force [N] on a body, the only one if it is not named, at its centre or at a point of it that lies
+    ``at`` (x, y) [m] at rest."""
+    acts_on = design.body_named(body)
+    if at is not None:
+        name = f"point {tuple(at)} of {acts_on}"
+        yield Body(name=name, centre=np.array(at, dtype=float), joint=True, on=acts_on)
+        acts_on = name
+    yield boundary.AppliedForce(body=acts_on, force=force, history=history)
 
 
 def _applied_moment(

@@ -33,7 +33,8 @@ class Masses(NamedTuple):
     along x as along y, in the order of elimination; relaxation (S,) [s]; pairs (G, 4, n n): products d1 d1,
     d1 d2, d2 d1, d2 d2 of the basis. loads (F) and drives (D) of the motion, at the coordinates load_at and
     drive_at of the bodies. gain (S, K): stiffness by which axial forces are condensed, of which the
-    first ``outer`` stay beside the bodies; free_from: first free end.
+    first ``outer`` stay beside the bodies; frames, lever: as in ``Frames``, among y; free_from: first free
+    end.
     """
 
     inertia: Array
@@ -48,6 +49,8 @@ class Masses(NamedTuple):
     drive_at: Places
     gain: Array
     across: Array
+    frames: Places
+    lever: Array
     outer: int
     free_from: int
 
@@ -90,6 +93,8 @@ class Masses(NamedTuple):
             drive_at=drives.coordinate - begin,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
             across=across if across.any() else across[:0, :0],
+            frames=model.frames.place,
+            lever=model.frames.lever,
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
@@ -138,7 +143,8 @@ class Scratch(NamedTuple):
     of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
     and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
     along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
-    condensed; system and x, free: what is solved; held: 1 where a drive holds.
+    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms: of carried
+    frames, see ``spline_model.motion.step``.
     """
 
     dy: Annotated[Array, "Y"]
@@ -168,6 +174,7 @@ class Scratch(NamedTuple):
     energies: Annotated[Array, "5"]
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
+    arms: Annotated[Array, "C 6"]
 
 
 Kind = TypeVar("Kind", bound=tuple[Any, ...])
@@ -197,6 +204,7 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
+    sizes |= {"C": len(masses.frames)}
     return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
 
 

@@ -47,6 +47,7 @@ def stepper(start: Start) -> Moves:
         )
     if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
         raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
+    motion.system.require_uncarried("effects")
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
     own = len(motion.system.scene.own_bodies)

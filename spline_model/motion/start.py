@@ -129,8 +129,9 @@ class Motion:
         gradient, hessian = np.empty(size), np.empty((size, size))
         points, clamps = self.system.tables.points, self.system.tables.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
+        self.system.frames.subtract(z, gradient, hessian)
         clamped = clamps.place[:, ROW, None] + np.arange(3)
-        rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
+        rows = np.concatenate((clamped.ravel(), self.system.frames.rows, drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0
         jacobian = -hessian[rows][:, :count]
         rate = np.zeros(len(rows))

@@ -108,6 +108,49 @@ def _add_springs(h, state, bodies, masses, work):
 
 
 @part()
+def _carry_frames(state, masses, work):
+    """Changes of carried frames over a step by those of their bodies, as the ends of strips go with theirs.
+
+    arms: derivative of a frame's change, over the step and at its end, and its lever at the end.
+    """
+    dy = work.dy
+    for f in range(masses.frames.shape[0]):
+        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
+        x, y, c = masses.lever[f, 0], masses.lever[f, 1], dy[body + 2]
+        before, after = state.y[body + 2], state.y[body + 2] + 2.0 * math.atan(0.5 * c)
+        cos, sin, slope = math.cos(before), math.sin(before), 1.0 / (1.0 + 0.25 * c * c)
+        x0, y0 = cos * x - sin * y, sin * x + cos * y
+        cos, sin = math.cos(after), math.sin(after)
+        x1, y1 = cos * x - sin * y, sin * x + cos * y
+        arm[0], arm[1], arm[2], arm[3] = -0.5 * (y0 + y1), 0.5 * (x0 + x1), -slope * y1, slope * x1
+        arm[4], arm[5] = x1, y1
+        dy[frame], dy[frame + 1] = dy[body] + c * arm[0], dy[body + 1] + c * arm[1]
+
+
+@part()
+def _fold_frames(masses, work):
+    """Add what acts on carried frames, and its derivatives, to their bodies."""
+    raw, reduced, tangent = work.residual, work.reduced, work.tangent
+    for f in range(masses.frames.shape[0]):
+        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
+        turn, fx, fy = body + 2, raw[frame], raw[frame + 1]
+        for k in range(2):
+            raw[body + k] += raw[frame + k]
+            raw[turn] += arm[k] * raw[frame + k]
+            reduced[body + k] += reduced[frame + k]
+            reduced[turn] += arm[k] * reduced[frame + k]
+            for j in range(reduced.size):
+                tangent[body + k, j] += tangent[frame + k, j]
+                tangent[turn, j] += arm[k] * tangent[frame + k, j]
+        for k in range(2):
+            for i in range(reduced.size):
+                tangent[i, body + k] += tangent[i, frame + k]
+                tangent[i, turn] += arm[k + 2] * tangent[i, frame + k]
+        slope = 1.0 / (1.0 + 0.25 * work.dy[turn] * work.dy[turn])
+        tangent[turn, turn] -= 0.5 * slope * (arm[4] * fx + arm[5] * fy)
+
+
+@part()
 def _add_strip(s, h, state, arrays, masses, work):
     """Residual of a strip, and what it does to the bodies with its own coordinates condensed."""
     strips, shape, local, poses = arrays.strips, arrays.shape, arrays.local, masses.inertia.size
@@ -150,9 +193,11 @@ def assemble(h, state, arrays, masses, work):
         work.reduced[i] = 0.0
         for j in range(work.reduced.size):
             work.tangent[i, j] = 0.0
+    _carry_frames(state, masses, work)
     _add_bodies(h, state, arrays.bodies, masses, work)
     for s in range(arrays.strips.roots.size):
         _add_strip(s, h, state, arrays, masses, work)
+    _fold_frames(masses, work)
     for i in range(raw.size):
         if i >= poses or work.held[i] == 0:
             norm = max(norm, abs(raw[i])) if raw[i] == raw[i] else math.inf
@@ -210,6 +255,11 @@ def improve(strips, masses, local, work):
         if free[i] < poses:
             dy[free[i]] += x[i]
             size = max(size, abs(x[i]))
+    for f in range(masses.frames.shape[0]):
+        frame, body = masses.frames[f, 0], masses.frames[f, 1]
+        for k in range(2):
+            moved = work.reduced[body + k] + work.arms[f, k + 2] * work.reduced[body + 2]
+            work.reduced[frame + k] = moved
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)

@@ -14,6 +14,7 @@ from spline_model import checks
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
+from spline_model.frames import Frames
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
     AXIAL,
@@ -74,21 +75,25 @@ def _defect_of(y, arrays):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
-    """Unknowns z (N,): poses, w of all strips, a of all strips, reactions of the drives; dimensionless.
+    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives, forces on carried frames.
 
-    arrays, out (5,): the model to kernels, and energies as ``_gather`` left them.
+    All is dimensionless. arrays, out (5,): the model to kernels, and energies as ``_gather`` left them;
+    frames: among these unknowns.
     """
 
     model: Reduced
     arrays: Arrays
     out: Array
+    frames: Frames
 
     @classmethod
     def of(cls, system: System) -> Self:
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        size = model.size + len(model.bodies.held)
+        size, place = model.size + len(model.bodies.held), model.frames.place.copy()
+        place[:, 2] = size + 2 * np.arange(len(place))
+        size += model.frames.lever.size
         return cls(
             system=system,
             gradient=np.empty(size),
@@ -96,7 +101,18 @@ class Elements(Followed):
             model=model,
             arrays=model.arrays(),
             out=np.zeros(5),
+            frames=model.frames._replace(place=place),
         )
+
+    @property
+    def compiled(self) -> bool:
+        """Whether a path is followed by kernels where nothing happens on it."""
+        return not self.frames.place.size
+
+    @cached_property
+    def held(self) -> slice:
+        """Places of the drives' reactions."""
+        return slice(self.model.size, self.model.size + len(self.model.bodies.held))
 
     @cached_property
     def place(self) -> NDArray[np.int64]:
@@ -176,17 +192,18 @@ class Elements(Followed):
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
         """Gradient, tangent and energies at z."""
-        model, size = self.model, self.model.size
+        model = self.model
         arrays = self.arrays if share == 1.0 else self.loose
         if share != 1.0:
             act(share, self.preload, arrays.bodies, arrays.strips)
         origin, target = model.drives
-        given = self.y(z), z[size:], origin + load_factor * target, load_factor
+        given = self.y(z), z[self.held], origin + load_factor * target, load_factor
         _gather(*given, arrays, self.out, self.gradient, self.hessian)
         if (springs := model.bodies.springs).size:
             own = slice(0, len(springs))
             self.gradient[own] += springs @ (z[own] - model.bodies.rest[own])
             self.hessian[own, own] += springs
+        self.frames.subtract(z, self.gradient, self.hessian)
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:
@@ -208,7 +225,7 @@ class Elements(Followed):
         """Minus the derivative of the gradient in the load factor (N,)."""
         force, poses = np.zeros(len(self.gradient)), len(self.model.bodies.rest)
         force[:poses] = self.model.bodies.load[:poses]
-        force[self.model.size :] = -self.model.drives[1]
+        force[self.held] = -self.model.drives[1]
         return force
 
     def refuse(self, z: Array) -> str:
@@ -229,13 +246,16 @@ class Elements(Followed):
         """z of the scene's unknowns, whose clamps hold."""
         drives, z = self.system.drives, np.zeros(len(self.gradient))
         z[self.place] = from_unknowns(self.model, unknowns)
-        z[self.model.size :] = unknowns[drives.row] * self.model.drive_length / self.model.energy
+        z[self.held] = unknowns[drives.row] * self.model.drive_length / self.model.energy
+        z[self.frames.rows] = unknowns[self.system.frames.rows] * self.model.length / self.model.energy
         return z
 
     def unknowns(self, z: Array) -> Array:
         """The scene's unknowns at z (N,) or (S, N)."""
         states = np.atleast_2d(z)
-        found = unknowns_of(self.model, self.y(states), states[:, self.model.size :])
+        found = unknowns_of(self.model, self.y(states), states[:, self.held])
+        force = self.model.energy / self.model.length
+        found[:, self.system.frames.rows] = states[:, self.frames.rows] * force
         return found.reshape(*z.shape[:-1], -1)
 
     def moved(self, z: Array, direction: Array) -> Array:
@@ -252,10 +272,9 @@ class Elements(Followed):
             np.array([getattr(p, name) for p in points])
             for name in ("z", "load_factor", "stiffness", "energies", "inertia")
         )
-        size = self.model.size
         answer = Answer(
             y=self.y(z),
-            reaction=z[:, size:],
+            reaction=z[:, self.held],
             stiffness=stiffness,
             energies=energies,
             done=np.array(done),
@@ -263,13 +282,13 @@ class Elements(Followed):
             defect=np.array([self.defect(p.z, p.load_factor) for p in points]),
             counters=np.zeros(4, dtype=np.int64),
         )
-        return self.compiled_rows(factor, answer)
+        return self.compiled_rows(factor, answer) | {"z": z}
 
     def compiled_rows(self, factors: Array, answer: Answer) -> dict[str, Any]:
         """The same from the answer at load factors (S,)."""
-        model, size = self.model, self.model.size
-        z = np.empty((len(factors), len(self.gradient)))
-        z[:, self.place], z[:, size:] = answer.y, answer.reaction
+        model = self.model
+        z = np.zeros((len(factors), len(self.gradient)))
+        z[:, self.place], z[:, self.held] = answer.y, answer.reaction
         poses = answer.y[:, : 3 * len(model.system.scene.bodies)].copy()
         poses[:, 0::3] *= model.length
         poses[:, 1::3] *= model.length

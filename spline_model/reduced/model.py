@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
+from spline_model.frames import Frames
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
 from spline_model.scene import Scene
@@ -49,6 +50,12 @@ class Reduced:
         own, modes = 2 * len(self.shape.order) - 6, int(self.strips.compliance.shape[1])
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
+
+    @cached_property
+    def frames(self) -> Frames:
+        """Frames that bodies carry, among y; their multipliers are none of it."""
+        frames = self.system.frames
+        return Frames(frames.place - self.system.layout.poses.start, frames.lever / self.length)
 
     @cached_property
     def drive_length(self) -> Array:

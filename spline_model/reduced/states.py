@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from spline_model.effects import MixedStretching
 from spline_model.effects.plate import STEP
-from spline_model.reduced.arrays import AXIAL, BENDING
+from spline_model.reduced.arrays import AXIAL, BENDING, RAW
 from spline_model.reduced.assembly import assemble, place_of
 from spline_model.reduced.beside import take_product, take_residual
 from spline_model.reduced.model import Reduced
@@ -93,20 +93,26 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
     return z
 
 
-def body_tangents(model: Reduced, y: Array) -> Array:
-    """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y), in EI/L; nan of a singular
-    strip."""
+def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
+    """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors (S,), in EI/L.
+
+    nan of a singular strip. Carried frames go with their bodies and have no part of their own.
+    """
     arrays = model.arrays()
-    found = np.empty((len(y), *arrays.space.tangent.shape))
-    _condense_all(y, arrays, found)
+    found, force = np.empty((len(y), *arrays.space.tangent.shape)), np.empty((len(y), len(model.bodies.load)))
+    _condense_all(y, load, arrays, found, force)
+    for row in range(len(y) * bool(model.frames.place.size)):
+        by, bend = model.frames.spread(y[row, : found.shape[1]], force[row])
+        found[row] = by.T @ found[row] @ by + bend
     return found
 
 
 @kernel()
-def _condense_all(y, arrays, tangents):
+def _condense_all(y, load, arrays, tangents, forces):
     for row in range(y.shape[0]):
-        singular = np.isinf(assemble(y[row], 0.0, arrays))
+        singular = np.isinf(assemble(y[row], load[row], arrays))
         for i in range(tangents.shape[1]):
+            forces[row, i] = arrays.space.vectors[RAW, i]
             for j in range(i, tangents.shape[1]):
                 value = np.nan if singular else arrays.space.tangent[i, j]
                 tangents[row, i, j] = tangents[row, j, i] = value

@@ -78,6 +78,28 @@ def test_pivots_that_make_no_sense(given, said):
     refused(lambda: cross_axis_pivot(**SIX | given), said)
 
 
+@pytest.mark.parametrize(
+    ("solve", "said"),
+    [
+        (lambda made: solve_many(made, {}, rotation=0.1), "designs: got 'a hinge on a body or a load"),
+        (
+            lambda made: solve_motion(made, integrator="leapfrog"),
+            "integrator: got 'leapfrog', expected energy",
+        ),
+        (
+            lambda made: sensitivities(made, solve_statics(made, rotation=0.1)),
+            "asked: got 'a hinge on a body or",
+        ),
+    ],
+)
+def test_what_frames_are_refused_by(solve, said):
+    """Requirement: what knows no points of a body refuses a load beside its centre."""
+    refused(
+        lambda: solve(cross_axis_pivot(**SIX | more(applied_force={"force": (1.0, 0.0), "at": (0.1, 0.1)}))),
+        said,
+    )
+
+
 def clamped(**changed):
     """Return a strip with a clamped width between ground and a stage."""
     strip = {"name": "strip_0", "start": (0.0, 0.0), "end": (1.0, 0.0), "tip": "stage"}
@@ -100,6 +122,10 @@ STRIPS = [
     (clamped, *row)
     for row in (
         ({"tip": None}, "tip of strip_0: got None, expected ground or a body for clamped_width"),
+        (
+            {"tip": None, "tip_joint": "hinge"},
+            "tip_joint of strip_0: got 'hinge', expected clamp of a free end",
+        ),
         ({"rise": 0.1}, "rise of strip_0: got 0.1, expected 0, a straight strip, for clamped_width"),
         ({"width": 5.0}, "width over length of strip_0: got 5.0, expected 0.005 to 4"),
         (NO_SIDES, "width of strip_0: got None, expected width and thickness [m] for clamped_width"),

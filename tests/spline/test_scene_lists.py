@@ -118,3 +118,79 @@ def test_motions_on_springs_keep_their_energy():
         return max(np.abs(energy - energy[0]).max(), np.abs(run.bodies["hung"][:, 0] - 1.0).max())
 
     gates.hold("spline_spring_motion", error)
+
+
+#: Ends of the beam that turn freely, and a body that slides along it.
+HINGED = {"root_joint": "hinge", "tip_joint": "hinge"}
+SLIDING = {"fixed": ("y", "rotation")}
+
+
+def test_a_column_between_hinges_buckles_as_euler_has_it():
+    """Requirement: a strip hinged at both ends buckles at pi^2 EI/L^2, and swings by pi^2 unloaded."""
+
+    def error(points=10, method="condensed"):
+        given = {"points": points, "joints": HINGED, "support": SLIDING}
+        load = {"force": (-1.2 * math.pi**2, 0.0)}
+        found = solve_mechanism(
+            beam("end", **given, applied_force=load), increments=6, method=method, check=False
+        )
+        swings = natural_frequencies(beam("end", **given), count=1).frequency[0] * 2.0 * math.pi
+        places = [point.load_factor for point in found.critical_points]
+        return abs(1.2 * places[0] - 1.0) + abs(swings / math.pi**2 - 1.0) + len(places) - 1.0
+
+    gates.hold("spline_hinges", error)
+    gates.check("spline_hinges", error(method="multipliers"))
+
+
+def offset(history=((0.0, 1.0), (0.05, 1.0), (0.3, -0.5))):
+    """A body on springs, hinged to the beam beside its centre, with a load beside its centre as well."""
+    strip = StripDesign(name="beam", tip="end", tip_joint="hinge", **STRIP)
+    given = {
+        "applied_force": [
+            {"force": (0.5, -1.0), "at": (1.4, 0.3), "history": history},
+            {"force": (0.1, 0.2)},
+        ],
+        "spring": {"stiffness": (1.0, 2.0), "rotational_stiffness": 0.5},
+    }
+    return compliant_mechanism(
+        strips=[strip],
+        bodies=[BodyDesign(name="end", centre=(1.2, 0.1), mass=1.0, moment_of_inertia=0.5)],
+        effects=("bending", "stretching", "strip_inertia", "body_inertia", *given),
+        parameters=given,
+        control_points=8,
+    )
+
+
+def test_hinges_and_loads_go_with_their_body():
+    """Requirement: a load beside the centre acts where its point is, a hinge bears no moment, and the paper's
+    system has the same states."""
+
+    def error(lever=1.0):
+        path, other = (solve_mechanism(offset(), method=each) for each in ("condensed", "multipliers"))
+        x, y, turn = path.bodies["end"][-1]
+        (fx, fy, moment), spring = (
+            path.clamp_reactions[-1, 0, 1],
+            (1.0, 2.0, 0.5) * np.array([x - 1.2, y - 0.1, turn]),
+        )
+        cos, sin = math.cos(turn), math.sin(turn)
+        load, hinge = (
+            np.array([0.2 * cos - 0.2 * sin, 0.2 * sin + 0.2 * cos]) * lever,
+            (-0.2 * cos + 0.1 * sin, -0.2 * sin - 0.1 * cos),
+        )
+        turning = -load[0] - 0.5 * load[1] - hinge[0] * fy + hinge[1] * fx - spring[2]
+        apart = np.abs(path.bodies["end"] - other.bodies["end"]).max()
+        return max(abs(turning), abs(moment), abs(0.6 - fx - spring[0]), abs(-0.8 - fy - spring[1]), apart)
+
+    gates.hold("spline_offsets", error)
+
+
+def test_motions_with_hinges_keep_their_energy():
+    """Requirement: what loads do beside centres and hinges pass on is in balance over any step."""
+
+    def error(booked=1.0):
+        run = solve_motion(offset(), duration=0.6, step=0.02, check=False)
+        assert run.status.value == "converged"
+        energy = run.kinetic_energy + run.strain_energy - booked * run.work
+        return np.abs(energy - energy[0]).max()
+
+    gates.hold("spline_hinged_motion", error)
