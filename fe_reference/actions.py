@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import Array, Indices, inlined, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
+from .links import Links, add_links, fastest, link_forces
 from .loads import Pull, applied
 from .mass import body_blocks
 from .matrix import Symmetric
@@ -34,7 +35,7 @@ from .structure import Structure
 #: Loads while time passes, as `_load_tables` makes them.
 Histories = tuple[Indices, Array, Indices, Array, Array]
 #: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
-Acting = tuple[Tables, tuple[Array, Array, Array], Histories, Written, Pair]
+Acting = tuple[Tables, tuple[Array, Array, Array], Links, Histories, Written, Pair]
 State = tuple[Array, Array, Array, Array]
 
 
@@ -76,13 +77,13 @@ class Actions:
         self.drag_rate = 0.0 if drag is None else drag.rate
         dragged = np.zeros(0) if drag is None else drag.rate * structure.nodal_masses()
         self.dissipative = (relaxation, dragged, self._grip())
-        self.damped = any(len(table) for table in self.dissipative)
+        self.damped = any(len(table) for table in self.dissipative) or bool(structure.links[3].any())
         pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
         self.named = self.damped or bool(pulls)
         self.histories, (force, scratch) = _load_tables(pulls), structure.work
         self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
         self.resultants = (np.zeros((len(structure.points), RESULTANTS)), np.zeros((len(pulls), 3)))
-        tables = (structure.tables, self.dissipative, self.histories)
+        tables = (structure.tables, self.dissipative, structure.links, self.histories)
         self.acting: Acting = (*tables, self.written, self.resultants)
 
     def _grip(self) -> Array:
@@ -125,6 +126,7 @@ class Actions:
         s.add_springs(whole, relaxation[0] if len(relaxation) else 0.0)
         if len(grip):
             body_blocks(s, y, grip[:, :2], whole)
+        add_links(s, y, s.links[3], whole)
         return whole
 
     def fastest_decay(self, material: float, mass: Array, inertia: Array) -> float:
@@ -139,7 +141,8 @@ class Actions:
         if len(grip):
             turning = grip[:, 1] + grip[:, 0] * np.sum(grip[:, 2:] ** 2, axis=1)
             rate += float(np.max(grip[:, 0] / mass + turning / inertia))
-        return rate
+        links = self.structure.links
+        return rate + fastest(links, links[3], mass, inertia)
 
 
 def _load_tables(pulls: Sequence[Pull]) -> Histories:
@@ -238,9 +241,8 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
 @inlined()
 def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
-    (given, carried, weights, springs), (relaxation, drag, grip), histories, written, (resultants, pulls) = (
-        acting
-    )
+    (given, carried, weights, springs), (relaxation, drag, grip), links, histories, written, sums = acting
+    resultants, pulls = sums
     u, v, bodies, bodies_v = state
     (_, _, first, _), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
     strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
@@ -250,6 +252,8 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     time_of = relaxation[0] if len(relaxation) else 0.0
     slip, lost = spring_forces(springs, time_of, (bodies, bodies_v), (u, v), force, resultants)
     loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
+    stored, lost = link_forces(links, bodies, bodies_v, resultants)
+    slip, loss = slip + stored, loss + lost
     _load_forces(histories, time, bodies, pulls)
     _put_loads(targets, pulls, force, resultants)
     return strain[0] + strain[1] + strain[2] + slip, _load_power(targets, pulls, v, bodies_v), loss
@@ -274,7 +278,7 @@ def advance(
     bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
     work of loads and drives, exactly that of the scheme, and what the dampers take [J].
     """
-    (_, carried, _, _), dissipative, histories, written, (resultants, pulls) = acting
+    (_, carried, _, _), dissipative, _, histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state
     viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
     for n in range(steps):

@@ -127,7 +127,7 @@ class Control:
         """Return the forces at y and p, by one compiled call."""
         share = parameter if self.settling else 1.0
         here = self.structure.evaluate(y, share)
-        residual, potential, work = here.gradient, sum(here.strain) + share * here.gravity, 0.0
+        residual, potential, work = here.gradient, sum(here.strain) + here.spring + share * here.gravity, 0.0
         if self.load is not None:
             work = float(self.load @ y)
             acts = self.share(parameter)

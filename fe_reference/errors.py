@@ -138,6 +138,12 @@ def pair(name: str, value: Any, unit: str) -> Pair:
     return finite(name, parts[0], unit), finite(name, parts[1], unit)
 
 
+def not_negatives(name: str, value: Any, unit: str) -> Pair:
+    """Return `value` as two floats, or refuse it if it is not two finite numbers, none below zero."""
+    x, y = pair(name, value, unit)
+    return not_negative(name, x, unit), not_negative(name, y, unit)
+
+
 def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:
     """Return `value` as two floats, None where it is None, or refuse it if that leaves no finite number."""
     parts = _parts(value)

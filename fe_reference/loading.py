@@ -1,11 +1,23 @@
-"""Effects of which a model definition may have any number: loads, drives and supports."""
+"""Effects of which a model definition may have any number: loads, drives, supports and springs."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import numpy as np
 
-from .errors import Checked, History, InvalidParameter, Pair, finite, optional, pair, partly, read_history
+from .errors import (
+    Checked,
+    History,
+    InvalidParameter,
+    Pair,
+    finite,
+    not_negative,
+    not_negatives,
+    optional,
+    pair,
+    partly,
+    read_history,
+)
 
 #: The history of what does not change.
 ALWAYS_FULL: History = ((0.0, 1.0),)
@@ -117,6 +129,30 @@ class Support(Prescribed):
     def ends(self) -> tuple[float | None, ...]:
         """Zeros where it is fixed."""
         return tuple(0.0 if way in self.fixed else None for way in WAYS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring(Several):
+    """Spring and damper between the centre of a body and that of another or, None, a point of the ground.
+
+    In axes of the ground: stiffness (k_x, k_y) [N/m] and damping (c_x, c_y) [N s/m] of the displacements
+    since rest, and those of the turns [N m/rad, N m s/rad]. In full at any load factor.
+    """
+
+    body: str
+    other: str | None = None
+    stiffness: Annotated[Pair, not_negatives, "N/m"] = (0.0, 0.0)
+    rotational_stiffness: Annotated[float, not_negative, "N m/rad"] = 0.0
+    damping: Annotated[Pair, not_negatives, "N s/m"] = (0.0, 0.0)
+    rotational_damping: Annotated[float, not_negative, "N m s/rad"] = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        own = (*self.stiffness, self.rotational_stiffness, *self.damping, self.rotational_damping)
+        if not any(own):
+            raise InvalidParameter("spring", self.body, "a stiffness or a damping above 0 [N/m]")
+        if self.other == self.body:
+            raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
 
 def factor_of(points: History, time: float) -> float:

@@ -129,19 +129,22 @@ class Envelope:
 
     Attributes:
         size: of the matrices.
-        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), diagonal (size,): of the entries, -1 for none.
+        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), links (K, 6, 6), diagonal (size,): of the
+        entries, -1 for none.
     """
 
-    def __init__(self, numbers: Indices, bodies: Indices, springs: Indices, size: int) -> None:
-        """Take the coordinates of elements (E, 8), -1 for none, of bodies (B, 3) and of roots (R, 2)."""
-        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs)]
+    def __init__(
+        self, numbers: Indices, bodies: Indices, springs: Indices, links: Indices, size: int
+    ) -> None:
+        """Take the coordinates of elements (E, 8), bodies (B, 3), roots (R, 2), links (K, 6); -1 for none."""
+        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs, links)]
         indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
         indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
         summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
         summed.sort_indices()
         self.size, self.starts, self.rows = size, summed.indptr, summed.indices
         keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
-        self.places, self.blocks, self.springs = (
+        self.places, self.blocks, self.springs, self.links = (
             np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
         )
         self.diagonal = np.searchsorted(keys, every * (size + 1))

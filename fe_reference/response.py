@@ -7,6 +7,7 @@ import numpy as np
 from .arrays import Array, kernel
 from .control import Control, State
 from .law import Written
+from .links import between
 from .matrix import Singular
 from .mesh import Tables, turned
 from .model import Model
@@ -65,7 +66,8 @@ def _stiffness_between(
     carried = tuple(each[structure.turns] for each in (y, one, other))
     own = float(_between(structure.tables, u, v, w, rest, carried, written))
     own += float(at.curvature[:, 1] @ (carried[1] * carried[2]))
-    return own + float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
+    own += float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
+    return own + (between(structure, y, one, other) if len(structure.links[0]) else 0.0)
 
 
 @kernel()

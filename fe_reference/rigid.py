@@ -36,16 +36,50 @@ class NothingHolds(InvalidParameter):
 
 def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
     """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
+    part, many = _parts(structure.model)
+    if not many:
+        return np.zeros(0, dtype=np.int64)
+    first, bodies = structure.first_body, range(len(structure.points))
+    motions = np.vstack([_motions(structure, part[b], structure.points[b], many) for b in bodies])
+    ties = [motions[[at - first for at in held]], *_tied(structure, part, many)]
+    free = null_space(np.vstack([*ties, np.zeros((1, 3 * many))]), rcond=RIGID)
     chosen: list[int] = []
-    for bodies in _parts(structure.model):
-        places = np.concatenate([np.arange(3) + structure.body_slice(b).start for b in bodies])
-        motions = np.vstack([_motions(structure, b) for b in bodies])
-        free = null_space(motions[np.isin(places, list(held))], rcond=RIGID) if len(bodies) else np.eye(3)
-        for place, row in zip(places.tolist(), motions, strict=True):
-            if np.abs(row @ free).max(initial=0.0) > RIGID:
-                chosen.append(place)
-                free = free @ null_space((row @ free)[None], rcond=RIGID)
-    return np.array(sorted(chosen), dtype=np.int64)
+    for place, row in enumerate(motions, start=first):
+        if np.abs(row @ free).max(initial=0.0) > RIGID:
+            chosen.append(place)
+            free = free @ null_space((row @ free)[None], rcond=RIGID)
+    return np.array(chosen, dtype=np.int64)
+
+
+def _parts(model: Model) -> tuple[Indices, int]:
+    """Return the part of every body and of the ground (B + 1,), and how many there are beside the ground's.
+
+    A part hangs together by strips. That of the ground is the last one.
+    """
+    count = len(model.bodies)
+    joined = np.where(model.ends == GROUND, count, model.ends)
+    rows, columns = joined[(joined != FREE).all(axis=1)].T
+    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
+    many, label = connected_components(graph, directed=False)
+    return (label - label[count] - 1) % many, many - 1
+
+
+def _tied(structure: Structure, part: Indices, many: int) -> Iterable[Array]:
+    """Yield the rates (K, 3 many) of what springs resist in the rigid motions of the parts."""
+    centres = np.vstack([structure.model.centres, np.zeros(2)])
+    for ends, stiffness in zip(structure.links[0], structure.links[2], strict=True):
+        one, other = (_motions(structure, part[b], centres[b], many) for b in ends)
+        yield (one - other)[stiffness > 0.0]
+
+
+def _motions(structure: Structure, part: int, point: Array, many: int) -> Array:
+    """Return the rates of a point [over L] and a turn in the rigid motions of its part (3, 3 many).
+
+    Nothing moves in the part of the ground, which is the last.
+    """
+    rates, (x, y) = np.zeros((3, 3 * many + 3)), point / structure.length
+    rates[:, 3 * part : 3 * part + 3] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
+    return rates[:, : 3 * many]
 
 
 def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
@@ -55,20 +89,3 @@ def require_balance(structure: Structure, props: Indices, residual: Array, load:
         if abs(residual[k]) > NONE * (structure.scale[k] + largest):
             body, axis = divmod(int(k) - structure.first_body, 3)
             raise NothingHolds(structure.model.body_names[body], axis, abs(float(residual[k])))
-
-
-def _parts(model: Model) -> list[Indices]:
-    """Return the bodies of each part that hangs together by strips but not with the ground."""
-    count = len(model.bodies)
-    joined = np.where(model.ends == GROUND, count, model.ends)
-    rows, columns = joined[(joined != FREE).all(axis=1)].T
-    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
-    label = connected_components(graph, directed=False)[1]
-    loose = sorted(set(label[:count].tolist()) - {int(label[count])})
-    return [np.flatnonzero(label[:count] == each) for each in loose]
-
-
-def _motions(structure: Structure, body: int) -> Array:
-    """Return the rates of a body's coordinates in the rigid motions of its part (3, 3), lengths over L."""
-    x, y = structure.points[body] / structure.length
-    return np.array([[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]])

@@ -39,6 +39,7 @@ from .actions import Actions, Instant, advance
 from .arrays import Array, Flags
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
+from .links import fastest
 from .loads import Piece
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
@@ -53,7 +54,7 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     lumped masses, K_e x = lambda M_e x in the state y (element eigenvalue inequality). Attaching nodes to a
     body restricts the motion and adds mass, and so does not raise it; the curvature of the master-slave map,
     if it is stiffening, can add as much as itself over the body's inertia. Hence
-    w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J.
+    w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J. Springs between bodies add their own.
 
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
@@ -61,6 +62,7 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     curvature, actions = structure.evaluate(y).curvature[:, 0], Actions(structure)
     square = _highest(structure, bodies, y, TANGENT)
     square += float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
+    square += fastest(structure.links, structure.links[2], bodies.mass, bodies.moment_of_inertia)
     material = _highest(structure, bodies, y, MATERIAL) if len(actions.dissipative[0]) else 0.0
     decay = actions.fastest_decay(material, bodies.mass, bodies.moment_of_inertia)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))

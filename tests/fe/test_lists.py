@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fe_reference import (
+    DEFAULT_EFFECTS,
     BodyDesign,
     DrivenRotation,
     Model,
@@ -18,6 +19,7 @@ from fe_reference import (
 )
 from tests.fe.scenes import four_bar, free_cantilever
 from tests.refusals import refused, scene
+from tests.table_one import SECTION
 
 
 def test_loads_add_up() -> None:
@@ -100,6 +102,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"support": {"body": "crank", "fixed": "x"}}, "fixed: got 'x', expected one or more of x, y, rotation"),
     ({"support": {"body": "crank", "fixed": ("x", "x")}}, "fixed: got ('x', 'x'), expected one or more"),
     ({"support": {"body": "crank"}}, "support: got ... expected a value of fixed"),
+    ({"spring": {"body": "crank"}}, "spring: got 'crank', expected a stiffness or a damping above 0"),
+    ({"spring": {"body": "crank", "stiffness": (1.0, -1.0)}}, "stiffness: got -1.0, expected a number not"),
+    ({"spring": {"body": "crank", "other": "car", "stiffness": (1.0, 1.0)}}, "body: got 'car', expected one"),
+    ({"spring": {"body": "crank", "other": "crank", "stiffness": (1.0, 1.0)}}, "other: got 'crank'"),
     ({"support": ROLL, "driven_displacement": LED}, f"prescribed: got 'x of crank', {TWICE}"),
     ({"driven_displacement": [LED, LED]}, f"prescribed: got 'x of crank', {TWICE}"),
 ]
@@ -118,3 +124,49 @@ def test_a_rotation_is_prescribed_once() -> None:
         refused(lambda ask=ask: ask(model, body="crank", rotation=0.1), f"'rotation of crank', {TWICE}")
     drive = DrivenRotation(body="crank", angle=0.1)
     refused(lambda: solve_motion(model, drive=drive, duration=1e-5), f"'rotation of crank', {TWICE}")
+
+
+SPRING: dict[str, Any] = {"body": "mass", "stiffness": (1000.0, 2000.0), "rotational_stiffness": 0.5}
+
+
+def on_springs(**given: Any) -> Model:
+    """Return a strip with a body at its tip, and a body on springs alone."""
+    bodies = [
+        BodyDesign(name="tip", centre=(0.1, 0.0)),
+        BodyDesign(name="mass", centre=(0.3, 0.1), mass=0.2, moment_of_inertia=1e-3),
+    ]
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="tip", **SECTION)
+    return compliant_mechanism(strips=[strip], bodies=bodies, elements=3, **scene(DEFAULT_EFFECTS, **given))
+
+
+def test_springs_alone() -> None:
+    """A body on springs moves by F/k and M/k, and vibrates as an oscillator; what they leave free is held."""
+    pull = {
+        "applied_force": {"body": "mass", "force": (3.0, -4.0)},
+        "applied_moment": {"body": "mass", "moment": 0.3},
+    }
+    path = solve_mechanism(on_springs(spring=[SPRING], **pull), increments=2)
+    assert path.bodies["mass"][-1] == pytest.approx((0.303, 0.098, 0.6), rel=1e-12)
+    assert path.spring_energy[-1] == pytest.approx(0.0985, rel=1e-9)
+    assert path.work[-1] == pytest.approx(path.spring_energy[-1] + path.strain_energy[-1], rel=1e-9)
+    assert path.body_stiffness("mass")[-1] == pytest.approx(np.diag((1000.0, 2000.0, 0.5)), abs=1e-9)
+    found = natural_frequencies(on_springs(spring=SPRING), rotation=None, count=3).frequency
+    assert 2.0 * np.pi * found == pytest.approx(np.sqrt((500.0, 5000.0, 10000.0)), rel=1e-9)
+    free = on_springs(spring=SPRING | {"stiffness": (1000.0, 0.0)}, applied_force=pull["applied_force"])
+    refused(lambda: solve_mechanism(free), "nothing holds body mass in the direction y")
+
+
+@pytest.mark.parametrize("how", [{}, {"integrator": "generalised-alpha", "step": 2e-5}])
+@pytest.mark.parametrize("damping", [0.0, 2.0])
+def test_a_mass_on_a_spring(how: dict[str, Any], damping: float) -> None:
+    """A released mass on a spring and a damper moves as an oscillator, in either scheme."""
+    led = {"body": "mass", "displacement": (3e-3, None)}
+    model = on_springs(spring=SPRING | {"damping": (damping, 0.0)}, driven_displacement=led)
+    motion = solve_motion(model, duration=0.045, samples=9, check=False, **how)
+    rate, time = damping / 0.4, motion.time
+    swift = np.sqrt(5000.0 - rate**2)
+    exact = 3e-3 * np.exp(-rate * time) * (np.cos(swift * time) + rate / swift * np.sin(swift * time))
+    assert (
+        np.abs(motion.bodies["mass"][:, 0] - 0.3 - exact).max() < 5e-5 * 3e-3
+    )  # of second order in the step
+    assert motion.energy_error < 5e-5
