@@ -146,11 +146,11 @@ class Actions:
 
 
 def _load_tables(pulls: Sequence[Pull]) -> Histories:
-    """Return targets (K,), rows (K, 5), begins (K + 1,) of the histories in instants and factors (H,)."""
+    """Return targets (K,), rows and whether they follow (K, 6), begins (K + 1,) in instants, factors (H,)."""
     points = np.array([point for pull in pulls for point in pull.history]).reshape(-1, 2)
     instants, factors = np.ascontiguousarray(points.T)
     begins = np.cumsum([0, *(len(pull.history) for pull in pulls)])
-    rows = np.array([pull.row for pull in pulls]).reshape(-1, 5)
+    rows = np.array([(*pull.row, pull.follows) for pull in pulls]).reshape(-1, 6)
     return np.array([pull.target for pull in pulls], dtype=np.int64), rows, begins, instants, factors
 
 
@@ -165,15 +165,18 @@ def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: floa
 
 
 @kernel()
-def _load_forces(histories: Histories, time: float, bodies: Array, pulls: Array) -> None:
+def _load_forces(histories: Histories, time: float, u: Array, bodies: Array, pulls: Array) -> None:
     """Write the generalised forces (K, 3) of the loads at an instant."""
     targets, rows, begins, instants, factors = histories
     for k in range(len(targets)):
         factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
-        if targets[k] >= 0:
-            x, y = turned(bodies[targets[k], 2], rows[k, 3], rows[k, 4])
-            moment += x * rows[k, 1] - y * rows[k, 0]
-        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * rows[k, 0], factor * rows[k, 1], factor * moment
+        turn = bodies[targets[k], 2] if targets[k] >= 0 else u[-1 - targets[k], 2]
+        force_x, force_y = rows[k, 0], rows[k, 1]
+        if rows[k, 5] > 0.0:
+            force_x, force_y = turned(turn, force_x, force_y)
+        x, y = turned(turn, rows[k, 3], rows[k, 4])
+        moment += x * force_y - y * force_x
+        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * force_x, factor * force_y, factor * moment
 
 
 @kernel()
@@ -254,7 +257,7 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
     stored, lost = link_forces(links, bodies, bodies_v, resultants)
     slip, loss = slip + stored, loss + lost
-    _load_forces(histories, time, bodies, pulls)
+    _load_forces(histories, time, u, bodies, pulls)
     _put_loads(targets, pulls, force, resultants)
     return strain[0] + strain[1] + strain[2] + slip, _load_power(targets, pulls, v, bodies_v), loss
 

@@ -112,6 +112,12 @@ def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     return str(value)
 
 
+def flag(name: str, value: Any) -> bool:
+    """Return `value` if it is True or False."""
+    require_kind(name, value, bool, "True or False")
+    return bool(value)
+
+
 def optional(name: str, value: Any, read: Callable[..., Any], *domain: object) -> Any:
     """Return None for None, and else what `read` makes of the value."""
     return None if value is None else read(name, value, *domain)

@@ -11,6 +11,7 @@ from .errors import (
     InvalidParameter,
     Pair,
     finite,
+    flag,
     not_negative,
     not_negatives,
     optional,
@@ -45,9 +46,15 @@ class BodyLoad(Several):
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedForce(BodyLoad):
-    """Dead force (f_x, f_y) [N] at the centre of a body."""
+    """Force (f_x, f_y) [N] on a body.
+
+    It acts at the point of the body that is `at` (x, y) [m] at rest, by default at its centre. A dead force
+    keeps its direction; a follower turns with the body.
+    """
 
     force: Annotated[Pair, pair, "N"]
+    at: Annotated[Pair | None, optional, pair, "m"] = None
+    follower: Annotated[bool, flag] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +66,15 @@ class AppliedMoment(BodyLoad):
 
 @dataclass(frozen=True, kw_only=True)
 class TipForce(Several):
-    """Dead force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history."""
+    """Force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history.
+
+    The force of a follower turns with the section there.
+    """
 
     strip: str
     force: Annotated[Pair, pair, "N"]
     moment: Annotated[float, finite, "N m"] = 0.0
+    follower: Annotated[bool, flag] = False
     history: Annotated[History, read_history] = ALWAYS_FULL
 
 

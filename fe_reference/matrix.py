@@ -6,6 +6,8 @@ the nodes along the strips, then those of the bodies, which leaves a band and a 
 Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
 coordinates are left out of the elimination.
 
+Products of two vectors, which are not symmetric, are added to a matrix by their low rank.
+
 Source: A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems (1981), ch. 4.
 """
 
@@ -180,6 +182,10 @@ class Symmetric:
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
         return out
 
+    def apart(self, one: Array, other: Array) -> float:
+        """Return one.K other less that of the symmetric part."""
+        return 0.0
+
     def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
         """Return the factors of its rows and columns that are not held (size,); raises Singular.
 
@@ -209,3 +215,63 @@ class Factors:
         x = np.where(self.held, 0.0, b)
         _solve(self.pattern.begin, self.pattern.first, self.low, self.d, x.reshape(-1, self.pattern.size))
         return x
+
+    def bordered(self, left: Array, right: Array) -> "Factors":
+        """Return the factors of the matrix with products of vectors (R, size) added; raises Singular.
+
+        The inverse is that of M. A. Woodbury. The determinant is that of this matrix times one of size R;
+        `negative` is 1 where it is below zero, for there is no inertia to count.
+        """
+        solved = self.solve(left)
+        core = np.eye(len(left)) + right @ solved.T
+        sign, size = np.linalg.slogdet(core)
+        if not np.isfinite(size):
+            raise Singular("the tangent is singular to round-off")
+        negative = int(sign * (-1.0) ** self.negative < 0.0)
+        return Bordered(
+            self.pattern,
+            self.held,
+            self.low,
+            self.d,
+            negative,
+            right,
+            solved,
+            np.asarray(np.linalg.inv(core), dtype=np.float64),
+        )
+
+
+@dataclass(eq=False)
+class Bordered(Factors):
+    """Factors of a matrix with products left (x) right of vectors (R, size).
+
+    solved (R, size): the matrix's solutions for left. core (R, R): inverse of 1 + right.solved.
+    """
+
+    right: Array
+    solved: Array
+    core: Array
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution (..., size) for right sides (..., size), zero at what is held."""
+        x = super().solve(b)
+        return np.asarray(x - (x @ self.right.T) @ self.core.T @ self.solved)
+
+
+@dataclass(eq=False)
+class Unsymmetric(Symmetric):
+    """A symmetric matrix with products left (x) right of vectors (R, size) added."""
+
+    left: Array
+    right: Array
+
+    def times(self, x: Array) -> Array:
+        """Return the product with vectors (..., size)."""
+        return np.asarray(super().times(x) + (x @ self.right.T) @ self.left)
+
+    def factors(self, held: Flags, grain: float = 0.0) -> Factors:
+        """Return the factors of its rows and columns that are not held (size,); raises Singular."""
+        return super().factors(held, grain).bordered(self.left, self.right)
+
+    def apart(self, one: Array, other: Array) -> float:
+        """Return one.K other less that of the symmetric part."""
+        return float((self.left @ one) @ (self.right @ other))

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .arrays import Array, Indices
 from .errors import InvalidParameter
+from .loads import Load
 from .model import Model
 from .places import FREE, GROUND
 from .structure import Structure
@@ -82,9 +83,9 @@ def _motions(structure: Structure, part: int, point: Array, many: int) -> Array:
     return rates[:, : 3 * many]
 
 
-def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
+def require_balance(structure: Structure, props: Indices, residual: Array, load: Load | None) -> None:
     """Refuse a state in which coordinates that are held for want of anything else bear something."""
-    largest = 0.0 if load is None else float(np.abs(load).max())
+    largest = 0.0 if load is None else float(np.abs(load.constant).max())
     for k in props:
         if abs(residual[k]) > NONE * (structure.scale[k] + largest):
             body, axis = divmod(int(k) - structure.first_body, 3)

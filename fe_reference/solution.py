@@ -216,7 +216,7 @@ class StaticSolution(Answer):
         body: its name; None: the driven one, or the only one.
         """
         led = self.driven if self.led else None
-        return body_stiffness(self.model, self.states, body or self.driven, driven=led)
+        return body_stiffness(self.model, self.states, self.load_factor, body or self.driven, driven=led)
 
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units: the columns of a frame."""

@@ -5,19 +5,23 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
 
 from fe_reference import (
     DEFAULT_EFFECTS,
     BodyDesign,
     DrivenRotation,
     Model,
+    StaticSolution,
     StripDesign,
     compliant_mechanism,
     natural_frequencies,
     solve_mechanism,
     solve_motion,
 )
-from tests.fe.scenes import four_bar, free_cantilever
+from tests.fe.cases import extrapolated
+from tests.fe.scenes import BARE, four_bar, free_cantilever
 from tests.refusals import refused, scene
 from tests.table_one import SECTION
 
@@ -170,3 +174,82 @@ def test_a_mass_on_a_spring(how: dict[str, Any], damping: float) -> None:
         np.abs(motion.bodies["mass"][:, 0] - 0.3 - exact).max() < 5e-5 * 3e-3
     )  # of second order in the step
     assert motion.energy_error < 5e-5
+
+
+def pulled(centre: tuple[float, float], **force: Any) -> Model:
+    """Return a strip with a body at its tip that a force pulls sideways and along."""
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="body", **SECTION)
+    body = BodyDesign(centre=centre, mass=0.1, moment_of_inertia=1e-4)
+    given = scene(DEFAULT_EFFECTS, applied_force={"force": (-30.0, 20.0), **force})
+    return compliant_mechanism(strips=[strip], bodies=[body], elements=8, **given)
+
+
+@pytest.mark.parametrize("follower", [False, True])
+def test_a_force_at_a_point(follower: bool) -> None:
+    """A force at a point of a body acts as at the centre of a body that has it there, and does work."""
+    point = (0.13, 0.04)
+    off, there = pulled((0.1, 0.0), at=point, follower=follower), pulled(point, follower=follower)
+    path, same = solve_mechanism(off), solve_mechanism(there)
+    assert np.abs(path.shape - same.shape).max() < 1e-12 * np.ptp(path.shape)
+    assert np.abs(path.shape - solve_mechanism(pulled((0.1, 0.0))).shape).max() > 1e-4
+    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
+    assert same.work[-1] == pytest.approx(path.work[-1], rel=1e-8)
+    turns = [1.0 / np.linalg.inv(each.body_stiffness()[-1])[2, 2] for each in (path, same)]
+    driven = solve_mechanism(off, rotation=float(path.rotation[-1]), increments=5)
+    assert turns[0] == pytest.approx(turns[1], rel=1e-9)
+    assert turns[0] == pytest.approx(driven.stiffness[-1], rel=1e-6)
+    assert abs(driven.torque[-1]) < 1e-9 * abs(driven.torque).max()
+    for how in ({}, {"integrator": "generalised-alpha", "step": 2e-6}):
+        motion = solve_motion(off, duration=2e-5, check=False, **how)
+        assert motion.starts_still and np.ptp(motion.rotation) < 1e-9
+
+
+def test_a_pinned_body_is_a_pendulum() -> None:
+    """A force beside the centre of a pinned body swings it as a pendulum, of any amplitude and scheme."""
+    pull = {"body": "mass", "force": (0.0, -50.0), "at": (0.3, 0.06)}
+    pin, led = {"body": "mass", "fixed": ("x", "y")}, {"body": "mass", "angle": 2.0}
+    small = on_springs(support=pin, applied_force=pull)
+    rate = np.sqrt(50.0 * 0.04 / 1e-3)
+    found = natural_frequencies(small, rotation=None, count=1).frequency[0]
+    assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-9)
+    half = 2.0 * ellipk(np.sin(1.0) ** 2) / rate
+    for how in ({"step": 5e-6}, {"integrator": "generalised-alpha", "step": 5e-5}):
+        model = on_springs(support=pin, applied_force=pull, driven_rotation=led)
+        motion = solve_motion(model, duration=half, samples=5, check=False, **how)
+        assert motion.bodies["mass"][-1, 2] == pytest.approx(-2.0, rel=1e-5)
+        assert np.abs(motion.bodies["mass"][:, :2] - (0.3, 0.1)).max() == 0.0
+        assert motion.energy_error < 1e-5
+
+
+def followed(load: float, elements: int = 10, *, across: bool = True) -> StaticSolution:
+    """Return the path of a thin cantilever with a follower of `load` EI/L^2, across or along its tip."""
+    section = {**BARE, "width": 0.01, "thickness": 2e-4}
+    force = load * BARE["youngs_modulus"] * 0.01 * 2e-4**3 / 12.0 / 0.1**2
+    given = {"strip": "strip", "force": (0.0, force) if across else (-force, 0.0), "follower": True}
+    model = free_cantilever(length=0.1, section=section, parameters={"tip_force": given}, elements=elements)
+    return solve_mechanism(model)
+
+
+def test_follower_elastica() -> None:
+    """A force that stays normal to the tip bends a cantilever as theta'' = p cos theta, from the tip on."""
+    for load in (2.0, 10.0):
+        ways = solve_ivp(
+            lambda _, z, p=load: (z[1], p * np.cos(z[0]), np.cos(z[0]), np.sin(z[0])),
+            (0.0, 1.0),
+            [0.0] * 4,
+            rtol=1e-10,
+            atol=1e-12,
+        )
+        turn, _, along, across = ways.y[:, -1]
+        tip = np.array([[np.cos(turn), np.sin(turn)], [np.sin(turn), -np.cos(turn)]]) @ (along, across)
+        paths = [followed(load, elements) for elements in (10, 20, 40)]
+        x, y, angle = extrapolated([path.tips["strip"][-1] for path in paths])
+        assert (10.0 * x, 10.0 * y, angle) == pytest.approx((*tip, turn), abs=1e-5)  # it stretches
+        assert paths[0].work[-1] == pytest.approx(paths[0].strain_energy[-1], rel=1e-5)
+
+
+def test_follower_column_does_not_buckle() -> None:
+    """Under a follower there is no other equilibrium: a column has none below flutter at 20.05 EI/L^2."""
+    path = followed(19.9, across=False)
+    assert path.critical_points == () and not path.inertia.any() and path.message == ""
+    refused(lambda: natural_frequencies(path.model, rotation=None), "follower: got True, expected dead loads")
