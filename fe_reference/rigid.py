@@ -12,7 +12,7 @@ from scipy.linalg import null_space
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from .arrays import Array, Indices
+from .arrays import Array, Flags, Indices
 from .errors import InvalidParameter
 from .loads import Load
 from .model import Model
@@ -40,8 +40,9 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
     part, many = _parts(structure.model)
     if not many:
         return np.zeros(0, dtype=np.int64)
-    first, bodies = structure.first_body, range(len(structure.points))
-    motions = np.vstack([_motions(structure, part[b], structure.points[b], many) for b in bodies])
+    first, bodies = structure.first_body, part[len(structure.model.strips) : -1]
+    own = [_motions(structure, *each, many) for each in zip(bodies, structure.points, strict=True)]
+    motions = np.vstack([np.zeros((0, 3 * many)), *own])
     ties = [motions[[at - first for at in held]], *_tied(structure, part, many)]
     free = null_space(np.vstack([*ties, np.zeros((1, 3 * many))]), rcond=RIGID)
     chosen: list[int] = []
@@ -53,23 +54,33 @@ def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
 
 
 def _parts(model: Model) -> tuple[Indices, int]:
-    """Return the part of every body and of the ground (B + 1,), and how many there are beside the ground's.
+    """Return the part of strips, bodies and ground (G + B + 1,), and how many there are beside the ground's.
 
-    A part hangs together by strips. That of the ground is the last one.
+    A part hangs together by ends that are not hinged. The ground's is the last one.
     """
-    count = len(model.bodies)
-    joined = np.where(model.ends == GROUND, count, model.ends)
-    rows, columns = joined[(joined != FREE).all(axis=1)].T
-    graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(count + 1, count + 1))
+    first, size = len(model.strips), len(model.strips) + len(model.bodies) + 1
+    strip, end = np.nonzero((model.ends != FREE) & ~_hinged(model))
+    there = np.where(model.ends == GROUND, size - 1, first + model.ends)[strip, end]
+    graph = coo_matrix((np.ones(len(strip)), (strip, there)), shape=(size, size))
     many, label = connected_components(graph, directed=False)
-    return (label - label[count] - 1) % many, many - 1
+    return (label - label[-1] - 1) % many, many - 1
+
+
+def _hinged(model: Model) -> Flags:
+    """Return which ends of the strips are hinged (G, 2)."""
+    return np.array([strip.hinges for strip in model.strips])
 
 
 def _tied(structure: Structure, part: Indices, many: int) -> Iterable[Array]:
-    """Yield the rates (K, 3 many) of what springs resist in the rigid motions of the parts."""
-    centres = np.vstack([structure.model.centres, np.zeros(2)])
-    for ends, stiffness in zip(structure.links[0], structure.links[2], strict=True):
-        one, other = (_motions(structure, part[b], centres[b], many) for b in ends)
+    """Yield the rates (K, 3 many) that hinges and springs resist in the rigid motions of the parts."""
+    model, first = structure.model, len(structure.model.strips)
+    for strip, end in np.argwhere(_hinged(model)):
+        place, there = model.rest[strip, -end], model.ends[strip, end]
+        ends = part[strip], part[-1 if there == GROUND else first + there]
+        yield np.subtract(*(_motions(structure, each, place, many) for each in ends))[:2]
+    centres = np.vstack([model.centres, np.zeros(2)])
+    for pair, stiffness in zip(structure.links[0], structure.links[2], strict=True):
+        one, other = (_motions(structure, part[first:][b], centres[b], many) for b in pair)
         yield (one - other)[stiffness > 0.0]
 
 

@@ -110,6 +110,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"spring": {"body": "crank", "stiffness": (1.0, -1.0)}}, "stiffness: got -1.0, expected a number not"),
     ({"spring": {"body": "crank", "other": "car", "stiffness": (1.0, 1.0)}}, "body: got 'car', expected one"),
     ({"spring": {"body": "crank", "other": "crank", "stiffness": (1.0, 1.0)}}, "other: got 'crank'"),
+    ({"tip_force": {"strip": "a", "force": (1.0, 0.0), "follower": 1}}, "follower: got 1, expected True or"),
     ({"support": ROLL, "driven_displacement": LED}, f"prescribed: got 'x of crank', {TWICE}"),
     ({"driven_displacement": [LED, LED]}, f"prescribed: got 'x of crank', {TWICE}"),
 ]
@@ -253,3 +254,73 @@ def test_follower_column_does_not_buckle() -> None:
     path = followed(19.9, across=False)
     assert path.critical_points == () and not path.inertia.any() and path.message == ""
     refused(lambda: natural_frequencies(path.model, rotation=None), "follower: got True, expected dead loads")
+
+
+def column(root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation")) -> Model:
+    """Return a column between joints, the upper one guided, under a load in pi^2 EI/L^2."""
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="head", root_joint=root, tip_joint=tip, **SECTION
+    )
+    force = (-load * np.pi**2 * strip.flexural_rigidity / 0.1**2, 0.0)
+    head = BodyDesign(name="head", centre=(0.1, 0.0), mass=0.01, moment_of_inertia=1e-6)
+    given = {"applied_force": {"force": force}, "support": {"body": "head", "fixed": guided}}
+    return compliant_mechanism(strips=[strip], bodies=[head], **scene(DEFAULT_EFFECTS, **given))
+
+
+@pytest.mark.parametrize(
+    ("joints", "load", "root"), [(("hinge", "hinge"), 1.0, np.pi), (("clamp", "hinge"), 2.0457, 3.92660)]
+)
+def test_hinged_columns(joints: tuple[str, str], load: float, root: float) -> None:
+    """Columns on hinges buckle at their Euler loads, and vibrate at the roots of beams on hinges."""
+    path = solve_mechanism(column(*joints, 1.2 * load), check=False)
+    (point,) = path.critical_points
+    assert 1.2 * point.load_factor == pytest.approx(1.0, rel=1e-2)  # of second order in 20 elements
+    assert abs(path.bending_moment[:, 0, [k for k in (0, -1) if joints[k] == "hinge"]]).max() == 0.0
+    model = column(*joints, 0.0, guided=("x", "y", "rotation"))
+    strip = model.strips[0]
+    found = 2.0 * np.pi * natural_frequencies(model, rotation=None, count=1).frequency[0]
+    unit = np.sqrt(strip.flexural_rigidity / strip.linear_density) / 0.1**2
+    assert np.sqrt(found / unit) == pytest.approx(root, rel=2e-5)
+
+
+def test_a_hinged_strip_is_a_pendulum() -> None:
+    """A strip that hangs on a hinge swings as a rod, small and from the horizontal, in either scheme."""
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, root_joint="hinge", **SECTION
+    )
+
+    def hung(*along: float) -> Model:
+        given = scene(("bending", "stretching", "strip_inertia"), gravity={"acceleration": along})
+        return compliant_mechanism(strips=[strip], elements=4, **given)
+
+    rate = np.sqrt(1.5 * 9.81 / 0.1)
+    found = natural_frequencies(hung(9.81, 0.0), rotation=None, count=1).frequency[0]
+    assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-4)
+    half = 2.0 * ellipk(0.5) / rate
+    for how in ({}, {"integrator": "generalised-alpha", "step": 2e-4}):
+        swing = solve_motion(hung(0.0, -9.81), settled=False, duration=half, samples=4, check=False, **how)
+        assert swing.shape[-1, 0, -1] == pytest.approx((-0.1, 0.0), abs=5e-4)  # as the lumped masses
+        assert swing.energy_error < 1e-5
+
+
+def test_hinges_leave_motions_free() -> None:
+    """A motion that hinges leave free is held in statics and bears nothing; a load along it is refused."""
+    ends = {"bar": ((0.0, 0.0), (0.0, 0.05)), "link": ((0.08, 0.0), (0.08, 0.05))}
+    strips = [
+        StripDesign(name=name, start=a, end=b, tip="beam", root_joint="hinge", tip_joint="hinge", **SECTION)
+        for name, (a, b) in ends.items()
+    ]
+    beam = BodyDesign(name="beam", centre=(0.04, 0.05))
+
+    def linkage(force: tuple[float, float]) -> Model:
+        given = scene(DEFAULT_EFFECTS, applied_force={"force": force})
+        return compliant_mechanism(strips=strips, bodies=[beam], elements=2, **given)
+
+    path = solve_mechanism(linkage((0.0, 40.0)), increments=2)
+    assert path.prescribed == () and path.axial_force[-1] == pytest.approx(20.0, rel=1e-9)
+    refused(lambda: solve_mechanism(linkage((1.0, 0.0))), "nothing holds body beam in the direction x")
+    loose = partial(StripDesign, name="loose", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, **SECTION)
+    refused(
+        lambda: loose(tip_joint="hinge"), "tip_joint: got 'hinge', expected clamp at the free end of loose"
+    )
+    refused(lambda: loose(root_joint="weld"), "root_joint: got 'weld', expected one of clamp, hinge")
