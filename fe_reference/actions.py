@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import Array, Indices, inlined, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
+from .links import Links, add_links, fastest, link_forces
 from .loads import Pull, applied
 from .mass import body_blocks
 from .matrix import Symmetric
@@ -34,7 +35,7 @@ from .structure import Structure
 #: Loads while time passes, as `_load_tables` makes them.
 Histories = tuple[Indices, Array, Indices, Array, Array]
 #: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
-Acting = tuple[Tables, tuple[Array, Array, Array], Histories, Written, Pair]
+Acting = tuple[Tables, tuple[Array, Array, Array], Links, Histories, Written, Pair]
 State = tuple[Array, Array, Array, Array]
 
 
@@ -76,13 +77,13 @@ class Actions:
         self.drag_rate = 0.0 if drag is None else drag.rate
         dragged = np.zeros(0) if drag is None else drag.rate * structure.nodal_masses()
         self.dissipative = (relaxation, dragged, self._grip())
-        self.damped = any(len(table) for table in self.dissipative)
+        self.damped = any(len(table) for table in self.dissipative) or bool(structure.links[3].any())
         pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
         self.named = self.damped or bool(pulls)
         self.histories, (force, scratch) = _load_tables(pulls), structure.work
         self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
         self.resultants = (np.zeros((len(structure.points), RESULTANTS)), np.zeros((len(pulls), 3)))
-        tables = (structure.tables, self.dissipative, self.histories)
+        tables = (structure.tables, self.dissipative, structure.links, self.histories)
         self.acting: Acting = (*tables, self.written, self.resultants)
 
     def _grip(self) -> Array:
@@ -125,6 +126,7 @@ class Actions:
         s.add_springs(whole, relaxation[0] if len(relaxation) else 0.0)
         if len(grip):
             body_blocks(s, y, grip[:, :2], whole)
+        add_links(s, y, s.links[3], whole)
         return whole
 
     def fastest_decay(self, material: float, mass: Array, inertia: Array) -> float:
@@ -139,15 +141,16 @@ class Actions:
         if len(grip):
             turning = grip[:, 1] + grip[:, 0] * np.sum(grip[:, 2:] ** 2, axis=1)
             rate += float(np.max(grip[:, 0] / mass + turning / inertia))
-        return rate
+        links = self.structure.links
+        return rate + fastest(links, links[3], mass, inertia)
 
 
 def _load_tables(pulls: Sequence[Pull]) -> Histories:
-    """Return targets (K,), rows (K, 5), begins (K + 1,) of the histories in instants and factors (H,)."""
+    """Return targets (K,), rows and whether they follow (K, 6), begins (K + 1,) in instants, factors (H,)."""
     points = np.array([point for pull in pulls for point in pull.history]).reshape(-1, 2)
     instants, factors = np.ascontiguousarray(points.T)
     begins = np.cumsum([0, *(len(pull.history) for pull in pulls)])
-    rows = np.array([pull.row for pull in pulls]).reshape(-1, 5)
+    rows = np.array([(*pull.row, pull.follows) for pull in pulls]).reshape(-1, 6)
     return np.array([pull.target for pull in pulls], dtype=np.int64), rows, begins, instants, factors
 
 
@@ -162,15 +165,18 @@ def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: floa
 
 
 @kernel()
-def _load_forces(histories: Histories, time: float, bodies: Array, pulls: Array) -> None:
+def _load_forces(histories: Histories, time: float, u: Array, bodies: Array, pulls: Array) -> None:
     """Write the generalised forces (K, 3) of the loads at an instant."""
     targets, rows, begins, instants, factors = histories
     for k in range(len(targets)):
         factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
-        if targets[k] >= 0:
-            x, y = turned(bodies[targets[k], 2], rows[k, 3], rows[k, 4])
-            moment += x * rows[k, 1] - y * rows[k, 0]
-        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * rows[k, 0], factor * rows[k, 1], factor * moment
+        turn = bodies[targets[k], 2] if targets[k] >= 0 else u[-1 - targets[k], 2]
+        force_x, force_y = rows[k, 0], rows[k, 1]
+        if rows[k, 5] > 0.0:
+            force_x, force_y = turned(turn, force_x, force_y)
+        x, y = turned(turn, rows[k, 3], rows[k, 4])
+        moment += x * force_y - y * force_x
+        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * force_x, factor * force_y, factor * moment
 
 
 @kernel()
@@ -238,9 +244,8 @@ def _grip_forces(grip: Array, bodies: Array, bodies_v: Array, out: Array) -> flo
 @inlined()
 def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float]:
     """Write all that resists on nodes and bodies; return strain energy, power of the loads, power lost."""
-    (given, carried, weights, springs), (relaxation, drag, grip), histories, written, (resultants, pulls) = (
-        acting
-    )
+    (given, carried, weights, springs), (relaxation, drag, grip), links, histories, written, sums = acting
+    resultants, pulls = sums
     u, v, bodies, bodies_v = state
     (_, _, first, _), (force, _, matrices, _), targets, loss = given, written, histories[0], 0.0
     strain = elements(given, 1.0, MATERIAL if len(relaxation) else FORCES, u, written)
@@ -250,7 +255,9 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     time_of = relaxation[0] if len(relaxation) else 0.0
     slip, lost = spring_forces(springs, time_of, (bodies, bodies_v), (u, v), force, resultants)
     loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
-    _load_forces(histories, time, bodies, pulls)
+    stored, lost = link_forces(links, bodies, bodies_v, resultants)
+    slip, loss = slip + stored, loss + lost
+    _load_forces(histories, time, u, bodies, pulls)
     _put_loads(targets, pulls, force, resultants)
     return strain[0] + strain[1] + strain[2] + slip, _load_power(targets, pulls, v, bodies_v), loss
 
@@ -274,7 +281,7 @@ def advance(
     bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
     work of loads and drives, exactly that of the scheme, and what the dampers take [J].
     """
-    (_, carried, _, _), dissipative, histories, written, (resultants, pulls) = acting
+    (_, carried, _, _), dissipative, _, histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state
     viscous = len(dissipative[0]) > 0 or len(dissipative[1]) > 0
     for n in range(steps):

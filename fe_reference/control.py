@@ -15,6 +15,7 @@ import numpy as np
 
 from .arrays import Array, Flags, Indices
 from .loading import ALWAYS_FULL, factor_of
+from .loads import Load
 from .matrix import Factors, Singular
 from .places import prescribed, twice
 from .rigid import loose_coordinates
@@ -37,8 +38,8 @@ class State:
     Attributes:
         y (size,), parameter: coordinates and where.
         residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
-            there, whose tangent is d r / d y: loads act at centres and free ends, where they have no
-            stiffness. potential: whose gradient is r [J]. load_work: of the full load from rest [J].
+            there, whose tangent is d r / d y. potential: of all but loads that follow [J], without which its
+            gradient is r. load_work: of the full load from rest, as far as it has a potential [J].
         norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
         rate: d y / d p (size,).
         conjugate, slope: first and second derivative of the total potential along the path [J].
@@ -69,7 +70,10 @@ class State:
 
     @property
     def inertia(self) -> int:
-        """Number of negative eigenvalues of the tangent on the free coordinates; 0: stable."""
+        """Number of negative eigenvalues of the tangent on the free coordinates; 0: stable.
+
+        Under loads that follow: 1 where its determinant is negative.
+        """
         return 0 if self.factors is None else self.factors.negative
 
 
@@ -80,7 +84,7 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load (size,): F, or None. shares: of it at both, by default the parameters.
+        span: parameter at both. load: F, or None. shares: of it at both, by default the parameters.
         watched: coordinate of the driven turn, whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
         props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
@@ -90,7 +94,7 @@ class Control:
     held: Indices
     values: Array
     span: tuple[float, float] = (0.0, 1.0)
-    load: Array | None = None
+    load: Load | None = None
     watched: int | None = None
     settling: bool = False
     shares: tuple[float, float] | None = None
@@ -127,23 +131,27 @@ class Control:
         """Return the forces at y and p, by one compiled call."""
         share = parameter if self.settling else 1.0
         here = self.structure.evaluate(y, share)
-        residual, potential, work = here.gradient, sum(here.strain) + share * here.gravity, 0.0
+        residual, potential, work = here.gradient, sum(here.strain) + here.spring + share * here.gravity, 0.0
         if self.load is not None:
-            work = float(self.load @ y)
-            acts = self.share(parameter)
-            residual, potential = residual - acts * self.load, potential - acts * work
+            work, acts = self.load.work(y), self.share(parameter)
+            residual, potential = residual - acts * self.load.force(y), potential - acts * work
+            here = self.load.stiffened(here, self.structure, y, acts)
         return State(
             y=y, parameter=parameter, residual=residual, at=here, potential=potential, load_work=work
         )
 
-    def rates(self, y: Array, parameter: float, load_work: float) -> tuple[Array | None, float, float]:
-        """Return what p changes at fixed y: r (size,) or None; the potential, once and twice [J]."""
+    def rates(
+        self, y: Array, parameter: float, load_work: float
+    ) -> tuple[Array | None, Array | None, float, float]:
+        """Return what p changes at fixed y: r and the gradient of the potential (size,), alike without
+        followers, or None; the potential, once and twice [J]."""
         if self.settling:
             force, rate, bend = self.structure.share_rates(y)
-            return force, rate + (parameter - 1.0) * bend, bend
+            return force, force, rate + (parameter - 1.0) * bend, bend
         if self.load is None or self.growth == 0.0:
-            return None, 0.0, 0.0
-        return -self.growth * self.load, -self.growth * load_work, 0.0
+            return None, None, 0.0, 0.0
+        force, dead = (-self.growth * self.load.force(y, each) for each in (True, False))
+        return force, dead, -self.growth * load_work, 0.0
 
     def factors(self, balance: State, grain: float = 0.0) -> Factors:
         """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
@@ -165,7 +173,7 @@ def spans(
     *,
     body: int | None = None,
     rotations: Sequence[float] | None = None,
-    load: Array | None = None,
+    load: Load | None = None,
     first: bool = False,
     starts: bool = False,
 ) -> list[Control]:

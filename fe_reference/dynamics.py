@@ -17,7 +17,7 @@ from .mass import about_mass_centre, carried_over
 from .model import Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, Trajectory, course, trajectory
-from .places import GROUND
+from .places import GROUND, prescribed
 from .refined import limit_of
 from .rigid import loose_coordinates
 from .schemes import Explicit, Implicit, critical_step
@@ -28,6 +28,7 @@ from .structure import structure_of
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
 STEPS_PER_PERIOD = 6000
+ELASTIC = (*DEFAULT_EFFECTS, "spring", "support")
 #: Most steps of one run unless more are allowed, some 25 s with 20 elements; 50 times more, 20 minutes, are
 #: the most that are recommended. Most numbers kept of a run.
 MOST_STEPS, FAR_MORE = 20_000_000, 50
@@ -225,10 +226,11 @@ def _sampling(steps: int, samples: int) -> list[int]:
 
 
 def _first_frequency(model: Model) -> float:
-    """Return the first frequency about the shape at rest, of inertia and elasticity alone [Hz]."""
-    kept = [name for name in model.effects.names if name in DEFAULT_EFFECTS]
-    bare = replace(model, effects=Effects.read(kept, {}))
-    rigid = len(loose_coordinates(structure_of(bare), ()))
+    """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
+    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
+    bare = replace(model, effects=Effects(named=kept))
+    structure = structure_of(bare)
+    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in prescribed(bare, None)]))
     clamped = (model.ends == GROUND).any()
     found = np.zeros(0)  # of free strips without bodies
     if clamped or model.bodies:

@@ -15,6 +15,7 @@ from .loading import (
     Effect,
     PrescribedRotation,
     Several,
+    Spring,
     Support,
     TipForce,
 )
@@ -97,6 +98,7 @@ KNOWN: Mapping[str, type[Effect]] = {
     "driven_displacement": DrivenDisplacement,
     "driven_rotation": PrescribedRotation,
     "support": Support,
+    "spring": Spring,
     "pre_strain": PreStrain,
     "clamped_width": Effect,
     "anticlastic": Effect,

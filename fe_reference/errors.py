@@ -112,6 +112,12 @@ def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
     return str(value)
 
 
+def flag(name: str, value: Any) -> bool:
+    """Return `value` if it is True or False."""
+    require_kind(name, value, bool, "True or False")
+    return bool(value)
+
+
 def optional(name: str, value: Any, read: Callable[..., Any], *domain: object) -> Any:
     """Return None for None, and else what `read` makes of the value."""
     return None if value is None else read(name, value, *domain)
@@ -136,6 +142,12 @@ def pair(name: str, value: Any, unit: str) -> Pair:
     if len(parts) != 2:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
     return finite(name, parts[0], unit), finite(name, parts[1], unit)
+
+
+def not_negatives(name: str, value: Any, unit: str) -> Pair:
+    """Return `value` as two floats, or refuse it if it is not two finite numbers, none below zero."""
+    x, y = pair(name, value, unit)
+    return not_negative(name, x, unit), not_negative(name, y, unit)
 
 
 def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:

@@ -1,11 +1,24 @@
-"""Effects of which a model definition may have any number: loads, drives and supports."""
+"""Effects of which a model definition may have any number: loads, drives, supports and springs."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 import numpy as np
 
-from .errors import Checked, History, InvalidParameter, Pair, finite, optional, pair, partly, read_history
+from .errors import (
+    Checked,
+    History,
+    InvalidParameter,
+    Pair,
+    finite,
+    flag,
+    not_negative,
+    not_negatives,
+    optional,
+    pair,
+    partly,
+    read_history,
+)
 
 #: The history of what does not change.
 ALWAYS_FULL: History = ((0.0, 1.0),)
@@ -33,9 +46,15 @@ class BodyLoad(Several):
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedForce(BodyLoad):
-    """Dead force (f_x, f_y) [N] at the centre of a body."""
+    """Force (f_x, f_y) [N] on a body.
+
+    It acts at the point of the body that is `at` (x, y) [m] at rest, by default at its centre. A dead force
+    keeps its direction; a follower turns with the body.
+    """
 
     force: Annotated[Pair, pair, "N"]
+    at: Annotated[Pair | None, optional, pair, "m"] = None
+    follower: Annotated[bool, flag] = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,11 +66,15 @@ class AppliedMoment(BodyLoad):
 
 @dataclass(frozen=True, kw_only=True)
 class TipForce(Several):
-    """Dead force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history."""
+    """Force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history.
+
+    The force of a follower turns with the section there.
+    """
 
     strip: str
     force: Annotated[Pair, pair, "N"]
     moment: Annotated[float, finite, "N m"] = 0.0
+    follower: Annotated[bool, flag] = False
     history: Annotated[History, read_history] = ALWAYS_FULL
 
 
@@ -117,6 +140,30 @@ class Support(Prescribed):
     def ends(self) -> tuple[float | None, ...]:
         """Zeros where it is fixed."""
         return tuple(0.0 if way in self.fixed else None for way in WAYS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spring(Several):
+    """Spring and damper between the centre of a body and that of another or, None, a point of the ground.
+
+    In axes of the ground: stiffness (k_x, k_y) [N/m] and damping (c_x, c_y) [N s/m] of the displacements
+    since rest, and those of the turns [N m/rad, N m s/rad]. In full at any load factor.
+    """
+
+    body: str
+    other: str | None = None
+    stiffness: Annotated[Pair, not_negatives, "N/m"] = (0.0, 0.0)
+    rotational_stiffness: Annotated[float, not_negative, "N m/rad"] = 0.0
+    damping: Annotated[Pair, not_negatives, "N s/m"] = (0.0, 0.0)
+    rotational_damping: Annotated[float, not_negative, "N m s/rad"] = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        own = (*self.stiffness, self.rotational_stiffness, *self.damping, self.rotational_damping)
+        if not any(own):
+            raise InvalidParameter("spring", self.body, "a stiffness or a damping above 0 [N/m]")
+        if self.other == self.body:
+            raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
 
 def factor_of(points: History, time: float) -> float:

@@ -1,6 +1,9 @@
-"""Loads fixed in space, and drives of a motion: what leads which coordinates of a body, when and how fast.
+"""Loads, and drives of a motion: what leads which coordinates of a body, when and how fast.
 
-Loads are dead forces and moments on bodies, and forces at free ends, with their histories.
+Loads are forces and moments on bodies and at free ends, with their histories. A dead force F at an offset o
+from the point that its body is reduced about has the potential -F.(d + (R - 1) o), and so a moment and a
+stiffness that depend on the turn. A follower R F has no potential: its tangent is the product -R' F (x) 1 of
+its rate in the turn and the turn's unit vector, which is not symmetric.
 
 Histories are linear between their instants, so that a motion falls into spans on which every led coordinate
 goes at a constant rate. Held like that they need no multiplier: the body is reduced about the point that is
@@ -10,7 +13,7 @@ drive exerts. At the beginning of a span velocities change at once, by impulses 
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Annotated
 
@@ -18,11 +21,13 @@ import numpy as np
 
 from .arrays import Array, Flags, rotation_matrix
 from .errors import Checked, History, InvalidParameter, finite, read_history
-from .loading import ALWAYS_FULL, BodyLoad, TipForce, factor_of
+from .loading import ALWAYS_FULL, AppliedForce, BodyLoad, TipForce, factor_of
 from .mass import RigidBodies
+from .matrix import Symmetric, Unsymmetric
+from .mesh import swept, turned
 from .model import Model
 from .places import prescribed, twice
-from .structure import Structure
+from .structure import Evaluation, Structure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,44 +37,132 @@ class Pull:
     Attributes:
         target: index of the body, or the node i as -1 - i.
         row (5,): force x, y [N], moment [N m], and the offset of the point from the body's point [m].
-        history: instants [s] and factors.
+        history: instants [s] and factors. follows: whether the force turns with its target.
     """
 
     target: int
     row: Array
     history: History
+    follows: bool
 
 
 def applied(structure: Structure) -> list[Pull]:
-    """Return the named loads of a scene: at free ends, and at the centres of bodies."""
+    """Return the named loads of a scene: at free ends, and on bodies."""
     pulls, model = [], structure.model
     for tip in model.effects.every(TipForce):
         node = (model.strip_index(tip.strip) + 1) * structure.stations - 1
         row = np.array([*tip.force, tip.moment, 0.0, 0.0])
-        pulls.append(Pull(target=-1 - node, row=row, history=tip.history))
+        pulls.append(Pull(target=-1 - node, row=row, history=tip.history, follows=tip.follower))
     for load in model.effects.every(BodyLoad):
         k = model.body_index(load.body)
         force, moment = getattr(load, "force", (0.0, 0.0)), getattr(load, "moment", 0.0)
-        row = np.array([*force, moment, *(model.bodies[k].centre - structure.points[k])])
-        pulls.append(Pull(target=k, row=row, history=load.history))
+        place, follows = getattr(load, "at", None), getattr(load, "follower", False)
+        place = model.bodies[k].centre if place is None else np.array(place)
+        row = np.array([*force, moment, *(place - structure.points[k])])
+        pulls.append(Pull(target=k, row=row, history=load.history, follows=follows))
     return pulls
 
 
-def full_load(structure: Structure, *, time: float | None = None) -> Array | None:
-    """Return the generalised force of the named loads (size,), or None if there are none.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Load:
+    """All loads together as a function of the coordinates.
 
-    It is that of a structure about the centres of its bodies and constant: the loads act at centres and free
-    ends, where they have no arm that turns. They act in full, or as their histories are at an instant [s]."""
+    Attributes:
+        constant (size,): the part that does not depend on the coordinates [N, N m].
+        turning: of each force that does, first coordinate of its body or node, `Pull.row`, and whether it
+            follows.
+    """
+
+    constant: Array
+    turning: tuple[tuple[int, Array, bool], ...]
+
+    @property
+    def follows(self) -> bool:
+        """Whether it has no potential."""
+        return any(follows for _, _, follows in self.turning)
+
+    def force(self, y: Array, followers: bool = True) -> Array:
+        """Return the generalised force at coordinates (size,), with those that follow or without."""
+        if not self.turning:
+            return self.constant
+        force = self.constant.copy()
+        for at, row, follows in self.turning:
+            if follows and not followers:
+                continue
+            pull, arm = _turned(y[at + 2], row, follows)
+            force[at : at + 2] += np.multiply(follows, pull)
+            force[at + 2] += arm[0] * pull[1] - arm[1] * pull[0]
+        return force
+
+    def work(self, y: Array) -> float:
+        """Return the work from rest of the loads that have a potential [J]."""
+        work = float(self.constant @ y)
+        for at, row, follows in self.turning:
+            if not follows:
+                work += float(row[:2] @ swept(y[at + 2], row[3], row[4]))
+        return work
+
+    def stiffen(self, tangent: Symmetric, y: Array, share: float) -> Symmetric:
+        """Return a tangent with what a share of the load adds; what of it is symmetric is added in place."""
+        left, right = [], []
+        for at, row, follows in self.turning:
+            (x, z), arm = _turned(y[at + 2], row, follows)
+            if follows:
+                left.append(np.zeros(len(y)))
+                right.append(np.eye(1, len(y), at + 2)[0])
+                left[-1][at : at + 2] = share * z, -share * x
+            else:
+                tangent.data[tangent.pattern.diagonal[at + 2]] += share * (arm[0] * x + arm[1] * z)
+        if not left:
+            return tangent
+        return Unsymmetric(tangent.pattern, tangent.data, np.array(left), np.array(right))
+
+    def stiffened(self, at: Evaluation, structure: Structure, y: Array, share: float) -> Evaluation:
+        """Return an evaluation at y with the stiffness that a share of the load adds."""
+        if not self.turning:
+            return at
+        places = at.tangent.pattern.diagonal[structure.turns]
+        before = at.tangent.data[places]
+        tangent = self.stiffen(at.tangent, y, share)
+        at.curvature[:, 1] += tangent.data[places] - before
+        return replace(at, tangent=tangent)
+
+
+def _turned(turn: float, row: Array, follows: bool) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return force [N] and arm [m] of a load on what is turned."""
+    force = turned(turn, row[0], row[1]) if follows else (row[0], row[1])
+    return force, turned(turn, row[3], row[4])
+
+
+def full_load(structure: Structure, *, time: float | None = None) -> Load | None:
+    """Return the named loads in full, or as they are at an instant [s]; None if there are none."""
     pulls = applied(structure)
     if not pulls:
         return None
-    vector = np.zeros(structure.size)
+    constant, turning = np.zeros(structure.size), []
     for pull in pulls:
         at = structure.first_body + 3 * pull.target
         if pull.target < 0:
             at = structure.nodal.tolist().index(3 * (-1 - pull.target))
-        vector[at : at + 3] += (1.0 if time is None else factor_of(pull.history, time)) * pull.row[:3]
-    return vector
+        row = pull.row.copy()
+        row[:3] *= 1.0 if time is None else factor_of(pull.history, time)
+        constant[at + 2] += row[2]
+        if not pull.follows:
+            constant[at : at + 2] += row[:2]
+        if row[:2].any() and (pull.follows or row[3:].any()):
+            turning.append((at, row, pull.follows))
+    return Load(constant=constant, turning=tuple(turning))
+
+
+def steepest(structure: Structure, inertia: Array) -> float:
+    """Return what no stiffness of turns by forces off the centres exceeds, over the inertia (B,) [1/s^2]."""
+    total, model = 0.0, structure.model
+    for load in model.effects.every(AppliedForce):
+        if load.at is not None:
+            k = model.body_index(load.body)
+            arm = math.hypot(*(np.array(load.at) - model.bodies[k].centre))
+            total += max(abs(f) for _, f in load.history) * math.hypot(*load.force) * arm / inertia[k]
+    return total
 
 
 #: Instants nearer than this part of the motion are the same.

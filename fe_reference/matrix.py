@@ -6,6 +6,8 @@ the nodes along the strips, then those of the bodies, which leaves a band and a 
 Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
 coordinates are left out of the elimination.
 
+Products of two vectors, which are not symmetric, are added to a matrix by their low rank.
+
 Source: A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems (1981), ch. 4.
 """
 
@@ -129,19 +131,22 @@ class Envelope:
 
     Attributes:
         size: of the matrices.
-        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), diagonal (size,): of the entries, -1 for none.
+        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), links (K, 6, 6), diagonal (size,): of the
+        entries, -1 for none.
     """
 
-    def __init__(self, numbers: Indices, bodies: Indices, springs: Indices, size: int) -> None:
-        """Take the coordinates of elements (E, 8), -1 for none, of bodies (B, 3) and of roots (R, 2)."""
-        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs)]
+    def __init__(
+        self, numbers: Indices, bodies: Indices, springs: Indices, links: Indices, size: int
+    ) -> None:
+        """Take the coordinates of elements (E, 8), bodies (B, 3), roots (R, 2), links (K, 6); -1 for none."""
+        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs, links)]
         indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
         indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
         summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
         summed.sort_indices()
         self.size, self.starts, self.rows = size, summed.indptr, summed.indices
         keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
-        self.places, self.blocks, self.springs = (
+        self.places, self.blocks, self.springs, self.links = (
             np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
         )
         self.diagonal = np.searchsorted(keys, every * (size + 1))
@@ -177,6 +182,10 @@ class Symmetric:
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
         return out
 
+    def apart(self, one: Array, other: Array) -> float:
+        """Return one.K other less that of the symmetric part."""
+        return 0.0
+
     def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
         """Return the factors of its rows and columns that are not held (size,); raises Singular.
 
@@ -206,3 +215,63 @@ class Factors:
         x = np.where(self.held, 0.0, b)
         _solve(self.pattern.begin, self.pattern.first, self.low, self.d, x.reshape(-1, self.pattern.size))
         return x
+
+    def bordered(self, left: Array, right: Array) -> "Factors":
+        """Return the factors of the matrix with products of vectors (R, size) added; raises Singular.
+
+        The inverse is that of M. A. Woodbury. The determinant is that of this matrix times one of size R;
+        `negative` is 1 where it is below zero, for there is no inertia to count.
+        """
+        solved = self.solve(left)
+        core = np.eye(len(left)) + right @ solved.T
+        sign, size = np.linalg.slogdet(core)
+        if not np.isfinite(size):
+            raise Singular("the tangent is singular to round-off")
+        negative = int(sign * (-1.0) ** self.negative < 0.0)
+        return Bordered(
+            self.pattern,
+            self.held,
+            self.low,
+            self.d,
+            negative,
+            right,
+            solved,
+            np.asarray(np.linalg.inv(core), dtype=np.float64),
+        )
+
+
+@dataclass(eq=False)
+class Bordered(Factors):
+    """Factors of a matrix with products left (x) right of vectors (R, size).
+
+    solved (R, size): the matrix's solutions for left. core (R, R): inverse of 1 + right.solved.
+    """
+
+    right: Array
+    solved: Array
+    core: Array
+
+    def solve(self, b: Array) -> Array:
+        """Return the solution (..., size) for right sides (..., size), zero at what is held."""
+        x = super().solve(b)
+        return np.asarray(x - (x @ self.right.T) @ self.core.T @ self.solved)
+
+
+@dataclass(eq=False)
+class Unsymmetric(Symmetric):
+    """A symmetric matrix with products left (x) right of vectors (R, size) added."""
+
+    left: Array
+    right: Array
+
+    def times(self, x: Array) -> Array:
+        """Return the product with vectors (..., size)."""
+        return np.asarray(super().times(x) + (x @ self.right.T) @ self.left)
+
+    def factors(self, held: Flags, grain: float = 0.0) -> Factors:
+        """Return the factors of its rows and columns that are not held (size,); raises Singular."""
+        return super().factors(held, grain).bordered(self.left, self.right)
+
+    def apart(self, one: Array, other: Array) -> float:
+        """Return one.K other less that of the symmetric part."""
+        return float((self.left @ one) @ (self.right @ other))

@@ -11,7 +11,7 @@ An end at the offset b from the reference point of its body follows without pena
 with displacement d of that point and turn theta of the body. Forces are reduced by the transpose of the
 derivative P of the map; the tangent is P^T K P plus the curvature of the map, -(R b).f on the diagonal entry
 of theta, with f the force of the element on the end. An end whose root gives way has a turn phi of its own,
-and a spring between it and theta.
+and a spring between it and theta; that of a hinge has no stiffness.
 """
 
 import math
@@ -270,9 +270,10 @@ def _plate(model: Model, k: int) -> Array:
 
 
 def root_stiffness(model: Model) -> Array:
-    """Return the stiffness of the roots of the strips (G, 2) [N m], inf where they do not give way."""
+    """Return the stiffness of the roots of the strips (G, 2) [N m]: of hinges 0, inf where none gives way."""
     rows, effect = np.full((len(model.strips), 2), np.inf), model.effects.find(RootCompliance)
     for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):
         if effect is not None and effect.root and strip.thickness is not None:
             row[ends != FREE] = strip.flexural_rigidity / (effect.root * strip.thickness)
+        row[[*strip.hinges]] = 0.0
     return rows

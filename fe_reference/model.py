@@ -1,7 +1,7 @@
 """What a finite-element model is made of: strips of two-node beam elements, rigid bodies, and effects.
 
-Each end of a strip is clamped to ground, carried by a body, or free. The parameters are plain SI numbers and
-radians.
+Each end of a strip is clamped to or hinged on ground or a body, or free. The parameters are plain SI numbers
+and radians.
 """
 
 import math
@@ -30,6 +30,8 @@ from .errors import (
 from .places import FREE, GROUND, check_places
 
 ELEMENTS = ("corotational", "reissner")
+#: How an end of a strip is held on what it is on.
+JOINTS = ("clamp", "hinge")
 #: Name of what does not move.
 FIXED = "ground"
 #: Area and second moment of a section that is told by its sides.
@@ -54,6 +56,7 @@ class StripDesign(Checked):
     Attributes:
         name: what it is called. start, end: of its axis at rest [m].
         root, tip: "ground" or the name of the body that its start and its end are on; None if it is free.
+        root_joint, tip_joint: "clamp", or "hinge" about which the end turns freely on ground or body.
         rise: sagitta of the circular arc it is at rest [m], to the left of start to end; 0: straight.
     """
 
@@ -62,6 +65,8 @@ class StripDesign(Checked):
     end: Annotated[Pair | Sequence[float], pair, "m"]
     root: str | None = FIXED
     tip: str | None
+    root_joint: Annotated[str, choice, JOINTS] = JOINTS[0]
+    tip_joint: Annotated[str, choice, JOINTS] = JOINTS[0]
     rise: Annotated[float, finite, "m"] = 0.0
     area: Annotated[float, positive, "m^2"] = NOT_GIVEN
     second_moment_of_area: Annotated[float, positive, "m^4"] = NOT_GIVEN
@@ -77,6 +82,10 @@ class StripDesign(Checked):
     def __post_init__(self) -> None:
         self._read_sides()
         super().__post_init__()
+        ends = {"root_joint": self.root, "tip_joint": self.tip}
+        for (name, there), hinged in zip(ends.items(), self.hinges, strict=True):
+            if hinged and there is None:
+                raise InvalidParameter(name, JOINTS[1], f"{JOINTS[0]} at the free end of {self.name} [name]")
 
     def _read_sides(self) -> None:
         """Fill in what the sides make of the section; refuse what contradicts them, and half a section."""
@@ -109,6 +118,11 @@ class StripDesign(Checked):
         sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
         b, t = (1.0 + places * (end / start - 1.0 if start and end else 0.0) for start, end in sides)
         return b * t, b * t**3
+
+    @property
+    def hinges(self) -> tuple[bool, bool]:
+        """Whether root and tip are hinged."""
+        return self.root_joint == JOINTS[1], self.tip_joint == JOINTS[1]
 
     @property
     def axial_rigidity(self) -> float:
@@ -226,7 +240,7 @@ class Model:
                 raise InvalidParameter(named[0], strip.name, "strips of a constant section [name]")
             if curl and strip.rise:
                 raise InvalidParameter(curl[0], strip.name, "straight strips [name]")
-            if "clamped_width" in curl and None in (strip.root, strip.tip):
+            if "clamped_width" in curl and (None in (strip.root, strip.tip) or any(strip.hinges)):
                 raise InvalidParameter("clamped_width", strip.name, "strips clamped at both ends [name]")
 
     @cached_property

@@ -10,7 +10,9 @@ from scipy.sparse.linalg import eigsh, splu
 from .arrays import Array, Flags
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
+from .loads import Load, full_load
 from .mass import MASSES, mass_matrix
+from .matrix import Symmetric
 from .model import Model, require_model
 from .places import prescribed
 from .refined import Quantities, missed, refine
@@ -91,16 +93,21 @@ def natural_frequencies(
     require_model(pivot)
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
+    if (full := full_load(structure_of(pivot))) is not None and full.follows:
+        raise InvalidParameter("follower", True, "dead loads for modes: flutter is not modelled [1]")
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 
     def solve(model: Model) -> Modes:
         nonlocal count
+        structure, time = structure_of(model), None
         try:
             y, _ = settled_state(model, rotation, body, increments)
         except NothingHolds:  # under the loads in full
             y, _ = settled_state(model, rotation, body, increments, starts=True)
-        modes = _modes(structure_of(model), y, _held(model, body, held), kind, count)
+            time = 0.0
+        load = full_load(structure, time=time)
+        modes = _modes(structure, y, _held(model, body, held), kind, count, load)
         count = len(modes.frequency)  # of finer meshes as many as of the first
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
@@ -113,9 +120,12 @@ def natural_frequencies(
     return modes
 
 
-def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int) -> Modes:
+def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int, load: Load | None) -> Modes:
     """Return the modes about a state whose coordinates are free but for those that are `held` (size,)."""
-    values, full = _lowest(structure, y, ~held, kind, count)
+    tangent = structure.evaluate(y).tangent
+    if load is not None:
+        tangent = load.stiffen(tangent, y, 1.0)
+    values, full = _lowest(structure, y, tangent, ~held, kind, count)
     moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
     return Modes(
         rotation=np.nan,
@@ -144,7 +154,9 @@ def _held(model: Model, body: str | None, turn: bool) -> Flags:
     return held | structure.flags([structure.first_body + at for at, (_, history) in led.items() if history])
 
 
-def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int) -> tuple[Array, Array]:
+def _lowest(
+    structure: Structure, y: Array, tangent: Symmetric, free: Flags, kind: str, wanted: int
+) -> tuple[Array, Array]:
     """Return the `wanted` lowest eigenvalues [1/s^2], ascending, and modes (C, size) of unit modal mass.
 
     Inverse iteration (Lanczos) keeps the lowest modes free of the round-off of the stiffest ones. It is
@@ -152,7 +164,7 @@ def _lowest(structure: Structure, y: Array, free: Flags, kind: str, wanted: int)
     """
     kept = np.flatnonzero(free)
     wanted = _available(wanted, len(kept))
-    matrices = (structure.evaluate(y).tangent, mass_matrix(structure, y, kind))
+    matrices = (tangent, mass_matrix(structure, y, kind))
     stiffness, mass = (matrix.sparse()[:, kept][kept].tocsc() for matrix in matrices)
     if "strip_inertia" not in structure.model.effects:
         values, vectors = _condensed(structure.first_body, stiffness, mass, wanted)

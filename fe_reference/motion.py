@@ -191,7 +191,7 @@ class Trajectory(Answer):
         status, message: how the run ended; why and when it stopped ("" if it did not).
         time (T,): [s].
         bodies, rates: by name, place of the centre and turn (T, 3) [m, rad], and their rates.
-        kinetic_energy, strain_energy (T,): [J].
+        kinetic_energy, strain_energy (T,): the second with that of springs between bodies [J].
         gravity_energy (T,): of the weight, zero in the shape at rest [J].
         work, dissipated (T,): by loads and dampers since the start [J].
         shape (T, G, P, 2): positions of the nodes [m].

@@ -17,6 +17,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
+from scipy.interpolate import CubicHermiteSpline
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
@@ -186,7 +188,7 @@ class Path:
         """Return a state with the work done until then, and those before it."""
         # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
         done, former = (self.control.share(at.parameter) * at.load_work for at in (after, before))
-        work = before.work + (done - former) + _integral(before, after)
+        work = before.work + (done - former) + _integral(self.control, before, after)
         return replace(after, work=work, behind=_trail(before))
 
     def _doubt(self, before: State, after: State) -> str:
@@ -196,9 +198,9 @@ class Path:
             return "an element is folded"
         step, gained = after.parameter - before.parameter, after.potential - before.potential
         largest = abs(before.conjugate) + abs(after.conjugate)
-        unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[2])
+        unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[-1])
         scale = max(abs(gained), 0.5 * abs(step) * largest)
-        if abs(gained - _integral(before, after)) > WORK_MISMATCH * scale + ROUND_OFF * unit:
+        if abs(gained - _integral(self.control, before, after)) > WORK_MISMATCH * scale + ROUND_OFF * unit:
             return "the state lies on another branch (energy gained and work done differ)"
         return ""
 
@@ -232,11 +234,21 @@ def _ahead(state: State, parameter: float) -> Array:
     return guess
 
 
-def _integral(before: State, after: State) -> float:
-    """Return the integral of the conjugate over a step [J] by Hermite's two-point rule, of fourth order."""
-    step = after.parameter - before.parameter
-    mean = 0.5 * step * (before.conjugate + after.conjugate)
-    return mean + step**2 / 12.0 * (before.slope - after.slope)
+def _integral(control: Control, before: State, after: State) -> float:
+    """Return the integral of the conjugate over a step [J] by Hermite's two-point rule, of fourth order.
+
+    To it comes the work of loads that follow, by Gauss' rule on the cubic through both states.
+    """
+    step, load = after.parameter - before.parameter, control.load
+    total = 0.5 * step * (before.conjugate + after.conjugate) + step**2 / 12.0 * (before.slope - after.slope)
+    if load is not None and load.follows:
+        ends = [(at.parameter, at.y, at.rate) for at in (before, after)]
+        curve = CubicHermiteSpline(*zip(*ends, strict=True))
+        for place, weight in zip(*leggauss(3), strict=True):
+            p = before.parameter + 0.5 * step * (1.0 + place)
+            own = load.force(curve(p)) - load.force(curve(p), followers=False)
+            total += 0.5 * step * weight * control.share(p) * float(own @ curve(p, 1))
+    return total
 
 
 def follow(controls: Sequence[Control], increments: int, progress: Progress | None = None) -> Path:

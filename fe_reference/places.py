@@ -1,10 +1,10 @@
-"""Places where loads, drives and supports of a model act, and what they prescribe there."""
+"""Places where loads, drives, supports and springs of a model act, and what they prescribe there."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .errors import History, InvalidParameter
-from .loading import WAYS, BodyLoad, Prescribed, TipForce
+from .loading import WAYS, BodyLoad, Prescribed, Spring, TipForce
 
 if TYPE_CHECKING:
     from .model import Model
@@ -14,13 +14,16 @@ GROUND, FREE = -1, -2
 
 
 def check_places(model: "Model") -> None:
-    """Refuse loads and drives on what is not there."""
+    """Refuse loads, springs and drives on what is not there."""
     effects = model.effects
     for load in effects.every(BodyLoad):
         model.body_index(load.body)
     for tip in effects.every(TipForce):
         if model.ends[model.strip_index(tip.strip), 1] != FREE:
             raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
+    for name in (name for each in effects.every(Spring) for name in (each.body, each.other)):
+        if name is not None:
+            model.body_index(name)
     led = effects.every(Prescribed)
     if led and not model.bodies:
         name = next(name for name, same in effects.named.items() if led[0] in same)

@@ -7,6 +7,8 @@ import numpy as np
 from .arrays import Array, kernel
 from .control import Control, State
 from .law import Written
+from .links import between
+from .loads import full_load
 from .matrix import Singular
 from .mesh import Tables, turned
 from .model import Model
@@ -30,15 +32,15 @@ def respond(control: Control, found: State) -> State:
     moves = np.zeros((len(held), control.structure.size))
     moves[np.arange(len(held)), held] = 1.0
     moves -= factors.solve(tangent.times(moves))
-    drive, rate = moves @ found.residual, control.slope @ moves
-    change, first, second = control.rates(found.y, found.parameter, found.load_work)
-    if change is not None:
+    left = factors.solve(found.residual)
+    drive, rate = (found.residual - tangent.times(left))[held], control.slope @ moves
+    change, bent, first, second = control.rates(found.y, found.parameter, found.load_work)
+    if change is not None and bent is not None:
         rate -= factors.solve(change)
-        second += 2.0 * float(change @ rate)
+        second += float((change + bent) @ rate)
     torque, stiffness = np.nan, np.nan
     if control.watched is not None:
         k = control.held.tolist().index(control.watched)
-        left = factors.solve(found.residual)
         torque = float(drive[k])
         stiffness = _stiffness_between(control.structure, found.at, found.y, moves[k], moves[k], left)
     return replace(
@@ -64,8 +66,9 @@ def _stiffness_between(
     written = (structure.work[0], at.ends, at.matrices, structure.work[1])
     carried = tuple(each[structure.turns] for each in (y, one, other))
     own = float(_between(structure.tables, u, v, w, rest, carried, written))
-    own += float(at.curvature[:, 1] @ (carried[1] * carried[2]))
-    return own + float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
+    own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (carried[1] * carried[2]))
+    own += float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
+    return own + (between(structure, y, one, other) if len(structure.links[0]) else 0.0)
 
 
 @kernel()
@@ -119,7 +122,7 @@ def _between(
 
 
 def body_stiffness(
-    model: Model, states: Array, body: str | None = None, *, driven: str | None = None
+    model: Model, states: Array, shares: Array, body: str | None = None, *, driven: str | None = None
 ) -> Array:
     """Return the stiffness (S, 3, 3) of a body's x, y and turn about its centre at balanced states (S, size).
 
@@ -129,11 +132,10 @@ def body_stiffness(
     body is let go, what is prescribed to others holds them.
 
     Args:
-        model: the mesh that the states belong to. body: its name; None: the only one. driven: name of the
-            body whose turn is led, if there is one.
+        model: the mesh that the states belong to. shares (S,): of the load that acts there.
+        body: its name; None: the only one. driven: name of the body whose turn is led, if there is one.
 
-    Exact for the mesh: dead loads act at centres and have no stiffness there. nan where the tangent is
-    singular.
+    Exact for the mesh. nan where the tangent is singular.
     """
     structure = structure_of(model)
     place, held = structure.body_slice(model.body_index(body)), np.zeros(structure.size, dtype=bool)
@@ -145,8 +147,11 @@ def body_stiffness(
     units, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     units[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)
+    load = full_load(structure)
     for k, y in enumerate(np.asarray(states)):
         at = structure.evaluate(y)
+        if load is not None:
+            at = load.stiffened(at, structure, y, float(shares[k]))
         try:
             moves = units - at.tangent.factors(held).solve(at.tangent.times(units))
         except Singular:

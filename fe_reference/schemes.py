@@ -39,7 +39,8 @@ from .actions import Actions, Instant, advance
 from .arrays import Array, Flags
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
-from .loads import Piece
+from .links import fastest
+from .loads import Piece, full_load, steepest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme
@@ -53,7 +54,8 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     lumped masses, K_e x = lambda M_e x in the state y (element eigenvalue inequality). Attaching nodes to a
     body restricts the motion and adds mass, and so does not raise it; the curvature of the master-slave map,
     if it is stiffening, can add as much as itself over the body's inertia. Hence
-    w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J.
+    w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J. Springs between bodies and
+    loads off the centres add their own.
 
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
@@ -61,6 +63,8 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     curvature, actions = structure.evaluate(y).curvature[:, 0], Actions(structure)
     square = _highest(structure, bodies, y, TANGENT)
     square += float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
+    square += steepest(structure, bodies.moment_of_inertia)
+    square += fastest(structure.links, structure.links[2], bodies.mass, bodies.moment_of_inertia)
     material = _highest(structure, bodies, y, MATERIAL) if len(actions.dissipative[0]) else 0.0
     decay = actions.fastest_decay(material, bodies.mass, bodies.moment_of_inertia)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
@@ -235,7 +239,7 @@ class Implicit(Scheme):
             samples.counters["iterations"] += 1
             if self._factor is None or h != self._factor[0] or norms[-1] > SLOW * norms[-2]:
                 try:
-                    self._factor = h, self._factorise(y, h, samples)
+                    self._factor = h, self._factorise(y, time, h, samples)
                 except Singular:
                     break
             change = self._factor[1].solve(residual)
@@ -246,8 +250,8 @@ class Implicit(Scheme):
         self._factor = None
         return None
 
-    def _factorise(self, y: Array, h: float, samples: Samples) -> Factors:
-        """Return the factors of the tangent of a step of h [s] at y, kept for the steps that follow.
+    def _factorise(self, y: Array, time: float, h: float, samples: Samples) -> Factors:
+        """Return the factors of the tangent of a step of h [s] to y at an instant [s], kept for later steps.
 
         What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
         """
@@ -256,6 +260,9 @@ class Implicit(Scheme):
             tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
         tangent.data *= 1.0 - self.af
         tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
+        load = full_load(self.structure, time=time)
+        if load is not None:
+            tangent = load.stiffen(tangent, y, 1.0 - self.af)
         samples.counters["factorisations"] += 1
         return tangent.factors(self.held)
 

@@ -144,6 +144,7 @@ class StaticSolution(Answer):
             moment; nan if no rotation is driven or watched.
         stiffness (S,): d torque / d rotation from the consistent tangent, all else free [N m/rad].
         bending_energy, axial_energy, shear_energy (S,): strain energy of all strips by part [J].
+        spring_energy (S,): of springs between bodies and to the ground [J].
         gravity_energy (S,): energy of the weight, zero in the shape at rest [J].
         work (S,): of drives and loads since the first state, by Hermite's rule over the increments [J].
         prescribed: the D coordinates that are driven or supported: name of the body, and "x", "y" or
@@ -176,6 +177,7 @@ class StaticSolution(Answer):
     bending_energy: Array
     axial_energy: Array
     shear_energy: Array
+    spring_energy: Array
     gravity_energy: Array
     work: Array
     prescribed: tuple[tuple[str, str], ...]
@@ -205,7 +207,7 @@ class StaticSolution(Answer):
 
     @property
     def strain_energy(self) -> Array:
-        """Sum of the three parts (S,) [J]."""
+        """Sum of the three parts (S,), without springs between bodies [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
 
     def body_stiffness(self, body: str | None = None) -> Array:
@@ -214,7 +216,7 @@ class StaticSolution(Answer):
         body: its name; None: the driven one, or the only one.
         """
         led = self.driven if self.led else None
-        return body_stiffness(self.model, self.states, body or self.driven, driven=led)
+        return body_stiffness(self.model, self.states, self.load_factor, body or self.driven, driven=led)
 
     def columns(self) -> dict[str, Array]:
         """Return what is one number in every state, by names with units: the columns of a frame."""
@@ -229,7 +231,7 @@ class StaticSolution(Answer):
         }
 
 
-ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "gravity_energy", "work")
+ENERGIES = ("bending_energy", "axial_energy", "shear_energy", "spring_energy", "gravity_energy", "work")
 
 
 @dataclass(frozen=True, kw_only=True)

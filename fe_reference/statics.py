@@ -212,6 +212,7 @@ def _packed(
         bending_energy=strain[:, 0],
         axial_energy=strain[:, 1],
         shear_energy=strain[:, 2],
+        spring_energy=np.array([at.spring for at in here]),
         gravity_energy=np.array([at.gravity for at in here]),
         prescribed=tuple((model.body_names[at // 3], WAYS[at % 3]) for _, at in held),
         reactions=np.array([state.drive for state in states])[:, [k for k, _ in held]],

@@ -19,6 +19,7 @@ from .arrays import Array, Flags, Indices
 from .bending import CURL
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT
+from .links import add_links, link_forces, links_of, numbers
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import (
     RESULTANTS,
@@ -39,16 +40,18 @@ class Evaluation:
 
     Attributes:
         gradient (size,): [N, N m]. tangent: its derivative, zero if it was not asked for.
-        strain (3,): bending, axial and shear energy [J]. gravity: energy of the full weight [J].
+        strain (3,): bending, axial and shear energy [J]. spring: energy of springs between bodies [J].
+        gravity: energy of the full weight [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
         matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (B, 2): what
-            the carrying of nodes and of the weight adds to the stiffness of the turns [N m].
+            the carrying of nodes, and of weight and springs, adds to the stiffness of the turns [N m].
     """
 
     gradient: Array
     tangent: Symmetric
     strain: tuple[float, float, float]
+    spring: float
     gravity: float
     ends: Array
     matrices: Array
@@ -86,6 +89,7 @@ class Structure:
             first,
             CURL,
         )
+        self.links = links_of(model, self.points)
         self.tables = (self.given, self.carried, self._weight(), self.springs)
         nodes = self.strips * self.stations
         self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
@@ -121,9 +125,10 @@ class Structure:
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
         every, first = np.arange(self.size), self.first_body
+        bodies = every[first:].reshape(-1, 3)
         roots = every[first - len(self.springs[0]) : first]
         springs = np.stack([roots, np.append(self.turns, -1)[self.springs[1]]], axis=1)
-        return Envelope(self.numbers, every[first:].reshape(-1, 3), springs, self.size)
+        return Envelope(self.numbers, bodies, springs, numbers(self.links[0], bodies), self.size)
 
     def bodies(self, y: Array) -> Array:
         """Return what coordinates or velocities (..., size) have of the bodies (..., B, 3)."""
@@ -224,16 +229,22 @@ class Structure:
         resultants, (force, scratch) = np.empty((len(bodies), RESULTANTS)), self.work
         written = (force, ends, matrices, scratch)
         strain, gravity = potential(self.tables, share, asked, u, bodies, written, resultants)
+        spring = 0.0
+        if len(self.links[0]):
+            spring, _ = link_forces(self.links, bodies, np.zeros_like(bodies), resultants)
         if asked != FORCES:
             tangent = self.reduced_matrix(matrices, y)
         if asked == TANGENT:
             tangent.data[self.pattern.diagonal[self.turns]] += resultants[:, 3:].sum(axis=1)
             if len(self.springs[0]):
                 self.add_springs(tangent)
+            if len(self.links[0]):
+                add_links(self, y, self.links[2], tangent)
         return Evaluation(
             gradient=self.gathered(force, resultants[:, :3]),
             tangent=tangent,
             strain=strain,
+            spring=spring,
             gravity=gravity,
             ends=ends,
             matrices=matrices,

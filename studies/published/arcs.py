@@ -207,7 +207,7 @@ def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
 def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice) -> Arc:
     """Return an arc with the states on from the limit of its load, as far as its body is led."""
     assert path.control.load is not None
-    on, factors = _led_on(path, path.control.load)
+    on, factors = _led_on(path, path.control.load.constant)
     if len(on.states) < 2:
         return arc
     load, slope = frame.load * factors

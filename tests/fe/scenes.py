@@ -6,13 +6,13 @@ from typing import Any
 from fe_reference import DEFAULT_EFFECTS, BodyDesign, Model, StripDesign, compliant_mechanism
 from tests.table_one import SECTION
 
-Parameters = Mapping[str, Mapping[str, Any]]
+Parameters = Mapping[str, Any]
 #: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
 GUIDE, APART, LINK = 0.1, 0.05, 0.06
 #: Effects of bodies on strips without inertia.
 MASSLESS = ("bending", "stretching", "body_inertia")
 #: Every effect that has a parameter, at a value that matters in the four-bar; its coupler is the loaded body.
-PARAMETERS: dict[str, dict[str, Any]] = {
+PARAMETERS: dict[str, Any] = {
     "gravity": {"acceleration": (300.0, -981.0)},
     "strip_damping": {"relaxation_time": 2e-7},
     "strip_drag": {"rate": 200.0},
@@ -20,6 +20,10 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "applied_force": {"force": (2000.0, 1000.0), "body": "coupler", "history": ((0.0, 1.0), (2e-3, -1.0))},
     "applied_moment": {"moment": 30.0, "body": "crank"},
     "pre_strain": {"curvature": 3.0, "strain": 1e-3},
+    "spring": [
+        {"body": "crank", "other": "rocker", "stiffness": (4e4, 2e4), "damping": (20.0, 10.0)},
+        {"body": "coupler", "rotational_stiffness": 30.0, "rotational_damping": 0.02},
+    ],
 }
 #: Effects of the sides of a wide thin strip, and that strip: as wide as it is long in the four-bar.
 SIDED: dict[str, dict[str, Any]] = {"clamped_width": {}, "anticlastic": {}, "root_compliance": {"root": 3.0}}

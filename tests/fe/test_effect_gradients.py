@@ -64,9 +64,9 @@ def sizes(structure: Structure, step: float) -> np.ndarray:
 
 
 def potential(structure: Structure, y: Array, share: float) -> float:
-    """Return strain energy and energy of the weight, both in the given share [J]."""
+    """Return the energy of strips and weight in the given share, and that of springs [J]."""
     here = structure.evaluate(y, share)
-    return math.fsum(here.strain) + share * here.gravity
+    return math.fsum(here.strain) + here.spring + share * here.gravity
 
 
 @pytest.mark.parametrize("kind", SCENES)

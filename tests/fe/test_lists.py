@@ -5,19 +5,25 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
 
 from fe_reference import (
+    DEFAULT_EFFECTS,
     BodyDesign,
     DrivenRotation,
     Model,
+    StaticSolution,
     StripDesign,
     compliant_mechanism,
     natural_frequencies,
     solve_mechanism,
     solve_motion,
 )
-from tests.fe.scenes import four_bar, free_cantilever
+from tests.fe.cases import extrapolated
+from tests.fe.scenes import BARE, four_bar, free_cantilever
 from tests.refusals import refused, scene
+from tests.table_one import SECTION
 
 
 def test_loads_add_up() -> None:
@@ -100,6 +106,11 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"support": {"body": "crank", "fixed": "x"}}, "fixed: got 'x', expected one or more of x, y, rotation"),
     ({"support": {"body": "crank", "fixed": ("x", "x")}}, "fixed: got ('x', 'x'), expected one or more"),
     ({"support": {"body": "crank"}}, "support: got ... expected a value of fixed"),
+    ({"spring": {"body": "crank"}}, "spring: got 'crank', expected a stiffness or a damping above 0"),
+    ({"spring": {"body": "crank", "stiffness": (1.0, -1.0)}}, "stiffness: got -1.0, expected a number not"),
+    ({"spring": {"body": "crank", "other": "car", "stiffness": (1.0, 1.0)}}, "body: got 'car', expected one"),
+    ({"spring": {"body": "crank", "other": "crank", "stiffness": (1.0, 1.0)}}, "other: got 'crank'"),
+    ({"tip_force": {"strip": "a", "force": (1.0, 0.0), "follower": 1}}, "follower: got 1, expected True or"),
     ({"support": ROLL, "driven_displacement": LED}, f"prescribed: got 'x of crank', {TWICE}"),
     ({"driven_displacement": [LED, LED]}, f"prescribed: got 'x of crank', {TWICE}"),
 ]
@@ -118,3 +129,198 @@ def test_a_rotation_is_prescribed_once() -> None:
         refused(lambda ask=ask: ask(model, body="crank", rotation=0.1), f"'rotation of crank', {TWICE}")
     drive = DrivenRotation(body="crank", angle=0.1)
     refused(lambda: solve_motion(model, drive=drive, duration=1e-5), f"'rotation of crank', {TWICE}")
+
+
+SPRING: dict[str, Any] = {"body": "mass", "stiffness": (1000.0, 2000.0), "rotational_stiffness": 0.5}
+
+
+def on_springs(**given: Any) -> Model:
+    """Return a strip with a body at its tip, and a body on springs alone."""
+    bodies = [
+        BodyDesign(name="tip", centre=(0.1, 0.0)),
+        BodyDesign(name="mass", centre=(0.3, 0.1), mass=0.2, moment_of_inertia=1e-3),
+    ]
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="tip", **SECTION)
+    return compliant_mechanism(strips=[strip], bodies=bodies, elements=3, **scene(DEFAULT_EFFECTS, **given))
+
+
+def test_springs_alone() -> None:
+    """A body on springs moves by F/k and M/k, and vibrates as an oscillator; what they leave free is held."""
+    pull = {
+        "applied_force": {"body": "mass", "force": (3.0, -4.0)},
+        "applied_moment": {"body": "mass", "moment": 0.3},
+    }
+    path = solve_mechanism(on_springs(spring=[SPRING], **pull), increments=2)
+    assert path.bodies["mass"][-1] == pytest.approx((0.303, 0.098, 0.6), rel=1e-12)
+    assert path.spring_energy[-1] == pytest.approx(0.0985, rel=1e-9)
+    assert path.work[-1] == pytest.approx(path.spring_energy[-1] + path.strain_energy[-1], rel=1e-9)
+    assert path.body_stiffness("mass")[-1] == pytest.approx(np.diag((1000.0, 2000.0, 0.5)), abs=1e-9)
+    found = natural_frequencies(on_springs(spring=SPRING), rotation=None, count=3).frequency
+    assert 2.0 * np.pi * found == pytest.approx(np.sqrt((500.0, 5000.0, 10000.0)), rel=1e-9)
+    free = on_springs(spring=SPRING | {"stiffness": (1000.0, 0.0)}, applied_force=pull["applied_force"])
+    refused(lambda: solve_mechanism(free), "nothing holds body mass in the direction y")
+
+
+@pytest.mark.parametrize("how", [{}, {"integrator": "generalised-alpha", "step": 2e-5}])
+@pytest.mark.parametrize("damping", [0.0, 2.0])
+def test_a_mass_on_a_spring(how: dict[str, Any], damping: float) -> None:
+    """A released mass on a spring and a damper moves as an oscillator, in either scheme."""
+    led = {"body": "mass", "displacement": (3e-3, None)}
+    model = on_springs(spring=SPRING | {"damping": (damping, 0.0)}, driven_displacement=led)
+    motion = solve_motion(model, duration=0.045, samples=9, check=False, **how)
+    rate, time = damping / 0.4, motion.time
+    swift = np.sqrt(5000.0 - rate**2)
+    exact = 3e-3 * np.exp(-rate * time) * (np.cos(swift * time) + rate / swift * np.sin(swift * time))
+    assert (
+        np.abs(motion.bodies["mass"][:, 0] - 0.3 - exact).max() < 5e-5 * 3e-3
+    )  # of second order in the step
+    assert motion.energy_error < 5e-5
+
+
+def pulled(centre: tuple[float, float], **force: Any) -> Model:
+    """Return a strip with a body at its tip that a force pulls sideways and along."""
+    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="body", **SECTION)
+    body = BodyDesign(centre=centre, mass=0.1, moment_of_inertia=1e-4)
+    given = scene(DEFAULT_EFFECTS, applied_force={"force": (-30.0, 20.0), **force})
+    return compliant_mechanism(strips=[strip], bodies=[body], elements=8, **given)
+
+
+@pytest.mark.parametrize("follower", [False, True])
+def test_a_force_at_a_point(follower: bool) -> None:
+    """A force at a point of a body acts as at the centre of a body that has it there, and does work."""
+    point = (0.13, 0.04)
+    off, there = pulled((0.1, 0.0), at=point, follower=follower), pulled(point, follower=follower)
+    path, same = solve_mechanism(off), solve_mechanism(there)
+    assert np.abs(path.shape - same.shape).max() < 1e-12 * np.ptp(path.shape)
+    assert np.abs(path.shape - solve_mechanism(pulled((0.1, 0.0))).shape).max() > 1e-4
+    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
+    assert same.work[-1] == pytest.approx(path.work[-1], rel=1e-8)
+    turns = [1.0 / np.linalg.inv(each.body_stiffness()[-1])[2, 2] for each in (path, same)]
+    driven = solve_mechanism(off, rotation=float(path.rotation[-1]), increments=5)
+    assert turns[0] == pytest.approx(turns[1], rel=1e-9)
+    assert turns[0] == pytest.approx(driven.stiffness[-1], rel=1e-6)
+    assert abs(driven.torque[-1]) < 1e-9 * abs(driven.torque).max()
+    for how in ({}, {"integrator": "generalised-alpha", "step": 2e-6}):
+        motion = solve_motion(off, duration=2e-5, check=False, **how)
+        assert motion.starts_still and np.ptp(motion.rotation) < 1e-9
+
+
+def test_a_pinned_body_is_a_pendulum() -> None:
+    """A force beside the centre of a pinned body swings it as a pendulum, of any amplitude and scheme."""
+    pull = {"body": "mass", "force": (0.0, -50.0), "at": (0.3, 0.06)}
+    pin, led = {"body": "mass", "fixed": ("x", "y")}, {"body": "mass", "angle": 2.0}
+    small = on_springs(support=pin, applied_force=pull)
+    rate = np.sqrt(50.0 * 0.04 / 1e-3)
+    found = natural_frequencies(small, rotation=None, count=1).frequency[0]
+    assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-9)
+    half = 2.0 * ellipk(np.sin(1.0) ** 2) / rate
+    for how in ({"step": 5e-6}, {"integrator": "generalised-alpha", "step": 5e-5}):
+        model = on_springs(support=pin, applied_force=pull, driven_rotation=led)
+        motion = solve_motion(model, duration=half, samples=5, check=False, **how)
+        assert motion.bodies["mass"][-1, 2] == pytest.approx(-2.0, rel=1e-5)
+        assert np.abs(motion.bodies["mass"][:, :2] - (0.3, 0.1)).max() == 0.0
+        assert motion.energy_error < 1e-5
+
+
+def followed(load: float, elements: int = 10, *, across: bool = True) -> StaticSolution:
+    """Return the path of a thin cantilever with a follower of `load` EI/L^2, across or along its tip."""
+    section = {**BARE, "width": 0.01, "thickness": 2e-4}
+    force = load * BARE["youngs_modulus"] * 0.01 * 2e-4**3 / 12.0 / 0.1**2
+    given = {"strip": "strip", "force": (0.0, force) if across else (-force, 0.0), "follower": True}
+    model = free_cantilever(length=0.1, section=section, parameters={"tip_force": given}, elements=elements)
+    return solve_mechanism(model)
+
+
+def test_follower_elastica() -> None:
+    """A force that stays normal to the tip bends a cantilever as theta'' = p cos theta, from the tip on."""
+    for load in (2.0, 10.0):
+        ways = solve_ivp(
+            lambda _, z, p=load: (z[1], p * np.cos(z[0]), np.cos(z[0]), np.sin(z[0])),
+            (0.0, 1.0),
+            [0.0] * 4,
+            rtol=1e-10,
+            atol=1e-12,
+        )
+        turn, _, along, across = ways.y[:, -1]
+        tip = np.array([[np.cos(turn), np.sin(turn)], [np.sin(turn), -np.cos(turn)]]) @ (along, across)
+        paths = [followed(load, elements) for elements in (10, 20, 40)]
+        x, y, angle = extrapolated([path.tips["strip"][-1] for path in paths])
+        assert (10.0 * x, 10.0 * y, angle) == pytest.approx((*tip, turn), abs=1e-5)  # it stretches
+        assert paths[0].work[-1] == pytest.approx(paths[0].strain_energy[-1], rel=1e-5)
+
+
+def test_follower_column_does_not_buckle() -> None:
+    """Under a follower there is no other equilibrium: a column has none below flutter at 20.05 EI/L^2."""
+    path = followed(19.9, across=False)
+    assert path.critical_points == () and not path.inertia.any() and path.message == ""
+    refused(lambda: natural_frequencies(path.model, rotation=None), "follower: got True, expected dead loads")
+
+
+def column(root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation")) -> Model:
+    """Return a column between joints, the upper one guided, under a load in pi^2 EI/L^2."""
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="head", root_joint=root, tip_joint=tip, **SECTION
+    )
+    force = (-load * np.pi**2 * strip.flexural_rigidity / 0.1**2, 0.0)
+    head = BodyDesign(name="head", centre=(0.1, 0.0), mass=0.01, moment_of_inertia=1e-6)
+    given = {"applied_force": {"force": force}, "support": {"body": "head", "fixed": guided}}
+    return compliant_mechanism(strips=[strip], bodies=[head], **scene(DEFAULT_EFFECTS, **given))
+
+
+@pytest.mark.parametrize(
+    ("joints", "load", "root"), [(("hinge", "hinge"), 1.0, np.pi), (("clamp", "hinge"), 2.0457, 3.92660)]
+)
+def test_hinged_columns(joints: tuple[str, str], load: float, root: float) -> None:
+    """Columns on hinges buckle at their Euler loads, and vibrate at the roots of beams on hinges."""
+    path = solve_mechanism(column(*joints, 1.2 * load), check=False)
+    (point,) = path.critical_points
+    assert 1.2 * point.load_factor == pytest.approx(1.0, rel=1e-2)  # of second order in 20 elements
+    assert abs(path.bending_moment[:, 0, [k for k in (0, -1) if joints[k] == "hinge"]]).max() == 0.0
+    model = column(*joints, 0.0, guided=("x", "y", "rotation"))
+    strip = model.strips[0]
+    found = 2.0 * np.pi * natural_frequencies(model, rotation=None, count=1).frequency[0]
+    unit = np.sqrt(strip.flexural_rigidity / strip.linear_density) / 0.1**2
+    assert np.sqrt(found / unit) == pytest.approx(root, rel=2e-5)
+
+
+def test_a_hinged_strip_is_a_pendulum() -> None:
+    """A strip that hangs on a hinge swings as a rod, small and from the horizontal, in either scheme."""
+    strip = StripDesign(
+        name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, root_joint="hinge", **SECTION
+    )
+
+    def hung(*along: float) -> Model:
+        given = scene(("bending", "stretching", "strip_inertia"), gravity={"acceleration": along})
+        return compliant_mechanism(strips=[strip], elements=4, **given)
+
+    rate = np.sqrt(1.5 * 9.81 / 0.1)
+    found = natural_frequencies(hung(9.81, 0.0), rotation=None, count=1).frequency[0]
+    assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-4)
+    half = 2.0 * ellipk(0.5) / rate
+    for how in ({}, {"integrator": "generalised-alpha", "step": 2e-4}):
+        swing = solve_motion(hung(0.0, -9.81), settled=False, duration=half, samples=4, check=False, **how)
+        assert swing.shape[-1, 0, -1] == pytest.approx((-0.1, 0.0), abs=5e-4)  # as the lumped masses
+        assert swing.energy_error < 1e-5
+
+
+def test_hinges_leave_motions_free() -> None:
+    """A motion that hinges leave free is held in statics and bears nothing; a load along it is refused."""
+    ends = {"bar": ((0.0, 0.0), (0.0, 0.05)), "link": ((0.08, 0.0), (0.08, 0.05))}
+    strips = [
+        StripDesign(name=name, start=a, end=b, tip="beam", root_joint="hinge", tip_joint="hinge", **SECTION)
+        for name, (a, b) in ends.items()
+    ]
+    beam = BodyDesign(name="beam", centre=(0.04, 0.05))
+
+    def linkage(force: tuple[float, float]) -> Model:
+        given = scene(DEFAULT_EFFECTS, applied_force={"force": force})
+        return compliant_mechanism(strips=strips, bodies=[beam], elements=2, **given)
+
+    path = solve_mechanism(linkage((0.0, 40.0)), increments=2)
+    assert path.prescribed == () and path.axial_force[-1] == pytest.approx(20.0, rel=1e-9)
+    refused(lambda: solve_mechanism(linkage((1.0, 0.0))), "nothing holds body beam in the direction x")
+    loose = partial(StripDesign, name="loose", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, **SECTION)
+    refused(
+        lambda: loose(tip_joint="hinge"), "tip_joint: got 'hinge', expected clamp at the free end of loose"
+    )
+    refused(lambda: loose(root_joint="weld"), "root_joint: got 'weld', expected one of clamp, hinge")

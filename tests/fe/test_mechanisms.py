@@ -10,7 +10,9 @@ from tests.fe.cases import EI, QUICK_ELEMENTS, extrapolated, pivot
 from tests.fe.scenes import GUIDE, PARAMETERS, WIDE, four_bar, free_cantilever, guide
 from tests.gates import hold
 
-STATIC = {name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain")}
+STATIC = {
+    name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain", "spring")
+}
 
 
 @pytest.mark.parametrize("element", QUICK_ELEMENTS)
@@ -70,7 +72,7 @@ def test_static_balance(element: str) -> None:
         answer = solve_mechanism(
             all_static(element=element, elements=8), body="crank", rotation=0.6, increments=increments
         )
-        stored = answer.strain_energy + answer.gravity_energy
+        stored = answer.strain_energy + answer.spring_energy + answer.gravity_energy
         return float(np.abs(answer.work - (stored - stored[0])).max() / np.abs(answer.work).max())
 
     hold(f"fe_static_balance_{element}", error)

@@ -1,0 +1,123 @@
+"""Springs and dampers between the centres of two bodies, or of a body and a point of the ground.
+
+With u the displacement of a centre from rest and theta the turn of its body, a link stretches by
+
+    e = (u_1 - u_2, theta_1 - theta_2),    u = d + (R(theta) - 1) o
+
+in axes of the ground, where d is the displacement of the point that a structure is reduced about and o the
+offset of the centre from it. It resists with f = diag(k) e + diag(c) e'. The energy is e.diag(k) e / 2.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .arrays import Array, Indices, kernel
+from .loading import Spring
+from .matrix import Symmetric
+from .mesh import swept, turned
+from .model import Model
+
+if TYPE_CHECKING:
+    from .structure import Structure
+
+#: Bodies at both ends (K, 2), -1 for ground, offsets of their centres from their points (K, 2, 2) [m],
+#: stiffness and damping (K, 3) for x, y and the turn.
+Links = tuple[Indices, Array, Array, Array]
+
+
+def links_of(model: Model, points: Array) -> Links:
+    """Return the springs of a model whose bodies are reduced about `points` (B, 2) [m]."""
+    springs = model.effects.every(Spring)
+    ends = [
+        [model.body_index(each.body), -1 if each.other is None else model.body_index(each.other)]
+        for each in springs
+    ]
+    ends_of = np.array(ends, dtype=np.int64).reshape(-1, 2)
+    return (
+        ends_of,
+        np.vstack([model.centres - points, np.zeros((1, 2))])[ends_of],
+        np.array([(*each.stiffness, each.rotational_stiffness) for each in springs]).reshape(-1, 3),
+        np.array([(*each.damping, each.rotational_damping) for each in springs]).reshape(-1, 3),
+    )
+
+
+@kernel()
+def link_forces(links: Links, bodies: Array, rates: Array, out: Array) -> tuple[float, float]:
+    """Add what the links resist with to the resultants (B, 5); return their energy [J] and power lost [W].
+
+    Args:
+        bodies, rates (B, 3): displacements and turns, and their rates.
+    """
+    (ends, offsets, stiffness, damping), energy, loss = links, 0.0, 0.0
+    for k in range(len(ends)):
+        x = y = turn = x_rate = y_rate = turn_rate = 0.0
+        for end in range(2):
+            b, sign = ends[k, end], 1.0 - 2.0 * end
+            if b >= 0:
+                way = swept(bodies[b, 2], offsets[k, end, 0], offsets[k, end, 1])
+                arm = turned(bodies[b, 2], offsets[k, end, 0], offsets[k, end, 1])
+                x, y = x + sign * (bodies[b, 0] + way[0]), y + sign * (bodies[b, 1] + way[1])
+                x_rate += sign * (rates[b, 0] - rates[b, 2] * arm[1])
+                y_rate += sign * (rates[b, 1] + rates[b, 2] * arm[0])
+                turn, turn_rate = turn + sign * bodies[b, 2], turn_rate + sign * rates[b, 2]
+        h, c = stiffness[k], damping[k]
+        force_x, force_y = h[0] * x + c[0] * x_rate, h[1] * y + c[1] * y_rate
+        moment = h[2] * turn + c[2] * turn_rate
+        energy += 0.5 * (h[0] * x * x + h[1] * y * y + h[2] * turn * turn)
+        loss += c[0] * x_rate * x_rate + c[1] * y_rate * y_rate + c[2] * turn_rate * turn_rate
+        for end in range(2):
+            b, sign = ends[k, end], 1.0 - 2.0 * end
+            if b >= 0:
+                arm = turned(bodies[b, 2], offsets[k, end, 0], offsets[k, end, 1])
+                out[b, 0] += sign * force_x
+                out[b, 1] += sign * force_y
+                out[b, 2] += sign * (moment + arm[0] * force_y - arm[1] * force_x)
+                out[b, 4] -= sign * (arm[0] * force_x + arm[1] * force_y)
+    return energy, loss
+
+
+def numbers(ends: Indices, bodies: Indices) -> Indices:
+    """Return the coordinates of links (K, 6) from those of bodies (B, 3), -1 for those of the ground."""
+    return np.vstack([bodies, np.full((1, 3), -1)])[ends].reshape(-1, 6)
+
+
+def slopes(structure: "Structure", y: Array) -> Array:
+    """Return the derivatives of the stretches of the links in the coordinates of their ends (K, 3, 6)."""
+    ends, offsets, _, _ = structure.links
+    found = np.zeros((len(ends), 3, 6))
+    for each, pair, arms in zip(found, ends, offsets, strict=True):
+        for end, sign in enumerate((1.0, -1.0)):
+            turn = y[structure.turns[pair[end]]] if pair[end] >= 0 else 0.0
+            arm = turned(turn, *arms[end])
+            each[:, 3 * end : 3 * end + 3] = sign * np.array([[1, 0, -arm[1]], [0, 1, arm[0]], [0, 0, 1]])
+    return found
+
+
+def add_links(structure: "Structure", y: Array, constants: Array, whole: Symmetric) -> None:
+    """Add what stiffness or damping (K, 3) of the links makes at y to a matrix."""
+    places = structure.pattern.links
+    for at, slope, own in zip(places, slopes(structure, y), constants, strict=True):
+        np.add.at(whole.data, at[at >= 0], (slope.T * own @ slope)[at >= 0])
+
+
+def between(structure: "Structure", y: Array, one: Array, other: Array) -> float:
+    """Return the second derivative of the energy at fixed forces along two rates (size,) [J]."""
+    at = numbers(structure.links[0], np.arange(structure.first_body, structure.size).reshape(-1, 3))
+    rates = (np.einsum("kij,kj->ki", slopes(structure, y), np.append(rate, 0.0)[at]) for rate in (one, other))
+    return float(np.sum(np.prod([*rates], axis=0) * structure.links[2]))
+
+
+def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> float:
+    """Return what no ratio of constants (K, 3) of links to masses and inertias (B,) exceeds [1/s^2 or 1/s].
+
+    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass
+    1 / (1/m + o^2/J) at least.
+    """
+    (ends, offsets, _, _), total = links, 0.0
+    with_ground = np.append(1.0 / mass, 0.0), np.append(1.0 / inertia, 0.0)
+    for pair, arms, own in zip(ends, offsets, constants, strict=True):
+        light, turning = (each[pair] for each in with_ground)
+        total += max(own[0], own[1]) * float(np.sum(light + turning * np.sum(arms**2, axis=1)))
+        total += own[2] * float(np.sum(turning))
+    return total
