@@ -183,7 +183,11 @@ class StripDesign:
         if count == 1:
             return (Piece(self, self, (0.0, 1.0)),)
         cuts = np.linspace(0.0, 1.0, count + 1)
-        points, sections = [tuple(point) for point in self.at(cuts).tolist()], self._sections(cuts)
+        points = [tuple(point) for point in self.at(cuts).tolist()]
+        sides, own = {}, {}  # of a taper: in place of area and second moment
+        if taper := self.taper:
+            sides = {n: (getattr(self, n) * taper.side(n, cuts)).tolist() for n in Taper._fields}
+            own = {"area": NOT_GIVEN, "second_moment_of_area": NOT_GIVEN}
         half = self.opening
         rise = self.length / (2.0 * half) * (1.0 - math.cos(half / count)) if half else 0.0
         ends = [self.root, *(f"{self.name}, joint {k}" for k in range(1, count)), self.tip]
@@ -197,7 +201,9 @@ class StripDesign:
                     rise=rise,
                     root=str(ends[k]),
                     tip=ends[k + 1],
-                    **sections[k],
+                    **{name: each[k] for name, each in sides.items()},
+                    **{f"{name}_end": each[k + 1] for name, each in sides.items()},
+                    **own,
                     root_joint=self.root_joint if k == 0 else CLAMP,
                     tip_joint=self.tip_joint if k == count - 1 else CLAMP,
                 ),
@@ -206,17 +212,6 @@ class StripDesign:
             )
             for k in range(count)
         )
-
-    def _sections(self, cuts: Array) -> list[dict[str, Any]]:
-        """Keywords of the sections of pieces between cuts (K + 1,); none where the section is constant."""
-        if (taper := self.taper) is None:
-            return [{} for _ in cuts[1:]]
-        sides: dict[str, Any] = {"area": NOT_GIVEN, "second_moment_of_area": NOT_GIVEN}
-        b, t = ((getattr(self, name) * taper.side(name, cuts)).tolist() for name in Taper._fields)
-        return [
-            sides | {"width": b[k], "width_end": b[k + 1], "thickness": t[k], "thickness_end": t[k + 1]}
-            for k in range(len(cuts) - 1)
-        ]
 
 
 class Piece(NamedTuple):
