@@ -3,13 +3,15 @@
     python -m studies readme
 
 Only what stands between marks is written: in README.md and docs/findings.md from results/data, in
-docs/cases.md from the declarations that read case files. Exit code 0: done; 2: a study it needs was never
+docs/cases.md from the declarations that read case files. The benchmark package in results/reference is
+written as a whole from results/data. Exit code 0: done; 2: a study it needs was never
 run, or a file has no marks.
 """
 
 import argparse
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ from studies.commands.case import PAGE, markdown_head
 from studies.commands.parser import command
 from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TOLERANCES
 from studies.errors import BadInput
+from studies.published import benchmark
 from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
@@ -298,6 +301,9 @@ def main(arguments: argparse.Namespace) -> int:
     for path, text in texts.items():
         write_whole(path, text.encode())
         print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
+    for name, content in benchmark.package(partial(_stored, Store())).items():
+        write_whole(benchmark.FOLDER / name, content)
+    print(f"{benchmark.FOLDER.relative_to(ROOT)}: {', '.join(benchmark.THEORIES)}")
     return 0
 
 
