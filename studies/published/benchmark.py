@@ -11,7 +11,6 @@ results of the studies; nothing is solved here. A row is one value of a referenc
 """
 
 import json
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -109,7 +108,7 @@ def _with_shear(stored: Stored) -> pd.DataFrame:
 
 def _travel(rows: pd.DataFrame) -> float:
     """Return the largest displacement of the centre of mass [m]."""
-    x, y = _centre(named_case())
+    x, y = named_case().bodies[0].centre
     return float(np.hypot(rows["com_x_m"] - x, rows["com_y_m"] - y).max())
 
 
@@ -128,22 +127,13 @@ def _rows(quantity: str, at: Any, value: Any, uncertainty: Any, scale: Any) -> p
     return pd.DataFrame(given)
 
 
-def _clamps(pivot: Problem) -> tuple[list[list[float]], list[list[float]]]:
-    """Return the clamps of the strips on the ground and on the body at rest [m], without round-off."""
-    x, y = (round(pivot.length * each(pivot.inclination), 15) for each in (math.cos, math.sin))
-    base = round(2.0 * pivot.crossing_ratio * x, 15)
-    return [[0.0, 0.0], [base, 0.0]], [[x, y], [base - x, y]]
-
-
-def _centre(pivot: Problem) -> tuple[float, float]:
-    """Return the centre of mass at rest [m], the midpoint of the body's clamps."""
-    (x, y), (other, _) = _clamps(pivot)[1]
-    return 0.5 * (x + other), y
+def _rounded(place: tuple[float, float]) -> list[float]:
+    """Return a place [m] without round-off."""
+    return [round(each, 15) for each in place]
 
 
 def _inputs(pivot: Problem) -> str:
     """Return the inputs as TOML, whose values JSON writes in the same way."""
-    ground, body = _clamps(pivot)
     given: dict[str, Any] = {
         "strip_length_m": pivot.length,
         "strip_width_m": pivot.width,
@@ -151,11 +141,11 @@ def _inputs(pivot: Problem) -> str:
         "youngs_modulus_Pa": pivot.youngs_modulus,
         "poisson_ratio": pivot.poisson_ratio,
         "density_kg_per_m3": pivot.density,
-        "ground_clamps_m": ground,
-        "body_clamps_m": body,
+        "ground_clamps_m": [_rounded(strip.start) for strip in pivot.strips],
+        "body_clamps_m": [_rounded(strip.end) for strip in pivot.strips],
         "body_mass_kg": pivot.body_mass,
         "body_moment_of_inertia_kg_m2": pivot.body_moment_of_inertia,
-        "centre_of_mass_m": _centre(pivot),
+        "centre_of_mass_m": _rounded(pivot.bodies[0].centre),
         "rotation_rad": pivot.rotation,
     }
     tables: dict[str, dict[str, Any]] = {"pivot": given}

@@ -5,9 +5,9 @@ Strips are blocks between rigid end faces. Meshes are refined in length, thickne
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -59,30 +59,29 @@ LOOKS |= {f"solid, {SOFT}": Look(label="solid, neo-Hookean", colour=RED)}
 SMALL, SURE = 0.01, 2e-4
 
 
-@cache
-def _solid(law: str, element: str, fineness: int) -> SolidPath:
-    """Return the path of the benchmark pivot as solids on one mesh."""
-    pivot = named_case()
-    along, up = math.cos(pivot.inclination), math.sin(pivot.inclination)
-    x, y = pivot.length * along, pivot.length * up
-    base = 2.0 * pivot.crossing_ratio * x
-    strip = SolidStrip(
+def meshed(pivot: Problem, mesh: tuple[int, int, int], **how: Any) -> SolidStrip:
+    """Return the strips of a pivot as solids; `how` has law and element."""
+    return SolidStrip(
         length=pivot.length,
         width=float(pivot.width or 0.0),
         thickness=float(pivot.thickness or 0.0),
         youngs_modulus=pivot.youngs_modulus,
         poisson_ratio=pivot.poisson_ratio,
-        law=law,
-        element=element,
-        mesh=(COARSEST[element] * fineness, fineness, fineness),
+        mesh=mesh,
+        **how,
     )
-    ends = [((0.0, 0.0), (x, y)), ((base, 0.0), (base - x, y))]
-    return solve_solids(strip, ends, np.radians(STATES).tolist(), centre=(0.5 * base, y))
+
+
+def turned(pivot: Problem, strip: SolidStrip, degrees: Sequence[float]) -> SolidPath:
+    """Return the path of a pivot on its strips as solids."""
+    ends = [(each.start, each.end) for each in pivot.strips]
+    return solve_solids(strip, ends, np.radians(degrees).tolist(), centre=pivot.bodies[0].centre)
 
 
 def _mesh(law: str, element: str, fineness: int) -> Answer:
     """Return the states of one mesh."""
-    path = _solid(law, element, fineness)
+    pivot, mesh = named_case(), (COARSEST[element] * fineness, fineness, fineness)
+    path = turned(pivot, meshed(pivot, mesh, law=law, element=element), STATES)
     rows = {
         "law": law,
         "element": element,

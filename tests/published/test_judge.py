@@ -2,7 +2,6 @@
 
 from functools import partial
 
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -111,10 +110,3 @@ def test_broken_files_are_one_line(text, message, tmp_path, refused):
     place = tmp_path / "mine.csv"
     place.write_bytes(text.encode("utf-8", "surrogateescape"))
     assert refused("judge", place, says=message).startswith(f"studies: {place}: ")
-
-
-def test_inputs_are_those_of_the_case():
-    """Strips of the package have the length between their clamps, and its body is centred above them."""
-    ground, body = benchmark._clamps(CASE)
-    lengths = np.hypot(*(np.array(body) - ground).T)
-    assert lengths == pytest.approx([CASE.length] * 2, rel=1e-14)
