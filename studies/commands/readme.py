@@ -276,6 +276,21 @@ def _solids(store: Store) -> Iterator[str]:
     yield "| *uncertainty of the solids* | " + " | ".join(_percent(known[a]) for a in SOLID_AT) + " |  |"
 
 
+def _solid_designs(store: Store) -> Iterator[str]:
+    """Yield the deviations of beam models from solids of other designs at the first and last rotation."""
+    rows = _stored(store, "model_form/solid_designs", "states")
+    designs = list(rows["design"].unique())
+    yield markdown_head("model, torque", *designs)
+    for model, own in rows[rows["model"] != "solid"].groupby("model"):
+        cells = [own.loc[own["design"] == each, "error_torque"].to_numpy() for each in designs]
+        ends = (
+            f"{100.0 * each[0]:+.2f} to {100.0 * each[-1]:+.2f} %" if len(each) else "–" for each in cells
+        )
+        yield f"| {model} | " + " | ".join(ends) + " |"
+    unsure = rows.groupby("design")["uncertainty"].max()
+    yield "| *uncertainty of the solids* | " + " | ".join(_percent(unsure[each]) for each in designs) + " |"
+
+
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
     ROOT / "README.md": {"agreement": _short},
@@ -287,6 +302,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "hard cases": _hard_cases,
         "sized": _sized,
         "solids": _solids,
+        "solid designs": _solid_designs,
         "published": _published,
     },
     ROOT / "docs" / "data.md": {"quantities": _quantities},
