@@ -10,8 +10,8 @@ E = (H + H^T + H^T H) / 2, and the stress S of the material law
 The forces of the nodes are int S : dE dV over all elements, of all virtual displacements of the nodes.
 
 The solid is exact for the material law and for clamps that hold the end faces rigid. It includes shear,
-lateral clamping and anticlastic curvature. It neglects supports that deform. The stress is singular at the
-edges of the clamps; therefore the error decreases slowly with the mesh, with an order of about 1.5.
+lateral clamping and anticlastic curvature. Supports deform only if they are meshed. The stress is singular
+at the edges of the clamps; therefore the error decreases slowly with the mesh, with an order of about 1.5.
 
 Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis (2008), chapters 6 to 9.
 """
@@ -63,6 +63,9 @@ class SolidStrip:
         "serendipity" (20 nodes, 2 x 2 x 2 points) or "lagrange" (27 nodes, 3 x 3 x 3 points).
     mesh : tuple of int
         Elements along the length, the thickness and half of the width.
+    support : float, m, default 0
+        Side of the blocks of the same material that carry the ends, as in a pivot cut from one block. The
+        far faces of the blocks are rigid. 0: the ends of the strip are rigid faces.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class SolidStrip:
     law: str = LAWS[0]
     element: str = "serendipity"
     mesh: tuple[int, int, int] = (32, 4, 3)
+    support: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("length", "width", "thickness", "youngs_modulus"):
@@ -91,17 +95,28 @@ class SolidStrip:
                 raise InvalidParameter(name, getattr(self, name), "one of " + ", ".join(known))
         if min(self.mesh) < 1:
             raise InvalidParameter("mesh", self.mesh, "at least one element in each direction")
+        if not (np.isfinite(self.support) and self.support >= 0.0):
+            raise InvalidParameter("support", self.support, "a number of at least 0")
 
     @cached_property
     def _basis(self) -> Basis:
         kind, order = ELEMENTS[self.element]
-        lines = (
-            _lines(self.mesh[0], 0.0, self.length),
-            _lines(self.mesh[1], -0.5 * self.thickness, 0.5 * self.thickness),
-            _lines(self.mesh[2], 0.0, 0.5 * self.width, both=False),
-        )
+        x = self._supported(_lines(self.mesh[0], 0.0, self.length))
+        y = self._supported(_lines(self.mesh[1], -0.5 * self.thickness, 0.5 * self.thickness))
+        mesh = MeshHex.init_tensor(x, y, _lines(self.mesh[2], 0.0, 0.5 * self.width, both=False))
+        along, across, _ = mesh.p[:, mesh.t].mean(axis=1)
+        empty = (along > 0.0) & (along < self.length) & (np.abs(across) > 0.5 * self.thickness)
         element = kind()
-        return Basis(MeshHex.init_tensor(*lines), element, quadrature=get_quadrature(element, order))
+        mesh = mesh.remove_elements(np.flatnonzero(empty))
+        return Basis(mesh, element, quadrature=get_quadrature(element, order))
+
+    def _supported(self, lines: Array) -> Array:
+        """Return mesh lines with those of the blocks on both sides, which are clustered towards the strip."""
+        if not self.support:
+            return lines
+        count = self.mesh[1] + 1
+        beyond = self.support * (np.arange(1, count + 1) / count) ** 2
+        return np.concatenate([lines[0] - beyond[::-1], lines, lines[-1] + beyond])
 
     @cached_property
     def _order(self) -> Indices:
@@ -129,15 +144,15 @@ class SolidStrip:
 
     @cached_property
     def tip(self) -> Indices:
-        """Nodes of the tip face."""
-        return np.flatnonzero(np.isclose(self.nodes[:, 0], self.length))
+        """Nodes of the tip face, or of the far face of its block."""
+        return np.flatnonzero(np.isclose(self.nodes[:, 0], self.length + self.support))
 
     @cached_property
     def free(self) -> Indices:
         """Coordinates of the interior, in order along the strip."""
         free = np.ones((len(self.nodes), 3), dtype=bool)
         free[np.isclose(self.nodes[:, 2], 0.0), 2] = False
-        free[np.isclose(self.nodes[:, 0], 0.0)] = free[self.tip] = False
+        free[np.isclose(self.nodes[:, 0], -self.support)] = free[self.tip] = False
         return np.flatnonzero(free)
 
     @cached_property

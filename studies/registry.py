@@ -26,6 +26,7 @@ COMMANDS: dict[str, str] = {
     "audit": "say what each effect of a scene is worth, and which are enough",
     "advise": "say which setting of each model meets an error at the least cost",
     "size": "size a pivot for a range, stiffness and stress by exact gradients",
+    "judge": "compare results of another code with a reference solution",
     "sweep": "solve thousands of designs into one table, here or on a cluster",
     "case": "print a commented case file to begin a design with",
     "interactive": "drive a pivot by camera or mouse and let it go, in the browser",
@@ -37,7 +38,7 @@ COMMANDS: dict[str, str] = {
     "verify": "compute stale studies anew, fresh where all comes out as stored",
     "status": "say which stored results are fresh, stale or missing",
     "compile": "compile the kernels of both models, once",
-    "readme": "rewrite the tables of README.md and docs/ from the results",
+    "readme": "rewrite README, docs and results/reference from the stored results",
 }
 #: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
 PLACES: dict[str, str] = {
@@ -69,6 +70,8 @@ STUDIES: dict[str, str] = {
     "convergence/error_estimate": "studies.convergence.error_estimate",
     "model_form/plate": "studies.published.problems:PLATE",
     "model_form/solid_pivot": "studies.published.solid_pivot",
+    "model_form/solid_designs": "studies.published.solid_designs",
+    "model_form/calculix": "studies.published.calculix",
     "published/problems": "studies.published.problems",
     "stability/rotation": "studies.stability.families:ROTATION",
     "stability/slenderness": "studies.stability.families:SLENDERNESS",

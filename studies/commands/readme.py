@@ -3,13 +3,15 @@
     python -m studies readme
 
 Only what stands between marks is written: in README.md and docs/findings.md from results/data, in
-docs/cases.md from the declarations that read case files. Exit code 0: done; 2: a study it needs was never
+docs/cases.md from the declarations that read case files. The benchmark package in results/reference is
+written as a whole from results/data. Exit code 0: done; 2: a study it needs was never
 run, or a file has no marks.
 """
 
 import argparse
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ from studies.commands.case import PAGE, markdown_head
 from studies.commands.parser import command
 from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TOLERANCES
 from studies.errors import BadInput
+from studies.published import benchmark
 from studies.record.files import write_whole
 from studies.record.source import ROOT
 from studies.record.store import Store
@@ -273,6 +276,21 @@ def _solids(store: Store) -> Iterator[str]:
     yield "| *uncertainty of the solids* | " + " | ".join(_percent(known[a]) for a in SOLID_AT) + " |  |"
 
 
+def _solid_designs(store: Store) -> Iterator[str]:
+    """Yield the deviations of beam models from solids of other designs at the first and last rotation."""
+    rows = _stored(store, "model_form/solid_designs", "states")
+    designs = list(rows["design"].unique())
+    yield markdown_head("model, torque", *designs)
+    for model, own in rows[rows["model"] != "solid"].groupby("model"):
+        cells = [own.loc[own["design"] == each, "error_torque"].to_numpy() for each in designs]
+        ends = (
+            f"{100.0 * each[0]:+.2f} to {100.0 * each[-1]:+.2f} %" if len(each) else "–" for each in cells
+        )
+        yield f"| {model} | " + " | ".join(ends) + " |"
+    unsure = rows.groupby("design")["uncertainty"].max()
+    yield "| *uncertainty of the solids* | " + " | ".join(_percent(unsure[each]) for each in designs) + " |"
+
+
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
     ROOT / "README.md": {"agreement": _short},
@@ -284,6 +302,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
         "hard cases": _hard_cases,
         "sized": _sized,
         "solids": _solids,
+        "solid designs": _solid_designs,
         "published": _published,
     },
     ROOT / "docs" / "data.md": {"quantities": _quantities},
@@ -298,6 +317,9 @@ def main(arguments: argparse.Namespace) -> int:
     for path, text in texts.items():
         write_whole(path, text.encode())
         print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
+    for name, content in benchmark.package(partial(_stored, Store())).items():
+        write_whole(benchmark.FOLDER / name, content)
+    print(f"{benchmark.FOLDER.relative_to(ROOT)}: {', '.join(benchmark.THEORIES)}")
     return 0
 
 

@@ -5,9 +5,9 @@ Strips are blocks between rigid end faces. Meshes are refined in length, thickne
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ from fe_reference import SolidPath, SolidStrip, solve_solids
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Answer, Claim, Part, Row, Study, Tables
+from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
 from studies.record.marks import Level
 from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
@@ -59,34 +59,35 @@ LOOKS |= {f"solid, {SOFT}": Look(label="solid, neo-Hookean", colour=RED)}
 SMALL, SURE = 0.01, 2e-4
 
 
-@cache
-def _solid(law: str, element: str, fineness: int) -> SolidPath:
-    """Return the path of the benchmark pivot as solids on one mesh."""
-    pivot = named_case()
-    along, up = math.cos(pivot.inclination), math.sin(pivot.inclination)
-    x, y = pivot.length * along, pivot.length * up
-    base = 2.0 * pivot.crossing_ratio * x
-    strip = SolidStrip(
+def meshed(pivot: Problem, mesh: tuple[int, int, int], **how: Any) -> SolidStrip:
+    """Return the strips of a pivot as solids; `how` has law and element."""
+    return SolidStrip(
         length=pivot.length,
         width=float(pivot.width or 0.0),
         thickness=float(pivot.thickness or 0.0),
         youngs_modulus=pivot.youngs_modulus,
         poisson_ratio=pivot.poisson_ratio,
-        law=law,
-        element=element,
-        mesh=(COARSEST[element] * fineness, fineness, fineness),
+        mesh=mesh,
+        **how,
     )
-    ends = [((0.0, 0.0), (x, y)), ((base, 0.0), (base - x, y))]
-    return solve_solids(strip, ends, np.radians(STATES).tolist(), centre=(0.5 * base, y))
+
+
+def turned(pivot: Problem, strip: SolidStrip, degrees: Sequence[float]) -> SolidPath:
+    """Return the path of a pivot on its strips as solids."""
+    ends = [(each.start, each.end) for each in pivot.strips]
+    return solve_solids(strip, ends, np.radians(degrees).tolist(), centre=pivot.bodies[0].centre)
 
 
 def _mesh(law: str, element: str, fineness: int) -> Answer:
     """Return the states of one mesh."""
-    path = _solid(law, element, fineness)
-    rows = {
-        "law": law,
-        "element": element,
-        "fineness": fineness,
+    pivot, mesh = named_case(), (COARSEST[element] * fineness, fineness, fineness)
+    path = turned(pivot, meshed(pivot, mesh, law=law, element=element), STATES)
+    return {"meshes": states_of(path, law=law, element=element, fineness=fineness)}
+
+
+def states_of(path: SolidPath, **labels: Any) -> pd.DataFrame:
+    """Return the states of a path of solids behind labels."""
+    values = {
         "unknowns": path.unknowns,
         "rotation_rad": path.rotation,
         "torque_Nm": path.torque,
@@ -94,43 +95,47 @@ def _mesh(law: str, element: str, fineness: int) -> Answer:
         "com_y_m": path.centre[:, 1],
         "strain": path.largest_strain,
     }
-    return {"meshes": pd.DataFrame(rows)}
+    return pd.DataFrame(labels | values)
 
 
 def _limits(tables: Tables) -> Iterator[pd.DataFrame]:
     """Yield the limits of refinement of each law, with their uncertainty.
 
-    The limit is that of the two finest meshes with 20 nodes, for the order `ORDER`. Its uncertainty is the
-    largest of three: the change of the limit without the finest mesh, its change with the order `SINGULAR`,
-    and its difference from the limit of the elements with 27 nodes.
+    The limit is that of the two finest meshes with 20 nodes, for the order `ORDER`. The orders of its
+    uncertainty are `ORDER` and `SINGULAR`; the other difference is that of the elements with 27 nodes.
     """
-    meshes = {key: _meshes(rows) for key, rows in tables["meshes"].groupby(["law", "element"], sort=False)}
-    serendipity, lagrange = (_limit(meshes[STIFF, element]) for element in COARSEST)
+    meshes = dict(iter(tables["meshes"].groupby(["law", "element"], sort=False)))
+    serendipity, lagrange = (limit(refined(meshes[STIFF, element])) for element in COARSEST)
     for law in (STIFF, SOFT):
-        own = meshes[law, "serendipity"]
-        limit = _limit(own)
-        others = limit - _limit(own[:-1]), limit - _limit(own, SINGULAR), serendipity - lagrange
-        unsure = np.abs(others).max(axis=0)
-        yield pd.DataFrame(
-            {
-                "law": law,
-                "rotation_rad": np.radians(STATES),
-                "torque_Nm": limit[:, 0],
-                "com_x_m": limit[:, 1],
-                "com_y_m": limit[:, 2],
-                "uncertainty": unsure[:, 0] / np.abs(limit[:, 0]),
-                "uncertainty_m": np.hypot(unsure[:, 1], unsure[:, 2]),
-            }
-        )
+        yield limits_of(meshes[law, "serendipity"], (ORDER, SINGULAR), serendipity - lagrange, law=law)
 
 
-def _meshes(rows: pd.DataFrame) -> list[tuple[float, Array]]:
+def limits_of(
+    rows: pd.DataFrame, orders: tuple[float, float], other: Any = 0.0, **labels: Any
+) -> pd.DataFrame:
+    """Return the limits of the states of meshes for the first order, behind labels, with their uncertainty.
+
+    The uncertainty is the largest of three: the change of the limit without the finest mesh, its change with
+    the second order, and another difference.
+    """
+    meshes = refined(rows)
+    found = limit(meshes, orders[0])
+    others = found - limit(meshes[:-1], orders[0]), found - limit(meshes, orders[1]), other + 0.0 * found
+    unsure = np.abs(others).max(axis=0)
+    values = dict(zip(VALUES, found.T, strict=True)) | {
+        "uncertainty": unsure[:, 0] / np.abs(found[:, 0]),
+        "uncertainty_m": np.hypot(unsure[:, 1], unsure[:, 2]),
+    }
+    return pd.DataFrame(labels | {"rotation_rad": np.sort(rows["rotation_rad"].unique())} | values)
+
+
+def refined(rows: pd.DataFrame) -> list[tuple[float, Array]]:
     """Return fineness, and torque and place of the states (S, 3), of the meshes from the coarsest on."""
     ordered = rows.sort_values("rotation_rad").groupby("fineness")
     return [(float(str(fineness)), mesh[VALUES].to_numpy()) for fineness, mesh in ordered]
 
 
-def _limit(meshes: list[tuple[float, Array]], order: float = ORDER) -> Array:
+def limit(meshes: list[tuple[float, Array]], order: float = ORDER) -> Array:
     """Return what the two finest meshes tend to for an order of the error (S, 3)."""
     (coarse, before), (fine, after) = meshes[-2:]
     found: Array = after + (after - before) / ((fine / coarse) ** order - 1.0)
@@ -140,41 +145,44 @@ def _limit(meshes: list[tuple[float, Array]], order: float = ORDER) -> Array:
 def _beam(name: str) -> Answer:
     """Return the states of a beam model."""
     settings, effects, _ = MODELS[name]
-    case: Problem = named_case()
+    return {"models": beam_states(named_case(), settings, effects, len(STATES) - COMPARED, model=name)}
+
+
+def beam_states(
+    case: Problem, settings: Settings, effects: Iterable[str], count: int, **labels: Any
+) -> pd.DataFrame:
+    """Return states at equal rotations, but for that at rest, of a beam model behind labels."""
     answer = answer_static(replace(case, effects=case.effects.plus(*effects)), settings).whole()
-    every = case.increments // (len(STATES) - COMPARED)
-    chosen = slice(every, None, every)
-    rows = {
-        "model": name,
+    chosen = slice(case.increments // count, None, case.increments // count)
+    values = {
         "rotation_rad": answer.rotation[chosen],
         "torque_Nm": answer.torque[chosen],
         "com_x_m": answer.centre[chosen, 0],
         "com_y_m": answer.centre[chosen, 1],
     }
-    return {"models": pd.DataFrame(rows)}
+    return pd.DataFrame(labels | values)
 
 
-def _deviations(tables: Tables) -> Iterator[Row]:
+def _deviations(tables: Tables) -> Iterator[pd.DataFrame]:
     """Yield the deviations of the beam models and of the other material law from the solids."""
     limits = {
         law: rows.iloc[COMPARED:].reset_index() for law, rows in tables["limits"].groupby("law", sort=False)
     }
-    solid, models = (
-        limits[STIFF],
-        {str(name): rows for name, rows in tables["models"].groupby("model", sort=False)},
-    )
-    models[f"solid, {SOFT}"] = limits[SOFT]
-    travel = math.hypot(*(solid[["com_x_m", "com_y_m"]].iloc[-1] - solid[["com_x_m", "com_y_m"]].iloc[0]))
-    for name, rows in models.items():
-        for (_, own), (_, true) in zip(rows.iterrows(), solid.iterrows(), strict=True):
-            gap = math.hypot(own["com_x_m"] - true["com_x_m"], own["com_y_m"] - true["com_y_m"])
-            yield {
-                "model": name,
-                "rotation_rad": true["rotation_rad"],
-                "error_torque": own["torque_Nm"] / true["torque_Nm"] - 1.0,
-                "error_trajectory": gap / travel,
-                "uncertainty": true["uncertainty"],
-            }
+    models = dict(iter(tables["models"].groupby("model", sort=False)))
+    for name, rows in (*models.items(), (f"solid, {SOFT}", limits[SOFT])):
+        yield deviation(rows, limits[STIFF], model=name)
+
+
+def deviation(own: pd.DataFrame, solid: pd.DataFrame, **labels: Any) -> pd.DataFrame:
+    """Return the deviations of states from those of solids at the same rotations, behind labels."""
+    place, true = (each[["com_x_m", "com_y_m"]].to_numpy() for each in (own, solid))
+    values = {
+        "rotation_rad": solid["rotation_rad"].to_numpy(),
+        "error_torque": own["torque_Nm"].to_numpy() / solid["torque_Nm"].to_numpy() - 1.0,
+        "error_trajectory": np.hypot(*(place - true).T) / math.hypot(*(true[-1] - true[0])),
+        "uncertainty": solid["uncertainty"].to_numpy(),
+    }
+    return pd.DataFrame(labels | values)
 
 
 def _figure(tables: Tables) -> Figure:
@@ -194,7 +202,7 @@ STUDY = Study(
     ),
     made={
         "limits": lambda tables: pd.concat(_limits(tables)),
-        "deviations": _deviations,
+        "deviations": lambda tables: pd.concat(_deviations(tables)),
     },
     claims=(
         Claim(

@@ -75,6 +75,19 @@ def test_without_lateral_contraction_a_solid_is_a_beam_that_shears():
     hold("solid_beam", error)
 
 
+def test_supports_of_one_block_make_the_strip_longer():
+    """Blocks of the material act as 0.416 t more length at each end (O'Donnell 1960), Poisson's ratio 0."""
+
+    def error(mesh=(16, 2, 1)):
+        rigid, blocks = (
+            pivot([2.0], poisson_ratio=0.0, mesh=mesh, support=support).torque[-1]
+            for support in (0.0, 2.0 * THICKNESS)
+        )
+        return abs(rigid / blocks - 1.0 - 2.0 * 0.416 * THICKNESS / LENGTH)
+
+    hold("solid_support", error)
+
+
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
@@ -82,6 +95,7 @@ def test_without_lateral_contraction_a_solid_is_a_beam_that_shears():
         ({"element": "linear"}, "element: got 'linear', expected one of serendipity, lagrange"),
         ({"thickness": 0.0}, "thickness: got 0.0, expected a positive number"),
         ({"poisson_ratio": 0.5}, "poisson_ratio: got 0.5, expected a number from 0 to below 0.5"),
+        ({"support": -1.0}, "support: got -1.0, expected a number of at least 0"),
         ({"mesh": (4, 0, 1)}, "mesh: got (4, 0, 1), expected at least one element in each direction"),
     ],
 )

@@ -141,7 +141,9 @@ def test_example_runs(words, tmp_path, monkeypatch, capsys):
 
 
 def _own_results(name: str, folder: Path) -> None:
-    """Give `draw` a copy of what it redraws."""
+    """Give `draw` and `judge` a copy of what they read."""
+    if name == "judge":
+        shutil.copytree(ROOT / "results" / "reference", folder / "reference")
     if name == "draw":
         shutil.copytree(ROOT / "results" / "data" / "paper", folder / "data" / "paper")
         (folder / "figures").mkdir()
