@@ -115,8 +115,15 @@ SENTENCES = {
     "coarse": "The numbers are not known to a ten-thousandth.",
     "no-rest": "Both markers must be seen to take their pose as rest.",
     "empty": "There is nothing.",
-    "not-flat": "The markers do not lie in one plane, or the lens bends the picture.",
-    "refused": "The markers fit no plane: this pose was left out.",
+    "not-flat": "Systematic error, included in ±: glue both markers flat in one plane, or calibrate the "
+    "camera (python -m studies calibrate).",
+    "lens": "The lens distorts the picture, included in ±: calibrate the camera "
+    "(python -m studies calibrate).",
+    "tilted": "The moving marker is tilted or lies higher than the ground marker, included in ±: glue both "
+    "in one plane.",
+    "curled": "A marker is curled, included in ±: glue it to a flat plate.",
+    "shutter": "The camera reads its rows one after the other, included in ±: move slower, or more light.",
+    "refused": "The markers do not lie in one plane: this pose was rejected.",
     "sizes": "The two markers have different sizes: print both at 100 % and measure the ruler.",
     "blurred": "The edges are blurred or dark: hold still, more light.",
     "over-exposed": "The paper's white is over-exposed: less light, or a shorter exposure.",

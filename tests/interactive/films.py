@@ -13,7 +13,7 @@ from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
-from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, Finger, Marker, Optics, Painter
+from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
 
@@ -74,11 +74,11 @@ def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
     return project(optics.plane, own + np.array([x, y]))
 
 
-def on_corner(k: int, radius: float) -> tuple[Finger, ...]:
-    """A finger on the upper right corner of marker 1."""
+def over(k: int, place: tuple[float, float], radius: float, level: float = SKIN) -> tuple[Finger, ...]:
+    """A finger, or glare of another level, over a place of marker 1 [sides]."""
     x, y, angle = truth(k)
-    corner = np.array([x, y]) + turned(angle, np.array([SIDE / 2, SIDE / 2]))
-    return (Finger(centre=(float(corner[0]), float(corner[1])), radius=radius),)
+    centre = np.array([x, y]) + turned(angle, SIDE * np.array(place))
+    return (Finger(centre=(float(centre[0]), float(centre[1])), radius=radius, level=level),)
 
 
 def error(event: dict, k: int) -> tuple[float, float]:

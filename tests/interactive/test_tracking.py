@@ -9,7 +9,8 @@ import pytest
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
-from studies.interactive.tracking.painter import Marker, Optics
+from studies.interactive.tracking.causes import MODELS, Causes
+from studies.interactive.tracking.painter import SKIN, WHITEST, Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
 from studies.interactive.tracking.tracker import Tracker
@@ -20,7 +21,7 @@ from tests.interactive.films import (
     errors,
     film,
     names,
-    on_corner,
+    over,
     rms,
     true_corners,
     truth,
@@ -28,12 +29,6 @@ from tests.interactive.films import (
 )
 
 HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
-
-
-@pytest.fixture(scope="module")
-def plain():
-    """Pictures of the plain film."""
-    return list(film(frames=30))
 
 
 LENS = Optics(k1=-0.25, gamma=1.0)
@@ -96,18 +91,23 @@ def test_corners_have_no_bias():
 
 
 @pytest.mark.slow
-def test_said_uncertainty_is_the_true_one(plain):
-    """Requirement: the standard deviation that is shown is 0.7 to 1.5 times the true error."""
-    events = [Tracker().see(picture, 0.0) for picture in plain]
-    gaps = np.array([np.array(event["marker"]) - truth(k) for k, event in enumerate(events)])
+def test_said_uncertainty_is_the_true_one():
+    """Requirement: after 20 pictures the standard deviation that is shown is 0.7 to 2 times the true error:
+    it includes the systematic errors that so many pictures cannot exclude."""
+    events = watch(film(frames=80))[20:]
+    gaps = np.array([np.array(event["marker"]) - truth(k) for k, event in enumerate(events, start=20)])
     said = np.array([event["sd"] for event in events])
     for k in (0, 1, 2):
-        assert 0.7 <= rms(said[:, k]) / rms(gaps[:, k]) <= 1.5
+        assert 0.7 <= rms(said[:, k]) / rms(gaps[:, k]) <= 2.0
+
+
+#: The upper right corner of a marker [sides].
+CORNER = (0.5, 0.5)
 
 
 def fingers(radius, free=3):
     """A film with a finger over a corner after some free frames."""
-    return film(frames=24, fingers=lambda k: on_corner(k, radius) if k >= free else ())
+    return film(frames=24, fingers=lambda k: over(k, CORNER, radius) if k >= free else ())
 
 
 @cache
@@ -166,6 +166,84 @@ def test_other_ids_are_named():
     assert (names(event), event["text"]) == ("other-ids", "7, 9")
 
 
+def odd(**more):
+    """Markers in frame k of which the moving one is odd."""
+    return lambda k: [both(k)[0], replace(both(k)[1], **more)]
+
+
+def moving(k):
+    """Markers in frame k whose moving one has the velocity of its path [m/s, rad/s]."""
+    return odd(velocity=tuple(12.5 * np.subtract(truth(k + 1), truth(k - 1))))(k)
+
+
+CAUSES = {name for name, _ in MODELS} - {""}
+#: Films with systematic errors, and what the page says of them.
+SYSTEMATIC = {
+    "k1 -0.05": ("lens", film(Optics(k1=-0.05), samples=3)),
+    "k1 -0.12": ("lens", film(Optics(k1=-0.12), samples=3)),
+    "2 mm high": ("not-flat", film(markers=odd(height=0.002), samples=3)),
+    "curled to 300 mm": ("not-flat", film(markers=odd(curl=1 / 0.3), samples=3)),
+    "curled to 150 mm": ("curled", film(markers=odd(curl=1 / 0.15), samples=3)),
+    "shutter of 30 ms": ("shutter", film(Optics(shutter=0.03), markers=moving, samples=3)),
+    "wedge of 3 deg": ("tilted", film(markers=odd(wedge=np.radians(3)), samples=3)),
+    "wedge of 5 deg": ("not-flat", film(markers=odd(wedge=np.radians(5)), samples=3)),
+}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name != "k1 -0.12")) for name in SYSTEMATIC]
+)
+def test_systematic_errors_are_in_the_uncertainty(name):
+    """Requirement: with a systematic error, 95 % of the pictures have a pose. In 99 % of these the error is
+    within three times the uncertainty, or there is a warning; half of them name the cause."""
+    said, made = SYSTEMATIC[name]
+    events = watch(made)
+    seen = [(k, event) for k, event in enumerate(events) if event["do"] == "seen"]
+    gaps = np.array([np.subtract(event["marker"], truth(k)) / event["sd"] for k, event in seen])
+    warned = np.array([bool(CAUSES & set(event["faults"])) for _, event in seen])
+    assert len(seen) >= 0.95 * made.frames
+    assert np.mean((np.abs(gaps) <= 3.0).all(axis=1) | warned) >= 0.99
+    assert np.mean([said in event["faults"] for _, event in seen]) >= 0.5
+    assert rms(gaps) <= 2.5
+
+
+def test_uncertainty_has_teeth(monkeypatch):
+    """Requirement: without the systematic part an error of the lens is far outside the uncertainty."""
+    monkeypatch.setattr(Causes, "error", lambda self, seen: np.zeros(3))
+    events = watch(replace(SYSTEMATIC["k1 -0.12"][1], frames=6))
+    gaps = [np.subtract(event["marker"], truth(k)) / event["sd"] for k, event in enumerate(events)]
+    assert rms(gaps) > 2.5
+
+
+#: What covers the moving marker from the third frame on: place [sides], radius [m] and grey level.
+COVERED = {
+    "thumb": ((0.57, 0.0), 0.014, SKIN),
+    "corner": (CORNER, 0.012, SKIN),
+    "glare": ((0.45, 0.2), 0.009, WHITEST),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COVERED)
+def test_covered_marker_is_followed(name):
+    """Requirement: a thumb on an edge, a finger on a corner, and glare for two seconds leave a pose in all
+    pictures, in 98 % within three times its uncertainty."""
+    place, *how = COVERED[name]
+    events = watch(film(frames=55, fingers=lambda k: over(k, place, *how) if k >= 3 else (), samples=3))
+    gaps = [np.subtract(event["marker"], truth(k)) / event["sd"] for k, event in enumerate(events)]
+    assert np.mean((np.abs(gaps) <= 3.0).all(axis=1)) >= 0.98
+
+
+def test_foreign_square_is_not_followed():
+    """Requirement: a marker that is exchanged under a finger is not followed for more than a second."""
+
+    def markers(k):
+        return [both(0)[0], replace(both(0)[1], number=1 if k < 3 else 9)]
+
+    made = film(frames=32, markers=markers, fingers=lambda k: over(0, CORNER, 0.012) if k >= 3 else ())
+    assert names(watch(made)[-1]) == "lost-1"
+
+
 def test_marker_out_of_plane_is_not_shown_as_right():
     """Requirement: a moving marker 10 mm above the plane is refused or doubted, never given without a
     word."""
@@ -192,7 +270,7 @@ def test_lens_is_seen():
     made, camera = FILMS["lens"]
     events = watch(made)
     assert rms(errors(watch(made, camera))[0]) < rms(errors(events)[0]) / 3
-    assert all("not-flat" in names(event) or event["do"] == "unseen" for event in events)
+    assert names(events[-1]) == "found lens"
 
 
 def test_texture_alone_shows_no_marker():

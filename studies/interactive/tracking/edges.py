@@ -40,8 +40,9 @@ _BELL = np.exp(-0.5 * _NODES**2) / math.sqrt(2.0 * math.pi)
 #: Residual of a station from the line beyond which it is left out, in pixels and in standard deviations; its
 #: neighbours, half covered perhaps, go with it: so many to either side, over all stations.
 OUTLIER_PX, OUTLIER, NEIGHBOURS = 0.15, 3.0, 0.036
-#: Least distance from the line of levels at which a station is covered by something else [grey levels].
-LEAST_SPREAD = 12.0
+#: Distance from the line of levels at which a station is covered by something else, at least and at most
+#: [grey levels]: where half of an edge is covered, the scatter is as large as the difference.
+LEAST_SPREAD, MOST_SPREAD = 12.0, 40.0
 
 
 @lru_cache(maxsize=8)
@@ -163,16 +164,23 @@ def _robust_slope(u: Array, place: Array, good: NDArray[np.bool_]) -> tuple[floa
 
 @njit(cache=True)
 def _line(
-    u: Array, place: Array, good: NDArray[np.bool_], a: float, b: float, least: float, beside: int
+    u: Array,
+    place: Array,
+    good: NDArray[np.bool_],
+    a: float,
+    b: float,
+    least: float,
+    beside: int,
+    most: float = np.inf,
 ) -> tuple[float, float, NDArray[np.bool_]]:
-    """Least-squares line through the good stations near a + b u, within `least` or what their scatter says,
+    """Least-squares line through the good stations near a + b u, within `least` to `most` by their scatter,
     and not `beside` one that is farther; a, b and which (S,) were kept, none where they are too few."""
     kept = good.copy()
     for k in range(3):
         gap = np.abs(place - a - b * u)
         if kept.sum() < 4:
             return a, b, np.zeros_like(kept)
-        now = good & (gap <= max(least, OUTLIER * 1.48 * float(np.median(gap[kept]))))
+        now = good & (gap <= min(most, max(least, OUTLIER * 1.48 * float(np.median(gap[kept])))))
         far = ~now
         for i in range(u.size):
             if far[i]:
@@ -190,7 +198,7 @@ def _line(
 def _smooth(u: Array, level: Array) -> NDArray[np.bool_]:
     """Replace the levels (S,) along an edge by a straight line through those that agree; which they are."""
     every = np.ones(u.size, dtype=np.bool_)
-    a, b, kept = _line(u, level, every, float(np.median(level)), 0.0, LEAST_SPREAD, 0)
+    a, b, kept = _line(u, level, every, float(np.median(level)), 0.0, LEAST_SPREAD, 0, MOST_SPREAD)
     level[:] = a + b * u
     return kept
 

@@ -21,6 +21,8 @@ from studies.kinds import Array
 #: White margin around a marker in its cells.
 MARGIN = 1.5
 WHITE, BLACK, TABLE, SKIN, WHITEST = 225.0, 25.0, 150.0, 105.0, 255.0
+#: Iterations to the points of a raised marker.
+RAISED = 8
 #: Blocks of the frame counter in the upper left corner: side [px], and how many bits.
 BLOCK, COUNTER_BITS = 6, 16
 
@@ -34,6 +36,7 @@ class Optics:
         blur, noise: standard deviations [px], [grey levels]; light: change of brightness across the picture;
         k1: of the lens; mirrored: left and right exchanged; gamma: light, blurred by the lens, becomes a
         value by the power 1/gamma; exposure: of light, what is brighter than the largest value being clipped.
+        shutter: time [s] from the first row of a picture to the last; the middle row is at the frame's time.
     """
 
     width: int = 640
@@ -50,6 +53,7 @@ class Optics:
     mirrored: bool = False
     gamma: float = 2.2
     exposure: float = 1.0
+    shutter: float = 0.0
 
     @property
     def camera(self) -> Camera:
@@ -69,22 +73,47 @@ class Optics:
 
 @dataclass(frozen=True, kw_only=True)
 class Marker:
-    """A square of that id with its centre and turn in the plane (3,) [m, m, rad], its side [m], and height
-    above
-    the plane [m]."""
+    """A square of that id with its centre and turn in the plane (3,) [m, m, rad], and its side [m].
+
+    Attributes:
+        height: of the centre above the plane [m]; wedge: tilt about the marker's x axis [rad]; curl:
+            curvature of the paper about its y axis [1/m]; velocity (3,) of the pose [m/s, m/s, rad/s].
+    """
 
     number: int
     pose: tuple[float, float, float]
     side: float = SIDE
     height: float = 0.0
+    wedge: float = 0.0
+    curl: float = 0.0
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def placed(self, own: Array, delay: Array) -> Array:
+        """Return where points (..., 2) [sides] of the marker are (..., 3) [m] after a `delay` [s]."""
+        x, y = np.moveaxis(self.side * own, -1, 0)
+        up = np.zeros_like(x)
+        if self.curl:
+            x, up = np.sin(self.curl * x) / self.curl, (1.0 - np.cos(self.curl * x)) / self.curl
+        y, up = y * math.cos(self.wedge) - up * math.sin(self.wedge), y * math.sin(self.wedge) + up
+        at, to, angle = (now + rate * delay for now, rate in zip(self.pose, self.velocity, strict=True))
+        cos, sin = np.cos(angle), np.sin(angle)
+        turned = at + cos * x - sin * y, to + sin * x + cos * y, up + self.height
+        return np.asarray(np.stack(np.broadcast_arrays(*turned), axis=-1), dtype=float)
+
+    def own(self, place: Array, delay: Array) -> Array:
+        """Return the points (..., 2) [sides] of a flat marker at places (..., 2) [m] after a `delay` [s]."""
+        at, to, angle = (now + rate * delay for now, rate in zip(self.pose, self.velocity, strict=True))
+        x, y, cos, sin = place[..., 0] - at, place[..., 1] - to, np.cos(angle), np.sin(angle)
+        return np.stack((cos * x + sin * y, cos * y - sin * x), axis=-1) / self.side
 
 
 @dataclass(frozen=True, kw_only=True)
 class Finger:
-    """A disc that covers part of the picture: centre and radius in the plane [m]."""
+    """A disc that covers part of the picture: centre and radius in the plane [m], and its grey level."""
 
     centre: tuple[float, float]
     radius: float = 0.012
+    level: float = SKIN
 
 
 @dataclass(eq=False)
@@ -130,34 +159,38 @@ class Painter:
             _burn_in(done, number)
         return done
 
-    def _plane_of(self, marker: Marker) -> Array:
-        """Homography from the marker's own frame, in sides, to the picture."""
-        x, y, angle = marker.pose
-        c, s = marker.side * math.cos(angle), marker.side * math.sin(angle)
-        own = np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
-        plane = self.optics.plane
-        if marker.height:
-            up = np.cross(*(np.linalg.inv(self.optics.camera.matrix) @ plane[:, :2]).T)
-            plane = plane + np.outer(self.optics.camera.matrix @ up, [0.0, 0.0, marker.height])
-        return np.asarray(plane @ own)
-
     def _marker(self, picture: Array, marker: Marker) -> None:
-        plane = self._plane_of(marker)
         half = 0.5 + MARGIN / BITS
-        where, places = self._area(plane, half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]))
+        late = 0.5 * self.optics.shutter * np.array([[-1.0], [1.0]])
+        ends = marker.placed(half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), late).reshape(-1, 3)
+        where, rows, seen = self._area(self._projected(ends))
+        delay = self.optics.shutter * (rows / self.optics.height - 0.5)
+        plane = np.asarray(np.linalg.inv(self.optics.plane))
+        places = marker.own(project(plane, seen), delay)
+        if marker.height or marker.wedge or marker.curl:  # the points whose pictures are there, by iteration
+            for _ in range(RAISED):
+                at = project(plane, self._projected(marker.placed(places, delay)))
+                places += marker.own(project(plane, seen), delay) - marker.own(at, delay)
         inside = np.abs(places).max(axis=-1) < half
         j, i = np.moveaxis(np.floor((places * [1.0, -1.0] + 0.5) * BITS), -1, 0)
         i, j = (np.clip(each, -1, BITS).astype(int) + 1 for each in (i, j))
         values = np.pad(np.where(cells(marker.number), WHITE, BLACK), 1, constant_values=WHITE)[i, j]
         self._mix(picture, where, values, inside)
 
+    def _projected(self, places: Array) -> Array:
+        """Pictures (..., 2) of places (..., 3) [m], the lens apart."""
+        plane, matrix = self.optics.plane, self.optics.camera.matrix
+        up = matrix @ np.cross(*(np.linalg.inv(matrix) @ plane[:, :2]).T)
+        seen = places @ np.column_stack((plane[:, :2], up)).T + plane[:, 2]
+        return np.asarray(seen[..., :2] / seen[..., 2:])
+
     def _finger(self, picture: Array, finger: Finger) -> None:
         angle = np.linspace(0, 2 * math.pi, 33)
         edge = np.array(finger.centre) + finger.radius * np.column_stack((np.cos(angle), np.sin(angle)))
-        where, places = self._area(self.optics.plane, edge)
-        gap = places - finger.centre
+        where, _, seen = self._area(project(self.optics.plane, edge))
+        gap = project(np.asarray(np.linalg.inv(self.optics.plane)), seen) - finger.centre
         inside = np.hypot(gap[..., 0], gap[..., 1]) < finger.radius
-        self._mix(picture, where, np.full(inside.shape, SKIN), inside)
+        self._mix(picture, where, np.full(inside.shape, finger.level), inside)
 
     def _mix(
         self, picture: Array, where: tuple[slice, slice], values: Array, inside: NDArray[np.bool_]
@@ -170,18 +203,18 @@ class Painter:
         paint = (values * inside).reshape(shape).mean(axis=(1, 3))
         picture[where] = picture[where] * (1.0 - cover) + paint
 
-    def _area(self, plane: Array, outline: Array) -> tuple[tuple[slice, slice], Array]:
-        """Pixels around an outline (P, 2) of a plane, and places (..., 2) of it that their samples see."""
+    def _area(self, outline: Array) -> tuple[tuple[slice, slice], Array, Array]:
+        """Pixels around an outline (P, 2) [px], the lens apart, the rows of their samples, and where (..., 2)
+        they would be without the lens."""
         camera, size = self.optics.camera, (self.optics.width, self.optics.height)
-        seen = project(plane, outline)
-        seen = camera.distorted(seen) if self.optics.k1 else seen
+        seen = camera.distorted(outline) if self.optics.k1 else outline
         left, top = np.clip(np.floor(seen.min(axis=0)).astype(int) - 1, 0, size)
         right, bottom = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 2, 0, size)
         inner = (np.arange(self.samples) + 0.5) / self.samples - 0.5
         x, y = ((np.arange(*ends)[:, None] + inner).ravel() for ends in ((left, right), (top, bottom)))
         samples = np.stack(np.meshgrid(x, y), axis=-1)
-        samples = camera.undistorted(samples) if self.optics.k1 else samples
-        return (slice(top, bottom), slice(left, right)), project(np.asarray(np.linalg.inv(plane)), samples)
+        where, rows = (slice(top, bottom), slice(left, right)), samples[..., 1]
+        return where, rows, camera.undistorted(samples) if self.optics.k1 else samples
 
 
 def _burn_in(picture: Picture, number: int) -> None:

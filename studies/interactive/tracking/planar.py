@@ -29,13 +29,8 @@ BITS = 8
 ITERATIONS = 12
 #: Steps of the central differences in the unknowns of a plane, of sides and radians.
 STEP = 1e-6
-#: Standard deviation of an edge's offset that is expected before the residuals are seen [px], and how many of
-#: them it is worth.
-EXPECTED_PX, WORTH = 0.006, 1.5
-#: Part of it that comes back in every picture, of a marker that stands still on the grid of pixels [px].
-STILL_PX = 0.003
-#: Most residuals of the pictures before that the variance of one rests on.
-MOST_WORTH = 30.0
+#: Root mean square distance of an edge's stations from its middle, over its length.
+SPREAD = (1.0 - 2.0 * INSET) / math.sqrt(12.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,19 +85,22 @@ class Fit:
     Attributes:
         pose: x, y, theta (3,) of the second square's centre in the first one's frame, lengths in sides.
         plane: homography (3, 3) from that frame, in sides, to pixels.
-        rms: of the corners' residuals [px]; sd (3,): standard deviation of the pose.
-        size_ratio: side of the second square over the first one's, and its standard deviation, as the corners
-            say; rms_sized: residual that would be left with that ratio [px].
-        variance: of an edge's offset [px^2], and how many residuals it rests on.
+        rms: of the corners' residuals [px].
+        gap (R,): residuals of the edges' offsets and turns [px]; jacobian (R, K): by the unknowns, those of
+            the pose last; rows (R,): which of the 16 they are.
     """
 
     pose: Array
     plane: Array
     rms: float
-    sd: Array
-    size_ratio: tuple[float, float]
-    rms_sized: float
-    variance: tuple[float, float]
+    gap: Array
+    jacobian: Array
+    rows: NDArray[np.intp]
+
+    @property
+    def spread(self) -> Array:
+        """Standard deviation of the pose (3,) over that of an edge's offset."""
+        return np.sqrt(np.diag(np.linalg.inv(self.jacobian.T @ self.jacobian))[-3:])
 
 
 @cache
@@ -123,12 +121,18 @@ def homography(picture: Array) -> Array:
     return np.asarray(cv2.getPerspectiveTransform(CORNERS.astype(np.float32), picture.astype(np.float32)))
 
 
-def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) -> Fit:
+def fit(
+    corners: Array,
+    camera: Camera | None = None,
+    start: Fit | None = None,
+    seen: NDArray[np.bool_] | None = None,
+) -> Fit:
     """Return the fit to corners (2, 4, 2) [px] of both squares.
 
     Args:
         camera: if it is known; its lens is taken out of the corners first.
         start: a fit of a picture shortly before.
+        seen: which edges (2, 4) are seen; the others do not count.
 
     Raises:
         np.linalg.LinAlgError: corners that are no picture of two squares.
@@ -143,26 +147,18 @@ def fit(corners: Array, camera: Camera | None = None, start: Fit | None = None) 
         plane, pose = start.plane, start.pose.copy()
     chart, known = (_free, (plane / plane[2, 2]).ravel()[:8]) if camera is None else _seen_by(camera, plane)
     known = np.concatenate((known, pose))
-    weigh = _independent(data)
-    solved, jacobian, gap = _least_squares(chart, known, data, weigh)
-    corner_gap = _residual(chart, solved, data)[0]
-    if start is not None and _rms(corner_gap) > 1.0:
-        return fit(corners, camera)
-    freedom = gap.size - solved.size
-    known_variance, worth = (EXPECTED_PX**2, WORTH) if start is None else start.variance
-    variance = (worth * known_variance + float(gap @ gap)) / (worth + freedom)
-    own = jacobian[:, :-1]
-    covariance = np.linalg.inv(own.T @ own) * (variance + STILL_PX**2)
-    ratio, left = _size_ratio(jacobian, gap, freedom)
+    rows = np.arange(16) if seen is None else np.flatnonzero(seen.ravel().repeat(2))
+    solved, jacobian, gap = _least_squares(chart, known, data, _independent(data)[rows])
+    if start is not None and rms(gap) > 1.0:
+        return fit(corners, camera, seen=seen)
     return Fit(
-        pose=solved[-3:],
-        plane=chart(solved[:-3]),
-        rms=_rms(corner_gap),
-        sd=np.sqrt(np.diag(covariance)[-3:]),
-        size_ratio=ratio,
-        rms_sized=_rms(np.asarray(np.linalg.solve(weigh, left))),
-        variance=(variance, min(worth + freedom, MOST_WORTH)),
+        pose=solved[-3:], plane=chart(solved[:-3]), rms=rms(gap), gap=gap, jacobian=jacobian, rows=rows
     )
+
+
+def rms(gap: Array) -> float:
+    """Return the root mean square distance [px] of corners whose edges have residuals `gap` (R,)."""
+    return math.sqrt(4.0 / (1.0 + 4.0 * SPREAD**2) * float(gap @ gap) / (0.5 * gap.size))
 
 
 #: From the unknowns (..., K) of a plane to its homographies (..., 3, 3).
@@ -192,15 +188,13 @@ def _seen_by(camera: Camera, plane: Array) -> tuple[_Chart, Array]:
     return chart, np.array([0.0, 0.0, 0.0, *frame[:, 2]])
 
 
-def _residual(chart: _Chart, known: Array, data: Array, ratio: float = 1.0) -> tuple[Array, Array]:
-    """Residual (16,) [px] and its Jacobian (16, K + 4) in the plane, the pose and the ratio of the sides."""
+def _residual(chart: _Chart, known: Array, data: Array) -> tuple[Array, Array]:
+    """Residual (16,) [px] and its Jacobian (16, K + 3) in the plane and the pose."""
     x, y, angle = known[-3:]
     steps = STEP * np.eye(known.size - 3)
     plane, (ahead, back) = chart(known[:-3]), chart(known[:-3] + np.stack((steps, -steps)))
     slope = (ahead - back) / (2.0 * STEP)
-    cos, sin = math.cos(angle), math.sin(angle)
-    own = ratio * CORNERS
-    turned = own @ np.array([[cos, sin], [-sin, cos]])
+    turned = CORNERS @ turn(angle).T
     points = np.concatenate((CORNERS, turned + np.array([x, y])))
     homogeneous = np.column_stack((points, np.ones(8)))
     image = homogeneous @ plane.T
@@ -208,13 +202,18 @@ def _residual(chart: _Chart, known: Array, data: Array, ratio: float = 1.0) -> t
     by_image = np.zeros((8, 2, 3))
     by_image[:, 0, 0] = by_image[:, 1, 1] = 1.0 / image[:, 2]
     by_image[:, :, 2] = -place / image[:, 2:]
-    jacobian = np.zeros((8, 2, known.size + 1))
-    jacobian[:, :, :-4] = np.einsum("pab,kbc,pc->pak", by_image, slope, homogeneous)
+    jacobian = np.zeros((8, 2, known.size))
+    jacobian[:, :, :-3] = np.einsum("pab,kbc,pc->pak", by_image, slope, homogeneous)
     by_point = by_image[4:] @ plane[:, :2]
-    jacobian[4:, :, -4:-2] = by_point
-    jacobian[4:, :, -2] = np.einsum("pab,pb->pa", by_point, np.column_stack((-turned[:, 1], turned[:, 0])))
-    jacobian[4:, :, -1] = np.einsum("pab,pb->pa", by_point, turned / ratio)
+    jacobian[4:, :, -3:-1] = by_point
+    jacobian[4:, :, -1] = np.einsum("pab,pb->pa", by_point, np.column_stack((-turned[:, 1], turned[:, 0])))
     return (place - data.reshape(8, 2)).ravel(), jacobian.reshape(16, -1)
+
+
+def turn(angle: float) -> Array:
+    """Return the matrix (2, 2) that turns by an angle [rad]."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])
 
 
 def _independent(corners: Array) -> Array:
@@ -224,7 +223,6 @@ def _independent(corners: Array) -> Array:
     A line through stations spread evenly over an edge has a mean offset and a slope with errors of their
     own, so that those of its ends, and with them of neighbouring corners, are not.
     """
-    spread = (1.0 - 2.0 * INSET) / math.sqrt(12.0)
     matrix = np.zeros((16, 16))
     for square in range(2):
         for i in range(4):
@@ -233,39 +231,23 @@ def _independent(corners: Array) -> Array:
             normal = np.array([along[1], -along[0]]) / math.hypot(*along)
             row, at, to = 8 * square + 2 * i, 8 * square + 2 * i, 8 * square + 2 * j
             matrix[row, at : at + 2] = matrix[row, to : to + 2] = normal / 2.0
-            matrix[row + 1, to : to + 2], matrix[row + 1, at : at + 2] = spread * normal, -spread * normal
+            matrix[row + 1, to : to + 2], matrix[row + 1, at : at + 2] = SPREAD * normal, -SPREAD * normal
     return matrix
 
 
 def _least_squares(chart: _Chart, known: Array, data: Array, weigh: Array) -> tuple[Array, Array, Array]:
     """Levenberg and Marquardt's method; the solution, its Jacobian and residual."""
-    gap, full = (weigh @ part for part in _residual(chart, known, data))
+    gap, jacobian = (weigh @ part for part in _residual(chart, known, data))
     damping = 1e-6
     for _ in range(ITERATIONS):
-        jacobian = full[:, :-1]
         normal = jacobian.T @ jacobian
         step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -jacobian.T @ gap)
-        trial, trial_full = (weigh @ part for part in _residual(chart, known + step, data))
+        trial, slope = (weigh @ part for part in _residual(chart, known + step, data))
         before, after = float(gap @ gap), float(trial @ trial)
         if not after <= before:
             damping = max(1e-6, 10.0 * damping)
             continue
-        known, gap, full, damping = known + step, trial, trial_full, 0.1 * damping
+        known, gap, jacobian, damping = known + step, trial, slope, 0.1 * damping
         if before - after <= 1e-9 * before:
             break
-    return known, full, gap
-
-
-def _size_ratio(jacobian: Array, gap: Array, freedom: int) -> tuple[tuple[float, float], Array]:
-    """Ratio of the sides with its standard deviation, and the residual left, to first order about equal
-    sides."""
-    covariance = np.linalg.inv(jacobian.T @ jacobian)
-    step = -covariance @ jacobian.T @ gap
-    left = gap + jacobian @ step
-    variance = (WORTH * EXPECTED_PX**2 + float(left @ left)) / (WORTH + freedom - 1)
-    return (1.0 + float(step[-1]), math.sqrt(variance * float(covariance[-1, -1]))), left
-
-
-def _rms(gap: Array) -> float:
-    """Root of the mean square distance of the corners from where they should be [px]."""
-    return math.sqrt(2.0 * float(np.mean(gap**2)))
+    return known, jacobian, gap

@@ -10,13 +10,20 @@ import numpy as np
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking import planar, squares
+from studies.interactive.tracking.causes import STILL_PX, Causes, View, view
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.squares import Shrinkage
 from studies.kinds import Array
 
-#: Residuals of the fit [px] from which it is doubted, and refused.
-DOUBT_PX, REFUSE_PX = 0.12, 0.25
+#: Residuals of the fit [px] from which it is doubted, and, less that of known causes, refused.
+DOUBT_PX, REFUSE_PX = 0.08, 0.18
+#: Weight of noise alone below which systematic errors are named.
+UNLIKELY = 0.1
+#: Least edges of a marker that are seen.
+EDGES = 3
+#: Share of the cells of a marker that is followed, light or dark as they should be, by which its id is read.
+READ = 0.75
 #: Side [px] below which all pixels are looked at where a marker is missed.
 FAR_PX = 50.0
 #: Longest that a marker is followed by its edges without its id being read [s].
@@ -26,7 +33,7 @@ BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
 #: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
-CLEAR, KEPT = 0.6, 0.3
+CLEAR, KEPT = 0.6, 0.5
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -34,8 +41,6 @@ MARGIN = np.array(
     + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
 )
 WHITEST, CLIPPED = 254, 0.5
-#: Difference of the sides that is named, and how many standard deviations it must be.
-ODD_SIZE, ODD_SIGMA = 0.01, 6.0
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
 
@@ -65,7 +70,7 @@ class Tracker:
         self._detector = cv2.aruco.ArucoDetector(family)
         self._known: dict[int, _Known] = {}
         self._fit: planar.Fit | None = None
-        self._shrinkage = Shrinkage()
+        self._shrinkage, self._causes = Shrinkage(), Causes()
         self._blind_since: float | None = None
         self._mirrored = False
         self._tries = 0
@@ -127,50 +132,88 @@ class Tracker:
             corners = self._shrinkage.taken_out(picture, refined, lit)
             if self._shrinkage.gamma == gamma:
                 break
-        fit = self._fit_to(corners)
-        torn = fit is None or fit.rms > REFUSE_PX
+        size = (picture.shape[1], picture.shape[0])
+        found = self._fit_to(corners, share, size, time)
+        torn = found is None or self._left(found[1]) > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
             for number, predicted in self._predicted(time).items():
                 other = quads | {number: predicted}
                 again, kept = squares.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
-                second = self._fit_to(self._shrinkage.taken_out(picture, again, {}))
-                if second is not None and second.rms <= REFUSE_PX:
-                    refined, share, fit, followed, torn = again, kept, second, {number}, False
+                second = self._fit_to(self._shrinkage.taken_out(picture, again, {}), kept, size, time)
+                if second is not None and self._left(second[1]) <= REFUSE_PX:
+                    refined, share, found, followed, torn = again, kept, second, {number}, False
                     break
-        if followed and (torn or any((share[n] < KEPT).any() for n in followed)):
+        if followed and torn:
             return _unseen(_lost(followed))
-        if fit is None or torn:
-            sized = fit is not None and fit.rms_sized < 0.5 * fit.rms and _odd_sizes(fit)
-            return _unseen("sizes" if sized else "refused")
-        self._remember(refined, followed, time)
+        if found is None:
+            return _unseen("refused")
+        fit, seen = found
+        if torn:
+            alone = Causes()
+            alone.add(seen)
+            self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
+            return _unseen("sizes" if alone.name(0.0) == "sizes" else "refused")
+        if not followed:
+            self._causes.add(seen)
+        for number, corner in np.argwhere((share < KEPT) | np.roll(share < KEPT, 1, axis=1)):
+            refined[number, corner] = self._drawn(fit)[number, corner]  # on an edge that is not seen
+        self._remember(picture, refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, refined, share, followed)
+        return self._seen(picture, fit, seen, refined, share, followed)
 
-    def _fit_to(self, corners: Array) -> planar.Fit | None:
-        try:
-            fit = planar.fit(corners, self.camera, self._fit)
-        except np.linalg.LinAlgError:
+    def _fit_to(
+        self, corners: Array, share: Array, size: tuple[int, int], time: float
+    ) -> tuple[planar.Fit, View] | None:
+        """Return the fit to corners (2, 4, 2) [px] of a picture of a `size` [px], and its view; None where
+        there is none."""
+        if ((share >= KEPT).sum(axis=1) < EDGES).any():
             return None
-        return fit if np.isfinite(fit.pose).all() and np.isfinite(fit.sd).all() else None
+        try:
+            fit = planar.fit(corners, self.camera, self._fit, share >= KEPT)
+            seen = view(fit, size, self._velocity(corners, time), self.camera)
+        except (np.linalg.LinAlgError, ValueError):
+            return None
+        return (fit, seen) if np.isfinite(fit.pose).all() and np.isfinite(seen.error).all() else None
 
-    def _remember(self, corners: Array, followed: set[int], time: float) -> None:
+    def _left(self, seen: View) -> float:
+        """Return the residual [px] of the corners, or that which known causes do not explain."""
+        return min(planar.rms(seen.gap), planar.rms(self._causes.unexplained(seen)))
+
+    def _drawn(self, fit: planar.Fit) -> Array:
+        """Return where the fit has the corners (2, 4, 2) [px]."""
+        moving = planar.CORNERS @ planar.turn(fit.pose[2]).T + fit.pose[:2]
+        seen = planar.project(fit.plane, np.concatenate((planar.CORNERS, moving)))
+        return (seen if self.camera is None else self.camera.distorted(seen)).reshape(2, 4, 2)
+
+    def _velocity(self, corners: Array, time: float) -> Array:
+        """Return the velocity (2, 4, 2) [px/s] of corners since they were last seen, 0 where that is long
+        ago."""
+        velocity = np.zeros((2, 4, 2))
+        for number, known in self._known.items():
+            if 0.0 < time - known.time < 0.3:
+                velocity[number] = (corners[number] - known.corners) / (time - known.time)
+        return velocity
+
+    def _remember(self, picture: Picture, corners: Array, followed: set[int], time: float) -> None:
+        velocity = self._velocity(corners, time)
         for number in (0, 1):
             known, now = self._known.get(number), corners[number]
-            velocity = np.zeros((4, 2))
-            if known is not None and 0.0 < time - known.time < 0.3:
-                velocity = (now - known.corners) / (time - known.time)
-            read = time if number not in followed or known is None else known.read
-            self._known[number] = _Known(corners=now, velocity=velocity, time=time, read=read)
+            read = time
+            if known is not None and number in followed and not _reads(picture, now, number):
+                read = known.read
+            self._known[number] = _Known(corners=now, velocity=velocity[number], time=time, read=read)
 
     def _seen(
-        self, picture: Picture, fit: planar.Fit, refined: Array, share: Array, followed: set[int]
+        self, picture: Picture, fit: planar.Fit, seen: View, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
+        noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=bool(followed)) + STILL_PX**2)
+        error = self._causes.error(seen)
+        doubt = fit.rms > DOUBT_PX or (self._causes.none < UNLIKELY and bool((error > noise).any()))
         faults = {
             "over-exposed": _clipped(picture, fit) > CLIPPED,
             "followed": bool(followed),
-            "not-flat": fit.rms > DOUBT_PX,
+            self._causes.name() or "not-flat": doubt,
             "blurred": bool((share < CLEAR).any()) and not followed,
-            "sizes": _odd_sizes(fit),
         }
         scale = np.array([self.side, self.side, 1.0])
         size = np.hypot(*(refined - np.roll(refined, 1, axis=1)).reshape(-1, 2).T).min()
@@ -179,12 +222,12 @@ class Tracker:
         return {
             "do": "seen",
             "marker": (fit.pose * scale).tolist(),
-            "sd": (np.hypot(fit.sd, sized) * scale).tolist(),
+            "sd": (np.sqrt(noise**2 + error**2 + sized**2) * scale).tolist(),
             "rms": fit.rms,
             "state": "followed" if followed else "found",
             "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
             "quads": self._shrinkage.taken_out(picture, refined, {}).tolist(),
-            "faults": [name for name, seen in faults.items() if seen],
+            "faults": [name for name, wrong in faults.items() if wrong],
         }
 
     def _missing(self, picture: Picture, found: set[int], quads: set[int], time: float) -> dict[str, Any]:
@@ -214,9 +257,15 @@ def _clipped(picture: Picture, fit: planar.Fit) -> float:
     return float(np.mean(picture[there[:, 1], there[:, 0]] >= WHITEST)) if len(there) else 0.0
 
 
-def _odd_sizes(fit: planar.Fit) -> bool:
-    ratio, spread = fit.size_ratio
-    return abs(ratio - 1.0) > max(ODD_SIZE, ODD_SIGMA * spread)
+def _reads(picture: Picture, corners: Array, number: int) -> bool:
+    """Return whether the cells between corners (4, 2) [px] are those of a marker, as far as they are seen."""
+    middle = (np.arange(1, planar.BITS - 1) + 0.5) / planar.BITS - 0.5
+    places = np.stack(np.meshgrid(middle, -middle), axis=-1)
+    at = np.rint(planar.project(planar.homography(corners), places)).astype(int)
+    height, width = picture.shape
+    grey = picture[np.clip(at[..., 1], 0, height - 1), np.clip(at[..., 0], 0, width - 1)].astype(float)
+    light = grey > 0.5 * (grey.min() + grey.max())
+    return float(np.mean(light == planar.cells(number)[1:-1, 1:-1])) >= READ
 
 
 def _lost(numbers: set[int]) -> str:
