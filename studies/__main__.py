@@ -1,4 +1,4 @@
-"""`python -m studies COMMAND ...`: find the command, import it, run it."""
+"""`python -m studies COMMAND ...`, or `crosspivot COMMAND ...`: find the command, import it, run it."""
 
 import inspect
 import os
@@ -15,6 +15,7 @@ from importlib import import_module  # noqa: E402
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.files import forget_stale  # noqa: E402
+from studies.record.source import HOME, ROOT  # noqa: E402
 from studies.registry import COMMANDS, FORMER, PLACES  # noqa: E402
 
 BAD_INPUT = 2
@@ -50,10 +51,10 @@ def _told(words: list[str]) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] in ("studies", "spline_model", "fe_reference"):
             raise  # a fault of this suite, not of its surroundings
-        print(
-            f"studies: the package {error.name} is not installed: run `make setup` and use .venv/bin/python",
-            file=sys.stderr,
-        )
+        remedy = "run `make setup` and use .venv/bin/python"
+        if HOME != ROOT:
+            remedy = f"run `python -m pip install {error.name}`"
+        print(f"studies: the package {error.name} is not installed: {remedy}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("studies: interrupted", file=sys.stderr)
@@ -89,7 +90,8 @@ def _overview() -> Parser:
         prog="python -m studies",
         description="Studies of the cross-axis flexural pivot, by splines and by finite elements.\n\n"
         f"    python -m studies {EXAMPLE}\n\ncommands:\n{lines}",
-        epilog="`python -m studies COMMAND --help` explains a command, with an example.",
+        epilog="`python -m studies COMMAND --help` explains a command, with an example.\n"
+        "After an installation, `crosspivot COMMAND` is a short form of `python -m studies COMMAND`.",
     )
     parser.add_argument(
         "command", choices=list(COMMANDS), metavar="COMMAND", help="one of the commands above"
