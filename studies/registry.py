@@ -37,6 +37,7 @@ COMMANDS: dict[str, str] = {
     "verify": "compute stale studies anew, fresh where all comes out as stored",
     "status": "say which stored results are fresh, stale or missing",
     "compile": "compile the kernels of both models, once",
+    "completion": "print a script that completes commands in bash and zsh",
     "readme": "rewrite the tables of README.md and docs/ from the results",
 }
 #: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
