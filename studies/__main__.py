@@ -28,16 +28,16 @@ EXAMPLE = "solve cross_axis_pivot --control-points 8"
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code, or 2 after one line on the error stream for bad input
-    or a missing package. Where the output's reader has enough, as `head` has, the rest goes nowhere."""
+    or a missing package. If the reader of the output stops, as `head` does, the rest is discarded."""
     try:
         try:
             return _told(list(sys.argv[1:] if arguments is None else arguments))
         finally:
             sys.stdout.flush()  # what is still to be written is written where its failure can be met
     except BrokenPipeError:
-        nowhere = os.open(os.devnull, os.O_WRONLY)
+        discarded = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
-            os.dup2(nowhere, stream.fileno())
+            os.dup2(discarded, stream.fileno())
         return BROKEN_PIPE
 
 
@@ -67,11 +67,12 @@ def _dispatch(words: list[str]) -> int:
         parser.print_help()
         return 0
     if words[0] in FORMER:
-        print(f"studies: {words[0]} is now called {FORMER[words[0]]}", file=sys.stderr)
+        former, name = words[0], FORMER[words[0]]
+        print(f"studies: warning: {former} is now called {name}; version 0.3 ends {former}", file=sys.stderr)
         words = [FORMER[words[0]], *words[1:]]
     name = parser.parse_args(words[:1]).command
     if forget_stale():
-        print("studies: the kernels' source has changed: they are compiled anew", file=sys.stderr)
+        print("studies: the source of the kernels has changed: they are compiled again", file=sys.stderr)
     command, parser = command_of(name)
     return command.run(parser.parse_args(words[1:]))
 

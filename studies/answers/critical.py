@@ -19,7 +19,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.errors import BadInput
 
-#: The effect that is raised, and those that load or lead bodies, which are left out.
+#: The effect that is raised, and those that load or drive bodies, which are removed.
 FORCE = "applied_force"
 LOADS = (FORCE, "applied_moment", "tip_force", "driven_displacement")
 #: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
@@ -132,7 +132,7 @@ def critical_load(
 ) -> CriticalLoad:
     """Return the force at a body's centre, in one direction, at which the design first loses stability.
 
-    Weight and pre-strain act in full; other loads and drives of the case are left out. The spline takes more
+    Weight and pre-strain act in full; other loads and drives of the case are removed. The spline takes more
     control points until the force settles, or those of its settings and a few more; the elements are doubled
     twice and their limit is taken.
 

@@ -95,7 +95,7 @@ def strength(answer: Response) -> _Strength:
 
 
 def _first_yield(answer: Response, share: Array) -> _Yield | None:
-    """Return where the share (S,) of the yield strength is first 1 on the path of an answer; None if nowhere.
+    """Return where the share (S,) of the yield strength is first 1 on the path; None if it never is.
 
     The states between two increments are solved for, with the discretisation of the answer.
     """
@@ -142,7 +142,7 @@ def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int)
 
 
 def _between(places: Array, at: float) -> Array:
-    """Return load factor and rotation (2,) of a place between states: both are linear there where led."""
+    """Return load factor and rotation (2,) of a place between states: both are linear there if prescribed."""
     return np.array([np.interp(at, np.arange(len(places)), column) for column in places.T])
 
 
@@ -166,7 +166,7 @@ def _solved(answer: Response, place: Array) -> Response:
 
 
 def _scaled(parameters: Mapping[str, Mapping[str, Any]], factor: float) -> dict[str, dict[str, Any]]:
-    """Return parameters of effects with the loads and led displacements times a factor."""
+    """Return parameters of effects with the loads and prescribed displacements times a factor."""
     found = {name: dict(values) for name, values in parameters.items()}
     for name, key in SCALED.items():
         if name in found:

@@ -59,7 +59,7 @@ class Problem(Sectioned):
             imply.
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
-            begin and end [s]; None for one that lets go.
+            begin and end [s]; None for a release.
 
     Raises:
         CaseError: a value outside its admissible range.

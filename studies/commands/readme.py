@@ -302,7 +302,7 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _rewritten(path: Path, store: Store) -> str:
-    """Return the text of a file of `BLOCKS` with what stands between its marks made anew from `store`;
+    """Return the text of a file of `BLOCKS` with what stands between its marks made again from `store`;
     BadInput where the marks are missing, or a study was never run."""
     text = path.read_text(encoding="utf-8")
     for name, made in BLOCKS[path].items():

@@ -42,7 +42,7 @@ def test_a_rectangle_that_no_one_named_is_said(tmp_path, command):
     """Without a depth the stress is that of a rectangle, and the answer says so and asks for the depth."""
     (tmp_path / "rod.toml").write_text(rod())
     said = command("solve", tmp_path / "rod.toml").out
-    assert "stress: takes strip as 6.928 mm deep, rectangles of the area and second moment" in said
+    assert "stress: takes strip as 6.928 mm deep, rectangles of the given area and second moment" in said
     assert "section_depth_m" in said
 
 
