@@ -1,4 +1,4 @@
-"""`python -m studies COMMAND ...`: find the command, import it, run it."""
+"""`python -m studies COMMAND ...`, or `crosspivot COMMAND ...`: find the command, import it, run it."""
 
 import inspect
 import os
@@ -15,6 +15,7 @@ from importlib import import_module  # noqa: E402
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.files import forget_stale  # noqa: E402
+from studies.record.source import HOME, ROOT  # noqa: E402
 from studies.registry import COMMANDS, FORMER, PLACES  # noqa: E402
 
 BAD_INPUT = 2
@@ -27,16 +28,16 @@ EXAMPLE = "solve cross_axis_pivot --control-points 8"
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code, or 2 after one line on the error stream for bad input
-    or a missing package. Where the output's reader has enough, as `head` has, the rest goes nowhere."""
+    or a missing package. If the reader of the output stops, as `head` does, the rest is discarded."""
     try:
         try:
             return _told(list(sys.argv[1:] if arguments is None else arguments))
         finally:
             sys.stdout.flush()  # what is still to be written is written where its failure can be met
     except BrokenPipeError:
-        nowhere = os.open(os.devnull, os.O_WRONLY)
+        discarded = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
-            os.dup2(nowhere, stream.fileno())
+            os.dup2(discarded, stream.fileno())
         return BROKEN_PIPE
 
 
@@ -50,10 +51,10 @@ def _told(words: list[str]) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] in ("studies", "spline_model", "fe_reference"):
             raise  # a fault of this suite, not of its surroundings
-        print(
-            f"studies: the package {error.name} is not installed: run `make setup` and use .venv/bin/python",
-            file=sys.stderr,
-        )
+        remedy = "run `make setup` and use .venv/bin/python"
+        if HOME != ROOT:
+            remedy = f"run `python -m pip install {error.name}`"
+        print(f"studies: the package {error.name} is not installed: {remedy}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print("studies: interrupted", file=sys.stderr)
@@ -66,11 +67,12 @@ def _dispatch(words: list[str]) -> int:
         parser.print_help()
         return 0
     if words[0] in FORMER:
-        print(f"studies: {words[0]} is now called {FORMER[words[0]]}", file=sys.stderr)
+        former, name = words[0], FORMER[words[0]]
+        print(f"studies: warning: {former} is now called {name}; version 0.3 ends {former}", file=sys.stderr)
         words = [FORMER[words[0]], *words[1:]]
     name = parser.parse_args(words[:1]).command
     if forget_stale():
-        print("studies: the kernels' source has changed: they are compiled anew", file=sys.stderr)
+        print("studies: the source of the kernels has changed: they are compiled again", file=sys.stderr)
     command, parser = command_of(name)
     return command.run(parser.parse_args(words[1:]))
 
@@ -89,7 +91,8 @@ def _overview() -> Parser:
         prog="python -m studies",
         description="Studies of the cross-axis flexural pivot, by splines and by finite elements.\n\n"
         f"    python -m studies {EXAMPLE}\n\ncommands:\n{lines}",
-        epilog="`python -m studies COMMAND --help` explains a command, with an example.",
+        epilog="`python -m studies COMMAND --help` explains a command, with an example.\n"
+        "After an installation, `crosspivot COMMAND` is a short form of `python -m studies COMMAND`.",
     )
     parser.add_argument(
         "command", choices=list(COMMANDS), metavar="COMMAND", help="one of the commands above"

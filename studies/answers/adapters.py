@@ -68,8 +68,9 @@ def answer_release(
     """Let a design go at rest from a static state and follow the motion.
 
     The start is in equilibrium with the body driven to a rotation, weight and pre-strain in full, and every
-    load and driven displacement at its value times its history at t = 0. Then the rotation is let go, unless
-    the design leads it on, and driven displacements without a history; loads follow their histories.
+    load and driven displacement at its value times its history at t = 0. Then the rotation is released,
+    unless the design prescribes it further, and driven displacements without a history; loads follow their
+    histories.
 
     `wall_s` of the motion is the median time of `repeat` whole calls, as of `answer_static`: the static path
     to the start is part of them, a companion motion is not. `solve_s` is of the steps alone.
@@ -91,7 +92,7 @@ def answer_release(
     """
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
-        raise BadInput(f"bodies: got none, expected a body whose swing is followed; {expected}")
+        raise BadInput(f"bodies: got none, expected a body whose motion is computed; {expected}")
     start, model = design.rotation if start is None else start, model_of(settings)
     how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
     if isinstance(settings, FeSettings):
@@ -128,9 +129,9 @@ def answer_modes(
 ) -> Spectrum:
     """Return the lowest natural modes about a static state, by the settings' model.
 
-    They are of what a release from that state lets go of: the driven rotation, unless it is `held`, and
-    driven displacements without a history. In the state weight, pre-strain, driven displacements and loads
-    are in full.
+    They are of the coordinates that a release from that state frees: the driven rotation, unless it is
+    `held`, and driven displacements without a history. In the state weight, pre-strain, driven displacements
+    and loads are in full.
 
     Args:
         design: the pivot or mechanism.
@@ -159,7 +160,7 @@ def answer_modes(
 
 
 def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
-    """Return a motion that starts in equilibrium; it says so, and where that is unstable.
+    """Return a motion that starts in equilibrium; its message reports this, and an unstable equilibrium.
 
     Not asked where a load or a drive has a history: modes are about the state under full loads.
     """
@@ -174,7 +175,7 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
 
 
 def _drive_of(asked: Asked) -> dict[str, Any]:
-    """Return the model's drive of a rotation that a motion goes on with, by its keyword; none if it lets go.
+    """Return the model's drive of the rotation in a motion, by its keyword; none if the rotation is released.
 
     Raises:
         BadInput: a mechanism without a rotation; InvalidParameter of the model.

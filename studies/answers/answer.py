@@ -81,7 +81,7 @@ class Answer:
 
     @property
     def body(self) -> str | None:
-        """Name of the body that is driven or let go, or may be; None without one."""
+        """Name of the driven or released body; None without one."""
         return self.design.body
 
     @property
@@ -149,7 +149,7 @@ class Answer:
 
     @property
     def rotation(self) -> Array:
-        """(S,) of the body that is driven or let go, counter-clockwise [rad]."""
+        """(S,) of the driven or released body, counter-clockwise [rad]."""
         return self.bodies[str(self.body)][:, 2]
 
     @property

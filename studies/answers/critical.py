@@ -20,7 +20,7 @@ from studies.cases.design import Design
 from studies.cases.effects import GROWING
 from studies.errors import BadInput
 
-#: The effect that is raised; those that load or drive bodies are left out.
+#: The effect that is raised; those that load or drive bodies are removed.
 FORCE = "applied_force"
 #: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
 PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
@@ -132,7 +132,7 @@ def critical_load(
 ) -> CriticalLoad:
     """Return the force at a body's centre, in one direction, at which the design first loses stability.
 
-    Weight and pre-strain act in full; other loads and drives of the case are left out. The spline takes more
+    Weight and pre-strain act in full; other loads and drives of the case are removed. The spline takes more
     control points until the force settles, or those of its settings and a few more; the elements are doubled
     twice and their limit is taken.
 

@@ -170,7 +170,7 @@ def differences(
     """Return the largest difference of quantities of `COMPARED` over the states that both reached, over their
     largest value in `other` [1]; None where there is nothing to compare.
 
-    A path that stopped may end between two states of the other: that one is left out.
+    A path that stopped may end between two states of the other: that state is skipped.
     """
     both = min(len(answer.load_factor), len(other.load_factor))
     same = np.abs(answer.load_factor[:both] - other.load_factor[:both]) < NOTHING

@@ -20,12 +20,12 @@ CARRIED = 0.2
 #: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
 STILL = 1e-16
 NOTHING_MOVES = (
-    "nothing moves: the start is in equilibrium with all that acts; turn a body before it is let go, or give "
-    "a load a history"
+    "nothing moves: the start is in equilibrium with all that acts; rotate a body before its release, or "
+    "give a load a history"
 )
 UNSTABLE = (
     "the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: what moves, if "
-    "anything, has grown from round-off; turn a body a little before it is let go"
+    "anything, has grown from round-off; rotate a body slightly before its release"
 )
 
 
@@ -222,7 +222,7 @@ class Spectrum(Answer):
         turned: rotation of the static state [rad]; held: whether it is held. count: of modes that were asked.
         frequency: (F,) [Hz]; negative where the state is unstable.
         mode_shape: (F, G, P, 2) of the strips at unit modal mass.
-        slide_frequency: frequencies that are left out because they are the discretisation's alone [Hz].
+        slide_frequency: frequencies that are removed because they are the discretisation's alone [Hz].
     """
 
     analysis = "modes"

@@ -88,7 +88,7 @@ def strength(answer: Response) -> _Strength:
 
 
 def _first_yield(answer: Response, share: Array) -> _Yield | None:
-    """Return where the share (S,) of the yield strength is first 1 on the path of an answer; None if nowhere.
+    """Return where the share (S,) of the yield strength is first 1 on the path; None if it never is.
 
     The states between two increments are solved for, with the discretisation of the answer.
     """
@@ -135,7 +135,7 @@ def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int)
 
 
 def _between(places: Array, at: float) -> Array:
-    """Return load factor and rotation (2,) of a place between states: both are linear there where led."""
+    """Return load factor and rotation (2,) of a place between states: both are linear there if prescribed."""
     return np.array([np.interp(at, np.arange(len(places)), column) for column in places.T])
 
 

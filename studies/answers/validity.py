@@ -18,7 +18,7 @@ from studies.cases.design import Design
 if TYPE_CHECKING:
     from studies.answers.response import Response
 
-#: Effects that take in what a plain beam leaves out.
+#: Effects that a plain beam neglects.
 CLAMPED_WIDTH, ANTICLASTIC, ROOTS = "clamped_width", "anticlastic", "root_compliance"
 #: Share of the stiffness that may be missing before it is said [1].
 WORTH_SAYING = 0.01
@@ -119,8 +119,8 @@ def _plate(ratio: float, poisson_ratio: float) -> tuple[float, float]:
 
 
 class _Rule(NamedTuple):
-    """A limit of the model: the sentence that says that a strip lies beyond it, with numbers of `_told_of` in
-    braces; how many times the limit the strip has; and the effect that lifts the limit where it is named."""
+    """A limit of the model: its warning, with numbers of `_told_of` in braces; the ratio of a strip's value
+    to the limit; and the effect that removes the limit."""
 
     says: str
     excess: Callable[[Strip], Any]
@@ -143,58 +143,56 @@ def _beyond(value: Any, limits: tuple[float, float]) -> Any:
     return np.maximum(limits[0] / value, value / limits[1])
 
 
-#: What data alone give away: a slip of units, or dimensions that are exchanged.
+#: Faults that the data alone show: wrong units, or exchanged dimensions.
 DATA = (
     _Rule(
-        "length {length:.3g} m: expected 10 um to 5 m; are millimetres given as metres?",
+        "length = {length:.3g} m: expected 10 um to 5 m (millimetres instead of metres?)",
         lambda s: _beyond(s.length, LENGTHS),
     ),
     _Rule(
-        "Young's modulus {modulus:.3g} Pa: expected 1 MPa to 1300 GPa; is it given in GPa?",
+        "Young's modulus = {modulus:.3g} Pa: expected 1 MPa to 1300 GPa (GPa instead of Pa?)",
         lambda s: _beyond(s.youngs_modulus, MODULI),
     ),
     _Rule(
-        "density {density:.3g} kg/m^3: expected 10 to 23000; is it given in g/cm^3?",
+        "density = {density:.3g} kg/m^3: expected 10 to 23000 (g/cm^3 instead of kg/m^3?)",
         lambda s: _beyond(s.density, DENSITIES),
     ),
     _Rule(
-        "thickness {thickness_mm:.3g} mm, width {width_mm:.3g} mm: expected the thickness, in the plane "
-        "of bending, to be the smaller; are they exchanged?",
+        "thickness = {thickness_mm:.3g} mm, width = {width_mm:.3g} mm: expected the thickness, in the "
+        "plane of bending, to be the smaller value (exchanged?)",
         lambda s: s.thickness / (s.width * (1.0 + ROUND_OFF)),
     ),
     _Rule(
-        f"length over thickness {{slenderness:.3g}}: expected at least {SLENDERNESS:g}, below which it "
-        "is no beam",
+        f"length over thickness = {{slenderness:.3g}}: expected at least {SLENDERNESS:g} for beam theory",
         lambda s: SLENDERNESS * s.thickness_ratio,
     ),
 )
-#: What a beam leaves out, and where its material ends.
+#: Effects that beam theory neglects, and limits of the material.
 MODEL = (
     _Rule(
-        "b/L {b_L:.3g}: clamps over the whole width make it stiffer by about {low:.2g} to {high:.2g} %, "
-        "which is left out",
+        "b/L = {b_L:.3g}: lateral clamping would increase the stiffness by about {low:.2g} to {high:.2g} % "
+        "(enable: --effects=+clamped_width)",
         lambda s: s.clamped[1] / WORTH_SAYING,
         CLAMPED_WIDTH,
     ),
     _Rule(
-        "b^2/(R t) {b2_Rt:.3g}: bent so far, a strip flattens and is stiffer by up to "
-        "{flattened:.2g} %, which is left out",
+        "b^2/(R t) = {b2_Rt:.3g}: anticlastic stiffening would increase the stiffness by up to "
+        "{flattened:.2g} % (enable: --effects=+anticlastic)",
         lambda s: s.flattened / WORTH_SAYING,
         ANTICLASTIC,
     ),
     _Rule(
-        "t/L {t_L:.3g}: strips cut from one block with their bodies are softer by about {roots:.2g} %, "
-        "which is left out; clamped ones are not",
+        "t/L = {t_L:.3g}: monolithic supports would reduce the stiffness by about {roots:.2g} % "
+        "(enable: --effects=+root_compliance; ignore for clamped strips)",
         lambda s: s.turned_roots / WORTH_SAYING,
         ROOTS,
     ),
     _Rule(
-        f"strain {{strain:.3g}} %: expected at most {100 * STRAIN:g} %, up to which the material is "
-        "taken as linear",
+        f"strain = {{strain:.3g}} %: expected at most {100 * STRAIN:g} % for a linear material",
         lambda s: s.strain / STRAIN,
     ),
     _Rule(
-        "stress {stress:.4g} MPa: over the yield strength, {strength:.4g} MPa",
+        "stress = {stress:.4g} MPa: expected at most the yield strength, {strength:.4g} MPa",
         lambda s: s.stress / s.yield_strength,
     ),
 )

@@ -40,7 +40,7 @@ def is_mechanism(document: Mapping[str, Any]) -> bool:
 
 def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:
     """Return the values of a table by the attributes they fill, in SI; an optional key that is not there is
-    left out.
+    omitted.
 
     Args:
         where: file that errors name. keys: of the table. content: what stands in it.

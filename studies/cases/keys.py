@@ -76,15 +76,15 @@ MATERIAL = NAMED, *_VALUES = keys_of(
 )
 ELASTIC = tuple(_VALUES[:-1])
 
-#: Of any path; and of a motion that goes on with the rotation that it starts from: without, it lets go.
+#: Of any path; and of a motion that prescribes the rotation further: without it, the rotation is released.
 _PATH = keys_of(
     "drive",
     ("increments", "increments", INCREMENTS, "", "20", "equal increments of the path"),
     ("order", "order", choice(LOADS_FIRST, TOGETHER), f'"{LOADS_FIRST}"',
      f'"{TOGETHER}"', "loads come on before the rotation and stay, or both grow together"),
-    ("history", "history", rules.HISTORY, "a motion lets go",
+    ("history", "history", rules.HISTORY, "released",
      "[[0, 1], [0.01, 0.5]]", "of a motion that drives the rotation on: its factor over time"),
-    ("held_s", "held", rules.INTERVAL, "a motion lets go at once",
+    ("held_s", "held", rules.INTERVAL, "released at once",
      "[0, 0.01]", "of a motion: from when until when it holds the rotation"),
 )
 
@@ -154,7 +154,7 @@ DRIVE = (
     *keys_of(
         "drive",
         ("body", "body", text("the name of a body"), "the only one there is",
-         '"body"', "the body that is driven, let go, and whose swing is reported"),
+         '"body"', "the body that is driven, released, and whose motion is reported"),
         ("rotation_deg", "rotation", DRIVEN, "none: the bodies follow the loads",
          "20", "that the body is driven to, counter-clockwise"),
     ),

@@ -91,12 +91,12 @@ class Mechanism:
 
     Args:
         strips, bodies: of different names.
-        body: the one that is driven, let go, and whose swing is reported; None where there is no body.
+        body: the one that is driven, released, and whose motion is reported; None where there is no body.
         rotation: that it is driven to [rad]; None: it follows the loads.
         increments: equal increments of the path [1].
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
-            begin and end [s]; None for one that lets go.
+            begin and end [s]; None for a release.
         order: of loads and rotation, "loads first" or "together".
         points: whose displacement is reported.
     """

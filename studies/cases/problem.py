@@ -61,7 +61,7 @@ class Problem(Sectioned):
             it is not known.
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
-            begin and end [s]; None for one that lets go.
+            begin and end [s]; None for a release.
         points: of the body, whose displacement is reported.
 
     Raises:

@@ -200,9 +200,9 @@ class Key:
 
     Args:
         section: table that it stands in; name: in the file; attribute: or parameter that it fills.
-        rule: for its value. default: what holds where it is left out.
+        rule: for its value. default: its meaning if the key is omitted.
         example: a value that a template may show, as it stands in the file.
-        meaning: what it is, in a few words. optional: whether it may be left out.
+        meaning: what it is, in a few words. optional: whether it may be omitted.
     """
 
     section: str

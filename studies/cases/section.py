@@ -62,7 +62,7 @@ class Sectioned:
     def extreme_fibre_strain(self, axial_force: "Array", bending_moment: "Array") -> "Array":
         """Return max |N/(EA) +- M c/(EI)|, the larger magnitude of the two extreme fibres (c: `fibre`).
 
-        Exact for plane sections and small strain; leaves out shear, the strips' initial curvature and the
+        Exact for plane sections and small strain; neglects shear, the strips' initial curvature and the
         clamps' notches. NaN where the outermost fibre is not known.
 
         Args:

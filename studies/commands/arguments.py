@@ -14,6 +14,7 @@ from studies.commands import parser
 from studies.commands.parser import STREAM, Argument, positive, whole_number, writable_file
 from studies.errors import BadInput
 from studies.record.files import PICTURES
+from studies.record.source import HOME
 
 Some = TypeVar("Some", bound=Design)
 
@@ -138,9 +139,9 @@ OUT_FILE = Argument("--out FILE", read=writable_file)
 NAMES = Argument("names NAME", "studies, groups, or all; `list` names them", nargs="+")
 RESULTS = Argument(
     "--results FOLDER",
-    "where tables and figures are, default results/",
+    "folder of tables and figures, default results/ of the clone, or of the current folder without a clone",
     Path,
-    default=Path(__file__).parents[2] / "results",
+    default=HOME / "results",
 )
 
 

@@ -1,20 +1,20 @@
-"""Say what each effect of a scene is worth, and find the cheapest scene within a tolerance.
+"""Report the influence of each effect of a scene, and find the cheapest scene within a tolerance.
 
     python -m studies audit cross_axis_pivot
     python -m studies audit my_pivot.toml --tolerance 1e-2 --json audit.json
 
-Every scene is asked, by the spline model, the static path of the case and then the motion from its end. The
+The spline model solves the static path of the case and the motion from its end for every scene. The
 full scene is that of the case with weight and the rotary inertia of the sections; where one of these makes
-the design unstable at rest, it is left out and a last line says so. One line an effect says how far the
-answer is from the full one's when the effect is left out or replaced by its simpler form, which is
-inextensible strips for stretching and massless strips for their inertia. Changes are of the path over the
+the design unstable at rest, it is removed and a last line reports this. One line per effect contains the
+changes of the answer when the effect is removed or replaced by its simpler form: inextensible strips for
+stretching and massless strips for their inertia. Changes are of the path over the
 travel, of the torque over the largest, of the swing's and the first mode's frequency, and of the part of the
 energy that is lost. Times are of static path and motion together, the full scene's over the line's: above 1
 the line is faster. DOF are those with inertia; the explicit step is the longest stable one of the leapfrog.
-Then comes what planar beams leave out: how path, stiffness at the begin of the rotation, torque and largest
-stress at its end, and first mode change with clamps over the whole width, sections that flatten, roots cut in
-one block, all three, and with shear, which the elements have (--model fe-shear). Exit code 0: done; 2: bad
-input; 3: the full scene has no answer.
+Then come the effects that planar beams neglect: lateral clamping, anticlastic stiffening, monolithic
+supports, all three, and shear, which the elements have (--model fe-shear). Printed are the changes of path,
+of stiffness at the begin of the rotation, of torque and largest stress at its end, and of the first mode.
+Exit code 0: done; 2: bad input; 3: the full scene has no answer.
 """
 
 import argparse
@@ -80,7 +80,7 @@ def _readable(found: Audit) -> Iterator[str]:
     best = found.cheapest
     yield ""
     head = f"{'path':>9}{'stiffness':>11}{'torque':>10}{'stress':>10}{'1st mode':>10}"
-    yield f"{'what planar beams leave out':<28}{head}"
+    yield f"{'neglected by planar beams':<28}{head}"
     for price in found.beyond:
         cells = f"{cell(price['trajectory'], 9)}{cell(price['stiffness'], 11, sign='+')}"
         cells += "".join(cell(price[name], 10, sign="+") for name in ("torque", "stress", "first_mode"))
@@ -93,7 +93,7 @@ def _readable(found: Audit) -> Iterator[str]:
     yield f"cheapest within {found.tolerance:g}: {', '.join(best.variant.effects.names)}"
     yield f"that is: {best.variant.label}"
     yield _line(found, best)
-    yield f"run anew: largest change {best.largest:.2g}, {found.ratio:.2f} times as fast as the full scene"
+    yield f"run again: largest change {best.largest:.2g}, {found.ratio:.2f} times as fast as the full scene"
 
 
 def _line(found: Audit, row: Outcome) -> str:

@@ -3,8 +3,8 @@
     python -m studies case --pivot --out my_design.toml
     python -m studies case --mechanism
 
-Every key that a case may have is in it, with its meaning, its unit and what holds where it is left out;
-docs/cases.md tells the same with the rules. Exit code 0: done; 2: bad input.
+Every key that a case may have is in it, with its meaning, its unit and its default;
+docs/cases.md contains the same with the rules. Exit code 0: done; 2: bad input.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from studies.commands.parser import Argument, command
 from studies.errors import BadInput
 from studies.record.files import write_whole
 
-#: Keys that may be left out and yet are shown in use: a section by its sides, a material by its name.
+#: Optional keys that are nevertheless shown in use: a section by its sides, a material by its name.
 SHOWN = {keys.NAMED.name, *(key.name for key in keys.SIDES), "rotation_deg", "centre_offset_m"}
 #: The effect that the template of a mechanism names beside the usual ones.
 NAMES = "gravity"
@@ -64,9 +64,9 @@ def _template(*, mechanism: bool) -> Iterator[str]:
     mechanism of one strip with a body at its end."""
     if mechanism:
         yield "# A mechanism of strips and bodies: as many [[strips]] and [[bodies]] as it has."
-        yield "# Lines that begin with # may be taken out or put into use."
+        yield "# Lines that begin with # may be deleted or put into use."
     else:
-        yield "# A cross-axis flexural pivot. Lines that begin with # may be taken out or put into use."
+        yield "# A cross-axis flexural pivot. Lines that begin with # may be deleted or put into use."
     for title, rows in (MECHANISM if mechanism else PIVOT).items():
         yield ""
         yield title
@@ -75,13 +75,13 @@ def _template(*, mechanism: bool) -> Iterator[str]:
 
 
 def _template_lines(rows: Iterable[Key], prefix: str = "") -> Iterator[str]:
-    """Yield a line for each key, with what it is; those that may be left out are comments."""
+    """Yield a line for each key, with what it is; optional keys are comments."""
     for key in rows:
         used = not key.optional or key.name in SHOWN
         begin = f"{prefix if used else '# '}{key.name} = {key.example}"
         unit = f" [{key.unit}]" if key.unit not in ("", "1") else ""
         choice = f": {key.admitted}" if key.rule.kind == "choice" else ""
-        default = "" if used else f"; left out: {key.default}"
+        default = "" if used else f"; default: {key.default}"
         yield f"{begin:<{COLUMN}} # {key.meaning}{unit}{choice}{default}"
 
 
@@ -157,7 +157,7 @@ def _tables(tables: dict[str, tuple[Key, ...]]) -> Iterator[str]:
 
 
 def _rows(rows: Iterable[Key]) -> Iterator[str]:
-    yield markdown_head("key", "unit", "rule", "where it is left out", "meaning")
+    yield markdown_head("key", "unit", "rule", "default", "meaning")
     for key in rows:
         default = key.default if key.optional else "refused"
         yield f"| `{key.name}` | {key.unit or '-'} | {key.admitted} | {default} | {key.meaning} |"

@@ -31,7 +31,7 @@ from studies.errors import BadInput
 from studies.record import style
 from studies.record.files import require_writable_folder, write_whole
 from studies.record.progress import Bar, watched
-from studies.record.source import ROOT
+from studies.record.source import HOME
 from studies.record.store import as_csv
 
 #: Accuracies whose count is reported.
@@ -71,7 +71,7 @@ def main(arguments: argparse.Namespace) -> int:
     first, last = arguments.control_points
     form = {name: getattr(arguments, name) for name in ("segments", "measure", "stretch")}
     settings = [SplineSettings(control_points=count, **form) for count in range(first, last + 1)]
-    output = arguments.out or ROOT / "results" / "designs" / Path(arguments.case).stem
+    output = arguments.out or HOME / "results" / "designs" / Path(arguments.case).stem
     require_writable_folder(output)
     try:
         with Bar("finite elements") as bar:

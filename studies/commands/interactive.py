@@ -197,7 +197,7 @@ def _require_extra(name: str) -> None:
 
 
 def _source(arguments: argparse.Namespace):  # type: ignore[no-untyped-def]
-    """Return what makes the pictures, and how the page shall call it."""
+    """Return the source of the pictures, and its name on the page."""
     from studies.interactive.tracking.films import Video, demo_film
 
     if arguments.film is not None:

@@ -6,7 +6,7 @@
 
 Modes are free vibrations about a static state: of a pivot with the body turned to --rotation-deg, 0 unless
 said otherwise; of a mechanism with none turned unless --rotation-deg is given. In that state loads, weight,
-pre-strain and driven displacements act in full. Free is what a release from it lets go of: the rotation,
+pre-strain and driven displacements act in full. A release from it frees these coordinates: the rotation,
 unless it is --held, and driven displacements without a history; the torque and forces that drove them act on
 as they are. A negative frequency is an unstable mode (growth rate over 2 pi), zero is a rigid motion.
 slide_frequency_Hz holds those frequencies that are of the spline's parametrisation alone. Exit code 0: done;

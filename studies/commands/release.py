@@ -6,11 +6,11 @@
 
 The start is at rest in static equilibrium: the body turned to the rotation of the case or of --rotation-deg,
 weight, pre-strain and driven displacements in full, and each load at its value times its history at t = 0, in
-full without a history. Then the rotation is let go, and a driven displacement without a history; one with a
+full without a history. Then the rotation is released, and a driven displacement without a history; one with a
 history goes on holding. So does the rotation where [drive] of the case says when, by `held_s = [begin, end]`,
-and by a `history`, whose change times rotation_deg it is led through from where it then is. Loads go on as
+and by a `history`, whose change times rotation_deg is prescribed from the current rotation. Loads go on as
 value times history(t), constant before its first and after its last time. A mechanism without a rotation
-starts where all of this settles it: under constant loads it stands still, and `message` says so.
+starts where all of this settles it: under constant loads it stands still, and `message` reports this.
 
 Without --duration four swings of the first natural mode at rest are followed, after all histories, or, where
 that mode is unstable, its growth by a factor of 23. Without --step the implicit splines take 256 steps to a
@@ -57,8 +57,8 @@ ANGLES = ("accuracy", "rotation", "time", "space")
 #: Energy in EI/L below which what moves is round-off, whose balance says nothing [1].
 STILL = 1e-15
 
-#: Swings that are followed beyond what the design is led through, and steps in each; what an unstable mode
-#: has of them, pi e-foldings.
+#: Periods that are computed beyond the prescribed motion of the design, and steps in each; an unstable mode
+#: gets pi e-foldings of them.
 SWINGS, STEPS, GROWTH = 4, 256, 0.5
 #: Modes that a step resolves, if they are at most so many times as fast as the first: steps in each period.
 MODES, FASTEST, LEAST_STEPS = 3, 40.0, 40
@@ -82,7 +82,7 @@ LINES = 20
         "the elements (default: none is asked for)"
     ),
     take.REPEAT.but("wall_s is the median of R releases, default 1"),
-    Argument("--no-check", "leave out the companion motions that say how far the motion is resolved"),
+    Argument("--no-check", "omit the companion motions that estimate the resolution"),
     Argument(
         "--most-steps N",
         "explicit steps that are not too many to begin with (finite elements; default 20000000)",
@@ -173,7 +173,7 @@ def _document(answer: Motion) -> dict[str, Any]:
 
 
 def _readable(answers: list[Motion]) -> Iterator[str]:
-    """Yield the lines of a short table: a few of the instants, of the body that was let go."""
+    """Yield the lines of a short table: a few of the instants, of the released body."""
     (answer,) = answers
     yield tell.described(answer)
     last, scale = len(answer.time) - 1, flexural_scale(answer.design)

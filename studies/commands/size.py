@@ -113,7 +113,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     ),
     Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
-    take.OUT_FILE.but("write the optimum there as a case file (default: nowhere)"),
+    take.OUT_FILE.but("write the optimum there as a case file (default: none)"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:

@@ -164,7 +164,7 @@ def _comparison(asked: Question, case: Mapping[str, float], found: Optimum) -> I
     yield f"estimated error of the splines, sized, {points}: {', '.join(told)}"
     if missed := [name for name, error in errors.items() if error > DEFAULT]:
         yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
-    yield from (f"beyond the model: {each}" for each in validity(found.path).outside)
+    yield from (f"warning: {each}" for each in validity(found.path).outside)
     if found.path.message:
         yield found.path.message
 

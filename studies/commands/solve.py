@@ -16,13 +16,13 @@ model remarks on the path, stand below the table. A mechanism without a rotation
 scene. Exit code 0: converged; 2: bad input; 3: not converged, and then the converged part of the path is
 reported with where and why it stopped.
 
-The shift is the distance of the body's point that lies at the strips' crossing at rest from that place. The
+The shift is the displacement of the body point that coincides with the strip crossing at rest. The
 stiffness of the body is the change of forces and moment at its centre by its x, y and turn in the axes of
-the ground, the other two held, loads fixed and drives let go; "x over" and "y over" are those of x and y
+the ground, the other two held, loads fixed and drives released; "x over" and "y over" are those of x and y
 times the square of a strip's length over the stiffness of the rotation. It is shown at some of the states,
-and of all of them in JSON and CSV. With a yield_strength_Pa in the case the answer says how safe it is, and
-from which angle or load on it yields. Several models, as in --model spline,fe, are answered one after
-another, with their largest differences over the path, each in parts of the largest value by the first.
+and of all of them in JSON and CSV. If the case defines `yield_strength_Pa`, the output includes the safety
+factor and the rotation or load at first yield. Several models, as in --model spline,fe, are solved one after
+another, with their largest differences over the path, relative to the largest value of the first model.
 """
 
 import argparse
@@ -216,7 +216,7 @@ def _readable(answer: Response) -> Iterator[str]:
         yield from columns.table(list(_body_columns(answer)))
     yield from tell.strength_told(answer)
     # of yield the strength has told
-    yield from (f"beyond the model: {each}" for each in validity(answer).outside)
+    yield from (f"warning: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
     if answer.converged and answer.message:
         yield answer.message

@@ -5,7 +5,7 @@
     python -m studies sweep DESIGNS.toml --out designs --scheduler tcp://HOST:8786
 
 DESIGNS.toml says which designs, what is asked of each, and what is kept. All but case and [vary] may be
-left out:
+omitted:
 
     case = "cross_axis_pivot"         # comes with the suite, or a file beside this one: "my_pivot.toml"
     model = "spline"                  # spline, fe, fe-shear

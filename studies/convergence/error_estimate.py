@@ -1,8 +1,8 @@
 """How well the spline model estimates its own error when it is asked for an accuracy.
 
 Designs from slender to thick, with the crossing from one end to the other, turned by 20 to 120 degrees, are
-solved to accuracies of 1e-2 to 1e-7; some of them are let go and followed to accuracies of the rotation. The
-true error is that against many more control points (in motion also shorter steps). The effectivity is the
+solved to accuracies of 1e-2 to 1e-7; some of them are released and followed to accuracies of the rotation.
+The true error is that against many more control points (in motion also shorter steps). The effectivity is the
 estimate over the true error: below one it is optimistic. The largest stress converges more slowly than path
 and torque, and its estimate is of the stress in each state; it is judged apart.
 """

@@ -13,7 +13,7 @@ which are the derivatives of the energy
     V = v K0 v / 2 + a^2 / (2 b),   a = u + v K1 v / 2,   b = c - v K2 v,   p = a / b
 
 The model is for deflections up to about a tenth of the length. Exact for small displacements at small axial
-forces; leaves out that a beam's own rotation is large. In motion a beam is the cubic of its end tangents.
+forces; neglects large rotations of the beam itself. In motion a beam is the cubic of its end tangents.
 
 A rotation leaves the place of the body free; it is solved for from rest on.
 

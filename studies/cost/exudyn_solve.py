@@ -134,7 +134,7 @@ class Exudyn(Model):
 
 
 def _hold_at(system: System, start: float) -> None:
-    """Drive the body to `start` [rad] and let go of it there, at rest."""
+    """Drive the body to `start` [rad] and release it there, at rest."""
     count = max(1, int(np.ceil(abs(start) / INCREMENT)))
     asked = _static(system, count, START_TOLERANCE, tuned=True)
     asked.staticSolver.newton.useModifiedNewton = False

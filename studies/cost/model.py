@@ -111,7 +111,7 @@ def steps_of(duration: float, step: float) -> int:
     return max(1, round(duration / step))
 
 
-#: The effects of a scene that all models of the comparison have: what they leave out of these is their error.
+#: The effects of a scene that all models of the comparison have: their error includes neglected ones.
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 

@@ -129,7 +129,7 @@ def _counters(ops: Any, iterations: int) -> dict[str, int]:
 
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
-    """Make nodes, strips and body anew, OpenSees having one model at a time; with masses if it is to move."""
+    """Make nodes, strips and body again: OpenSees has one model at a time. A moving one has masses."""
     ops, at_rest = _loaded(), geometry_of(problem)
     ops.wipe()
     ops.model("basic", "-ndm", 2, "-ndf", 3)

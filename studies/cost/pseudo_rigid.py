@@ -7,7 +7,7 @@ l the crossing point's distance from the moving end over L, and a the strips' in
     d = -(9 l^2 - 9 l + 1) L p^2 / (15 sin(a)),  away from the ground  [m]
 
 where d moves the point of the body that lies at the crossing at rest. Exact for rotations p towards zero
-under a pure couple, K for strips that do not stretch (for l = 1/2 for any); leaves out all that follows in
+under a pure couple, K for strips that do not stretch (for l = 1/2 for any); neglects all that follows in
 p. Source: the line of Haringx and Wittrick, checked against the spline in the tests. In motion the strips
 take the shape of small rotations (a cubic in the arc length) times p: with m, J and mu of body and strips,
 
@@ -30,8 +30,8 @@ is harmonic.
 of length c L in the middle of it, with a pin and a spring k at either end; what is left of the strip is rigid
 with ground or body. THE PUBLISHED COEFFICIENTS WERE NOT FOUND: c and k are fitted to the exact small-angle
 stiffness and centre shift of the pivot (`linear_pivot`), which is not what Jensen and Howell did. For strips
-that cross at mid-length this gives c = 2/3 and k = 2 EI/L. Exact, by that fit, for small rotations; leaves
-out that the real links' springs and lengths change with the load. With q, b the pins' distances from the
+that cross at mid-length this gives c = 2/3 and k = 2 EI/L. Exact, by that fit, for small rotations; neglects
+that the real links' springs and lengths change with the load. With q, b the pins' distances from the
 crossing towards ground and body, p the rotation, a the inclination, in complex numbers,
 
     w = q + b e^(ip),  m = arg(w),  h = acos(cos(a) |w| / (q + b)) - a

@@ -5,8 +5,8 @@ K L/(EI); distance by which the body's point at the crossing moves, over L; larg
 largest less smallest stiffness up to theta over that at rest; loads P L^2/(EI), at that point. All of these
 depend on the two ratios alone where strips are slender, and the table `collapse` says by how much they do
 not. Strain is that of the extreme fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own
-mirror image, so one side tells both. Where the theory ends is what a plain beam leaves out of a strip's
-stiffness.
+mirror image, so one side is enough. The theory is limited by the effects on the stiffness that a plain beam
+neglects.
 """
 
 from dataclasses import replace
@@ -36,7 +36,7 @@ CASE = "cross_axis_pivot"
 #: The charts' grid, the rotations that are drawn, and the increment of a path [deg].
 RATIOS, INCLINATIONS = np.linspace(0.1, 0.9, 33), np.linspace(25.0, 65.0, 17)
 ROTATIONS, INCREMENT = (5.0, 10.0, 15.0, 30.0, 45.0), 2.5
-#: Slenderness L/t of the charts, those that they are compared with, and from where on they shall hold.
+#: Slenderness L/t of the charts, of those that they are compared with, and from which they must hold.
 SLENDER, OTHERS, FROM = 200.0, (15.0, 20.0, 30.0, 50.0, 100.0), 30.0
 #: Width over length and Poisson's ratio, which a beam's answer does not depend on.
 WIDTH, POISSON = 0.1, 0.3
@@ -216,7 +216,7 @@ def _at_crossing(ratio: float, inclination: float) -> Problem:
 
 
 def judged(name: str) -> Answer:
-    """Return where a pivot of the suite lies, and what a beam leaves out of its stiffness over its range."""
+    """Return where a pivot of the suite lies, and the part of its stiffness that a beam neglects."""
     problem = named_case(name)
     answer = answer_static(problem, SplineSettings(control_points=POINTS))
     shear, plain = (
@@ -247,7 +247,7 @@ def _roots(ratio: float) -> float:
     return float(strip.turned_roots)
 
 
-#: Ratio -> what of it a plain beam leaves out of the stiffness, and the range that is searched.
+#: Ratio -> the part of the stiffness that a plain beam neglects, and the range that is searched.
 LEFT_OUT = {
     "width_ratio": (lambda ratio: plate_factors(ratio, POISSON).linear - 1.0, (0.02, 1.5)),
     "thickness_ratio": (_roots, (1e-4, 0.5)),
@@ -256,7 +256,7 @@ LEFT_OUT = {
 
 
 def limits() -> Answer:
-    """Return the ratios at which what a plain beam leaves out is a share of the stiffness."""
+    """Return the ratios at which a plain beam neglects a share of the stiffness."""
     return {
         "limits": [
             {"ratio": name, "share": share, "value": brentq(lambda x, of=of, s=share: of(x) - s, *ends)}
@@ -267,7 +267,7 @@ def limits() -> Answer:
 
 
 def _held(tables: Tables) -> list[dict[str, Any]]:
-    """Return the collapse of each quantity from the slenderness on from which it shall hold."""
+    """Return the collapse of each quantity from the slenderness on from which it must hold."""
     rows = tables["collapse"].query("slenderness >= @FROM", local_dict={"FROM": FROM})
     return [{"quantity": name, "largest": some["largest"].max()} for name, some in rows.groupby("quantity")]
 

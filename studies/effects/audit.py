@@ -34,9 +34,9 @@ class Audit:
 
     Attributes:
         tolerance: allowed change [1]. run: what every scene was asked.
-        full: the full scene, with no change. rows: one effect left out or simplified each.
+        full: the full scene, with no change. rows: one effect removed or simplified each.
         tried: scenes without several effects, for the cheapest.
-        beyond: what planar beams leave out, and the scene too, at its price.
+        beyond: effects that planar beams neglect, and the scene too, with their cost.
         cheapest: the cheapest scene within the tolerance, answered once more; the full one if there is none.
         seconds: median times of the full and of the cheapest scene, in turn in one run [s].
     """
@@ -76,8 +76,8 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     """Answer the full scene and those that leave effects out, and find the cheapest within the tolerance.
 
     The full scene is that of the design with what could matter beside it: weight and the rotary inertia of
-    the sections, but for one of them that alone makes the design unstable, which is a finding: a row says so.
-    Changes are against the full scene.
+    the sections, but for one of them that alone makes the design unstable, which is a finding with a row of
+    its own. Changes are against the full scene.
 
     Raises:
         BadInput: the model refuses the full scene. Unanswered: the full scene has no answer.
@@ -123,7 +123,7 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
 
 
 def _combined(rows: Sequence[Outcome], tolerance: float) -> Iterator[list[str]]:
-    """Yield two and more of the effects that can each be left out."""
+    """Yield two and more of the effects that can each be removed."""
     within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
     names = [row.variant.dropped[0] for row in within]
     always, free = names[:-MOST_COMBINED], names[-MOST_COMBINED:]

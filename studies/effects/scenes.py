@@ -25,7 +25,7 @@ from studies.kinds import Array
 
 #: Effects that a scene may do without but that could matter, with what they need beside them.
 BESIDE = {"section_rotary_inertia": "strip_inertia", "gravity": "bending"}
-#: Effects that cannot be left out for nothing, with their simpler form.
+#: Effects that cannot be removed without a substitute, with their simpler form.
 SIMPLER = {"stretching": "inextensible"}
 #: What goes with an effect when it goes.
 TOGETHER = {"strip_inertia": ("section_rotary_inertia",)}
@@ -38,7 +38,7 @@ class Variant:
     """A scene in place of the full one.
 
     Attributes:
-        dropped: effects of the full scene that were left out or simplified; added: those that were put in
+        dropped: effects of the full scene that were removed or simplified; added: those that were put in
             though the full scene could not have them. effects: of the scene.
     """
 
@@ -84,7 +84,7 @@ CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
 
 
 def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
-    """Return the size of the design's scene in motion, let go from the end of its path.
+    """Return the size of the design's scene in motion, released from the end of its path.
 
     Unknowns are coordinates, axial forces and multipliers of a step's equations, degrees of freedom the
     independent coordinates that have inertia; the highest frequency is that at rest and at the start, where

@@ -27,7 +27,7 @@ from studies.record.style import BLACK, BLUE, GREY, RED, Look
 
 #: The paper's pictures a second.
 PAPER_RATE = 25.0
-#: Frames of the film at which a snapshot is taken, the body let go, and caught.
+#: Frames of the film at which a snapshot is taken, the body released, and re-clamped.
 HELD, RELEASED, CAUGHT = 68, 76, 130
 #: The swing is taken when the body has turned past this to the other side [rad].
 SWUNG = -0.5
@@ -93,7 +93,7 @@ FRAME = "studio.state.track_ms !== undefined"
 
 
 def _snapshots(browser: Any) -> Iterator[dict[str, Any]]:
-    """Yield three snapshots: held, swinging after the release, caught again."""
+    """Yield three snapshots: held, moving after the release, re-clamped."""
     swung = f"{FRAME} && studio.state.mode === 'released' && studio.state.pose[2] < {SWUNG}"
     caught = f"{FRAME} && studio.state.mode === 'held'"
     shots = {"held": (HELD, ""), "released": (RELEASED, swung), "caught": (CAUGHT, caught)}

@@ -101,7 +101,7 @@ def _snapshots(name: str, answer: Response) -> pd.DataFrame:
 def _distance(answer: Response, finest: Response) -> Array:
     """Return (S,) the largest distance [m] of the answer's points from the finest strips, across these.
 
-    What points slide along the strip does not show in a shape and is left out. Exact to second order.
+    Sliding along the strip does not change a shape and is not counted. Exact to second order.
     """
     curve = CubicSpline(finest.stations, finest.solution.shape[: len(answer.rotation)], axis=2)
     gap, along = answer.solution.shape - curve(answer.stations), curve(answer.stations, 1)
@@ -203,7 +203,7 @@ FIG04 = Study(
 """Fig 4 of the paper: the path of the body's centre of mass, and how far each formulation is off it."""
 
 
-#: "Negligible" is read as the width of a line in a printed plot, about this part of the full scale.
+#: "Negligible" is read as the width of a line in a published plot, about this part of the full scale.
 NEGLIGIBLE = 0.03
 #: Quantities of Fig 5, their columns and what stands along their axes.
 OF_FIG05 = {

@@ -248,6 +248,10 @@ class Picture:
             raise BadInput(f"{path}: got this ending, expected .svg, .png or .pdf")
         write_whole(Path(path), style.printed(self.figure, kind))
 
+    def _repr_png_(self) -> bytes:
+        """Return what a notebook shows."""
+        return style.printed(self.figure, "png")
+
 
 def plot(
     solution: Any, design: Any = None, *, name: str = "", yield_strength: float | None = None

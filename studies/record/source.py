@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[2]
+#: Folder of `results/`: the clone, or the caller's folder if the suite is installed from a wheel.
+HOME = ROOT if (ROOT / "pyproject.toml").is_file() else Path()
 PACKAGES = ("spline_model", "fe_reference", "studies", "report")
 #: Modules that only move or draw numbers: results stay fresh when these change.
 WITHOUT_INFLUENCE = ("studies.record", "studies.pictures", "studies.commands")

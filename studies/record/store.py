@@ -24,7 +24,7 @@ from pandas.api.types import is_bool_dtype, is_integer_dtype, is_numeric_dtype
 from studies.cases.design import fingerprint, named_design
 from studies.cases.document import parsed
 from studies.record.files import replace_folder, require_writable_folder, write_whole
-from studies.record.source import ROOT, source_hash
+from studies.record.source import HOME, ROOT, source_hash
 from studies.record.style import rendered
 
 #: Packages whose version can change a number or a figure.
@@ -84,7 +84,7 @@ def _processor() -> str:
 PROVENANCE = "provenance.json"
 
 #: Where the committed results are.
-RESULTS = ROOT / "results"
+RESULTS = HOME / "results"
 
 
 class Store:

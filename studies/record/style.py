@@ -37,7 +37,7 @@ SETTINGS: Any = {
     "legend.frameon": False,
     "svg.hashsalt": "cross-axis flexural pivot",
     "svg.fonttype": "path",
-    # a line may leave out points that move it by less than this [1/72 inch]
+    # a line may omit points that move it by less than this [1/72 inch]
     "path.simplify_threshold": 0.8,
     "savefig.dpi": 120,
 }
@@ -71,7 +71,7 @@ ELEMENTS: dict[str, Look] = {
 
 #: How words of a figure are written, whatever it calls them: a sign for degrees, no unit for a pure number,
 #: and a name for the pivot of the paper's Table 1, since reports have tables of their own.
-WRITTEN = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]", "Table 1": "reference pivot"}
+WRITTEN = {" [1]": "", "[deg]": "[°]", "[1e-4]": "[10⁻⁴]", "Table 1": "benchmark pivot"}
 
 
 #: Stretch forms by colour, measures by line: (stretch, measure) -> look.

@@ -105,7 +105,7 @@ CRITICAL, STOPPED = (
         name: Look(label=label, colour=look.colour, line="", marker=marker, hollow=True)
         for name, look in LOOKS.items()
     }
-    for label, marker in (("critical point", "o"), ("stopped, and says so", "x"))
+    for label, marker in (("critical point", "o"), ("stopped with a message", "x"))
 )
 AXES = {
     questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]", (0.0, 10.0)),

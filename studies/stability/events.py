@@ -1,4 +1,4 @@
-"""Sudden events, and a long run: drives reversed, bodies caught, targets that jump, a million steps."""
+"""Sudden events, and a long run: drives reversed, bodies re-clamped, targets that jump, a million steps."""
 
 import math
 from collections.abc import Iterator
@@ -43,7 +43,7 @@ def _tasks() -> Iterator[tuple[str, str, partial[Found], float]]:
     """Yield case, model, what is asked, and the tolerance."""
     for model, count in EVENTS.items():
         yield "drive reversed again and again", model, partial(_reversals, model, count), BOOKS
-        yield "let go and caught again and again", model, partial(_catches, model, count), BOOKS
+        yield "released and re-clamped again and again", model, partial(_catches, model, count), BOOKS
         yield "target jumps by 60° in a motion", model, partial(_jump_in_motion, model), BOOKS
     for model, settings in verdict.COLUMNS.items():
         jumps = {f"from rest to {degrees:g}°": partial(_jump, settings, degrees) for degrees in JUMPS}
@@ -165,7 +165,7 @@ EVENTS_STUDY = study(
         },
     ),
 )
-"""Sudden events: a drive reversed, a body let go and caught a thousand times, targets that jump."""
+"""Sudden events: a drive reversed, a body released and re-clamped a thousand times, targets that jump."""
 
 LONG_STEP, START_DEG = 5e-5, 30.0
 #: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a

@@ -40,8 +40,8 @@ class _Example:
         length [m]; inclination [rad]; crossing_ratio, slenderness [1]; youngs_modulus [Pa]: of the design;
             the section is square to the eye, of depth L over slenderness.
         control_points: of the model with varied settings [1]; targets: rotations [rad] of a path's legs, in
-            `increments` each; a motion is let go at the first; step: of the motion, over the first period at
-            rest [1]; None asks for a path.
+            `increments` each; a motion is released at the first; step: of the motion, over the first period
+            at rest [1]; None asks for a path.
     """
 
     length: float

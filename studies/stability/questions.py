@@ -108,7 +108,7 @@ def bent_column(degrees: float) -> Frame:
 
 
 def pushed_pivot(depth: float) -> Frame:
-    """Return the pivot of Table 1 with its body's centre led down by `depth` [m], free to turn."""
+    """Return the pivot of Table 1 with its body's centre displaced down by `depth` [m], free to turn."""
     given = named_case()
     effects = Effects(
         names=("bending", "stretching", "driven_displacement"),
@@ -121,7 +121,7 @@ def pushed_pivot(depth: float) -> Frame:
 def _outcomes_of(case: _BucklingCase) -> Answer:
     """Return the outcomes of all models, and the reference: in closed form, or the refined spline.
 
-    It is settled by elements, or by the value in print where they do not reach it.
+    It is settled by elements, or by the published value where they do not reach it.
     """
     refined, check, independent = (case.value(case.arc(each)) for each in (REFINED, CHECK, INDEPENDENT))
     reference = refined if math.isnan(case.exact) else case.exact

@@ -8,10 +8,10 @@
 Every file is written under another name and renamed when it is complete.
 """
 
-import fcntl
 import hashlib
 import json
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -34,6 +34,26 @@ SUITE = "cross-axis-pivot-validation"
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
 #: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
 SOURCES = ("studies.sweep.batch", "studies.sweep.sample")
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Lock a folder for one run; OutputError if another run has it. Windows cannot lock folders."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            reason = "got a folder where another run is at work, expected it to end first"
+            raise OutputError(f"{folder}: {reason}") from None
+        yield
+    finally:
+        os.close(handle)
 
 
 class Folder:
@@ -60,21 +80,13 @@ class Folder:
             OutputError: it cannot be written to, or another run is at work in it.
         """
         files.require_writable_folder(self.root)
-        handle = os.open(self.root, os.O_RDONLY)
-        try:
-            try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                reason = "got a folder where another run is at work, expected it to end first"
-                raise OutputError(f"{self.root}: {reason}") from None
+        with _locked(self.root):
             self._clean()
             if _require_usable(self.root, self._manifest):
                 files.write_whole(
                     self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode()
                 )
             yield
-        finally:
-            os.close(handle)
 
     def missing(self) -> list[int]:
         """Return the numbers of the chunks that are not there yet."""

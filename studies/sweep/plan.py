@@ -187,7 +187,7 @@ def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
 def _put(document: dict[str, Any], key: str, value: Any) -> None:
     """Set one key of a case's document in place; `value` in the file's unit.
 
-    Of effects that a list of effects leaves out the parameters go with them.
+    Parameters of effects that a list does not contain are removed.
     """
     if key == EFFECTS:
         value = NAMES.parse(value)

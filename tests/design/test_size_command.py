@@ -88,7 +88,7 @@ def test_every_start_has_a_row_and_an_end_in_words(capsys):
     rows = out.splitlines()[-8:]
     assert [int(row.split()[0]) for row in rows] == list(range(8))
     assert all(row.endswith(("the least", "an optimum, not the least")) for row in rows)
-    assert "beyond the model: b/L 1: clamps over the whole width" in out
+    assert "warning: b/L = 1: lateral clamping" in out
 
 
 ASKED, LINKAGE = f"{CASE} {' '.join(QUICK)}", "four_bar_of_flexures --objective stress"

@@ -1,6 +1,8 @@
-"""The pages use plain English: no replaced words, and short sentences in README and how-to guides."""
+"""Pages, help and texts of the studies use plain English; README and how-to guides have short sentences."""
 
+import ast
 import re
+from pathlib import Path
 
 import pytest
 
@@ -13,7 +15,7 @@ REPLACED = {
     r"\bbettered\b": "improved",
     r"\bfurthest off\b": "largest deviation",
     r"\bin print\b": "published",
-    r"\blets? (it|the \w+) go\b": "release",
+    r"\blets? (it |the \w+ )?go\b": "release",
     r"\blet go\b": "released",
     r"\bnowhere\b": "never",
     r"\bsays so\b": "prints a message",
@@ -27,7 +29,7 @@ PLAIN = (
     "README.md",
     *(f"docs/{name}.md" for name in ("how_to", "first_hour", "design_a_pivot", "four_designs")),
 )
-PLAIN += tuple(f"docs/{name}.md" for name in ("findings", "limits", "messages", "glossary"))
+PLAIN += tuple(f"docs/{name}.md" for name in ("findings", "limits", "messages", "numerics", "glossary"))
 #: Pages whose sentences are at most so many words long.
 SHORT, LONGEST = ("README.md", "docs/how_to.md"), 30
 
@@ -45,12 +47,31 @@ def test_pages_are_there():
     assert set(PLAIN) <= set(blocks.PAGES)
 
 
+def replaced(text: str) -> dict[str, str]:
+    """Return the words of a text that the glossary or plain English replaces, with the standard ones."""
+    return {word[0]: better for pattern, better in REPLACED.items() for word in re.finditer(pattern, text)}
+
+
 @pytest.mark.parametrize("page", PLAIN)
 def test_words_are_standard_terms(page):
     """No page has a word that the glossary or plain English replaces."""
-    found = {
-        word[0]: better for pattern, better in REPLACED.items() for word in re.finditer(pattern, prose(page))
-    }
+    assert replaced(prose(page)) == {}
+
+
+def sources() -> list[Path]:
+    """Return the modules whose strings follow these rules."""
+    files = (ROOT / "studies").rglob("*.py")
+    return [path for path in sorted(files) if not {"interactive", "published"} & set(path.parts)]
+
+
+def test_help_messages_and_docstrings_use_standard_terms():
+    """No string of the studies, be it help, message or docstring, has a replaced word."""
+    found = {}
+    for path in sources():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            text = node.value if isinstance(node, ast.Constant) else None
+            if isinstance(text, str) and (words := replaced(" ".join(text.split()))):
+                found[f"{path.relative_to(ROOT)}:{node.lineno}"] = words
     assert found == {}
 
 

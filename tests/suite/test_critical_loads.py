@@ -43,7 +43,8 @@ def test_stability_at_zero_force_is_checked_first(name, share, answered):
 def test_the_former_name_prints_the_new_one(command):
     """Requirement: `capacity` still works and prints the new name on the error stream."""
     outcome = command("capacity", FINDS / "heavy_pivot.toml")
-    assert (outcome.code, outcome.err) == (0, "studies: capacity is now called critical-load\n")
+    warning = "studies: warning: capacity is now called critical-load; version 0.3 ends capacity\n"
+    assert (outcome.code, outcome.err) == (0, warning)
 
 
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])

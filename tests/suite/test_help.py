@@ -3,6 +3,7 @@
 import argparse
 import re
 import shutil
+import subprocess
 from functools import cache
 from pathlib import Path
 
@@ -116,6 +117,31 @@ def test_every_option_is_documented(name):
 def test_what_an_option_lacks_is_found(keywords, lack):
     """The check finds options without help, default, unit or the name of their value."""
     assert undocumented(Parser().add_argument("--option", **keywords)) == lack
+
+
+@pytest.mark.skipif(not shutil.which("bash"), reason="bash is not installed")
+@pytest.mark.parametrize(
+    ("before", "word", "completed"),
+    [
+        ("crosspivot", "crit", ["critical-load"]),
+        ("crosspivot solve", "titan", ["titanium_pivot"]),
+        ("crosspivot solve titanium_pivot", "--incr", ["--increments"]),
+        ("crosspivot solve --measure", "", ["material", "spatial", "printed"]),
+        ("crosspivot run", "convergence/el", ["convergence/elements"]),
+    ],
+)
+def test_words_are_completed(before, word, completed, tmp_path):
+    """The script of `completion` completes commands, cases, options, their choices and studies in bash."""
+    assert main(["completion", "--out", str(tmp_path / "script.sh")]) == 0
+    words = [*before.split(), word]
+    folder = tmp_path / "empty"
+    folder.mkdir()
+    asked = (
+        f"source ../script.sh; COMP_WORDS=({before} '{word}'); COMP_CWORD={len(words) - 1}; "
+        f"_crosspivot crosspivot '{word}' {words[-2]}; echo ${{COMPREPLY[@]}}"
+    )
+    done = subprocess.run(["bash", "-c", asked], cwd=folder, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == completed
 
 
 @pytest.mark.parametrize("words", EXAMPLES)

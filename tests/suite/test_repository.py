@@ -35,10 +35,10 @@ def _text(path: Path) -> str:
 
 
 def test_packages_are_all_named():
-    """Every package folder stands in pyproject.toml, which setuptools cannot discover by itself."""
+    """Every package of the wheel is named in pyproject.toml: setuptools cannot discover flat folders."""
     found = {
         ".".join(path.parent.relative_to(ROOT).parts)
-        for top in ("fe_reference", "report", "spline_model", "studies")
+        for top in ("fe_reference", "spline_model", "studies")
         for path in (ROOT / top).rglob("__init__.py")
     }
     assert found == set(PROJECT["tool"]["setuptools"]["packages"])
@@ -121,12 +121,31 @@ def test_figures_stay_small():
 
 
 def test_integration_runs_what_a_user_runs():
-    """Continuous integration calls the Makefile's targets, and the workflow nothing but that script."""
+    """Continuous integration calls the Makefile's targets by one script, and has every version of Python."""
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     assert "make lint" in script
     assert "make test" in script
     assert (ROOT / ".ci" / "run").stat().st_mode & 0o111
-    assert "run: .ci/run" in (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    workflow = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    assert "run: .ci/run" in workflow
+    prefix = "Programming Language :: Python :: "
+    versions = [each.removeprefix(prefix) for each in PROJECT["project"]["classifiers"] if prefix in each]
+    matrix = ", ".join(f'"{each}"' for each in versions)
+    assert workflow.count(f"python: [{matrix}]") == 2
+
+
+def test_version_and_requirements_are_the_same_in_all_files():
+    """The recipe of conda and CITATION.cff have version and dependencies of pyproject.toml."""
+    project = PROJECT["project"]
+    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    run = recipe.partition("  run:\n")[2].partition("\n\n")[0]
+    needs = {line.strip(" -").replace("matplotlib-base", "matplotlib") for line in run.splitlines()}
+    wanted = [*project["dependencies"], f"python{project['requires-python']}"]
+    assert needs == {re.sub(r"(?=>)", " ", each, count=1) for each in wanted}
+    (script,) = (f"{name} = {place}" for name, place in project["scripts"].items())
+    assert f"    - {script}\n" in recipe
+    assert f'  version: "{project["version"]}"\n' in recipe
+    assert f"\nversion: {project['version']}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
 def test_every_folder_says_what_lives_in_it():

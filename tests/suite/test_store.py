@@ -133,14 +133,14 @@ def test_figures_are_as_wide_as_the_page():
 
 def test_figures_write_units_and_the_pivot_in_one_way():
     """Degrees are written by their sign, a pure number without a unit and the pivot of the paper's Table 1 as
-    the reference pivot, whatever a figure calls them."""
+    the benchmark pivot, whatever a figure calls them."""
     with style.applied():
         figure = style.page(4.0, 2.0)
         panel = figure.subplots()
         panel.set(xlabel="rotation [deg]", ylabel="error of the path / travel [1]", title="Table 1, at rest")
         style.rendered(figure, "svg")
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("rotation [°]", "error of the path / travel")
-    assert panel.get_title(loc="left") == "reference pivot, at rest"
+    assert panel.get_title(loc="left") == "benchmark pivot, at rest"
 
 
 def test_a_fresh_result_with_the_same_tables_is_not_written_again(store):

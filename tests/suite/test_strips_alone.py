@@ -33,7 +33,7 @@ def test_modes_of_strips_alone(model, strip, command):
 @pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
 def test_release_of_strips_alone_is_refused(model, strip, refused):
     """A release reports the swing of a body: without one it is refused in one line that says what can be."""
-    text = "studies: bodies: got none, expected a body whose swing is followed; `export"
+    text = "studies: bodies: got none, expected a body whose motion is computed; `export"
     assert refused("release", strip, "--model", model, says=text).startswith(text)
 
 
