@@ -210,8 +210,3 @@ KINDS = (_pivot, _guide, _column, _pivot, _four_bar, _cantilever, _pivot, _three
 def scene(seed: int) -> Design:
     """Return the random scene of a seed; its kind goes round with the seed."""
     return KINDS[seed % len(KINDS)](np.random.default_rng(seed))
-
-
-def described(seed: int) -> str:
-    """Return the scene in a line, complete enough to write it down as a case."""
-    return f"seed {seed}, {KINDS[seed % len(KINDS)].__name__[1:]}: {scene(seed)}"

@@ -14,7 +14,7 @@ LIMIT, BODY_LIMIT = 2e-4, 3e-4
 REFINED = 17
 #: Parts of a length, of a moment and of a modulus that are round-off.
 NOTHING = 1e-9
-QUICK, FEW, MANY = 6, 24, 200
+QUICK, FEW, MANY = 6, 100, 200
 
 
 def solved(design, **how):

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import partial
-from itertools import combinations
 
 import numpy as np
 import pytest
@@ -106,38 +105,3 @@ def test_a_led_body_goes_where_it_is_led_whatever_the_sign_of_the_rotation(rotat
     share = np.linspace(0.0, 1.0, loaded.INCREMENTS + 1)[:, None]
     assert path[:, :2] - path[0, :2] == pytest.approx(share * LOADS[STIFF]["displacement"], abs=1e-12)
     assert path[:, 2] == pytest.approx(share[:, 0] * rotation, abs=1e-12)
-
-
-def pair_apart(kind, pair, rotation, control_points=12):
-    """Largest difference of both models under two loads."""
-    asked = kind(loaded.scene(*pair), rotation, 10)
-    coarse, fine = (loaded.state(asked, FeSettings(elements=count)) for count in (20, 40))
-    found = loaded.state(asked, SplineSettings(control_points=control_points))
-    return max(differences(found, extrapolated(coarse, fine)).values())
-
-
-PAIRS = [pair for pair in combinations(LOADS, 2) if STIFF not in pair]
-LED = [(name, STIFF) for name in LOADS if name not in ("tip_force", STIFF)]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", PAIRS, ids="+".join)
-@pytest.mark.parametrize("degrees", [60, -60, 25, -25])
-def test_pairs_of_loads_agree(pair, degrees):
-    """Requirement: two loads together, to 60 deg either way, agree in pivot and mechanism."""
-    kinds = [loaded.whiskered] if "tip_force" in pair else [loaded.pivot, loaded.whiskered]
-    for kind in kinds:
-        gates.check("loads_pairs", pair_apart(kind, pair, np.radians(degrees)))
-    if (pair, degrees) == (PAIRS[-1], 60):
-        gates.refuse("loads_pairs", partial(pair_apart, loaded.pivot, pair, np.radians(degrees)))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", LED, ids="+".join)
-@pytest.mark.parametrize("degrees", [12, -12, 5, -5])
-def test_led_bodies_under_loads_agree(pair, degrees):
-    """Requirement: a body that is led and loaded, to 12 deg either way, agrees in all quantities."""
-    error = partial(pair_apart, loaded.pivot, pair, np.radians(degrees))
-    gates.check("loads_pairs_led", error())
-    if (pair, degrees) == (LED[0], 12):
-        gates.refuse("loads_pairs_led", error)

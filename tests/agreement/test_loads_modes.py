@@ -1,7 +1,6 @@
 """Natural modes about loaded states, at rotations of either sign, at none and without a drive."""
 
 from functools import partial
-from itertools import combinations
 
 import numpy as np
 import pytest
@@ -56,15 +55,3 @@ def test_modes_about_loaded_states_agree(effect, rotation):
     gates.check(gate, error())
     if effect in ("applied_force", LED) and rotation == -ROTATION:
         gates.refuse(gate, error)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("pair", [pair for pair in combinations(LOADS, 2) if LED not in pair], ids="+".join)
-@pytest.mark.parametrize("degrees", [45, -45])
-def test_modes_under_pairs_of_loads_agree(pair, degrees):
-    """Requirement: the first three modes agree under two loads together, at 45 deg either way."""
-    kind = loaded.whiskered if "tip_force" in pair else loaded.pivot
-    asked = kind(loaded.scene(*pair), float(np.radians(degrees)))
-    gates.check("loads_modes_pairs", apart(asked, control_points=10, meshes=(10, 20)))
-    if (pair, degrees) == (("applied_force", "gravity"), 45):
-        gates.refuse("loads_modes_pairs", partial(apart, asked, meshes=(10, 20)))

@@ -14,7 +14,7 @@ from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from tests import gates
 from tests.agreement import loaded
-from tests.agreement.loaded import LOADS, ROTATION, angle
+from tests.agreement.loaded import LOADS, ROTATION
 
 DURATION, RECORDS = 0.01, 200
 INSTANTS = np.linspace(0.0, DURATION, 21)
@@ -29,9 +29,6 @@ HISTORIES: dict[str, tuple[tuple[tuple[float, float], ...] | None, float]] = {
     "begins late": (((0.002, 0.5), (0.006, 1.0)), 0.5),
     "dropped": (((0.0, 1.0), (0.003, -0.5)), 1.0),
 }
-CASES = [
-    (effect, history) for effect in LOADS for history in (HISTORIES if effect in UNSTEADY else ["constant"])
-]
 #: One history of every load for the quick set, on either side by turns.
 QUICK = [
     ("applied_force", "raised", -ROTATION),
@@ -135,26 +132,11 @@ def test_a_load_is_constant_before_and_after_its_history(settings):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effect, history", CASES)
-@pytest.mark.parametrize("rotation", [2 * ROTATION, -2 * ROTATION, None], ids=angle)
-def test_motions_under_all_histories_agree(effect, history, rotation):
-    """Requirement: both models move alike under every load and history, from rotations twice as large."""
-    if effect == LED and rotation is not None:
-        rotation = 0.5 * rotation
-    design = asked(effect, history, rotation)
-    if history == "constant" and rotation is None:
-        pytest.skip("stands still: see the test of that")
-    gates.check("loads_release_wide", apart(design, meshes=(10, 20)))
-    if effect == "gravity":
-        gates.refuse("loads_release_wide", partial(apart, design))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("settings", [SPLINE, ELEMENTS], ids=lambda s: s.model)
-@pytest.mark.parametrize("effect, history", CASES)
-def test_motions_under_loads_keep_their_energy_books(effect, history, settings):
+@MODELS
+@pytest.mark.parametrize("effect, history, rotation", QUICK)
+def test_motions_under_loads_keep_their_energy_books(effect, history, rotation, settings):
     """Requirement: strain, kinetic and gravity energy gained are the work of the loads."""
-    design = replace(asked(effect, history, -ROTATION), increments=10)
+    design = replace(asked(effect, history, rotation), increments=10)
     gates.check("loads_motion_books", max(released(design, settings).energy_error, 1e-16))
     if effect == "gravity" and settings is ELEMENTS:
         implicit = partial(released, design, settings, integrator="generalised-alpha")

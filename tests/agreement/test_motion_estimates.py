@@ -15,7 +15,8 @@ from studies.answers.models import put
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.commands.arguments import read_design
-from tests.agreement.releases import KINDS, random_release
+from studies.commands.release import _usual
+from tests.agreement.random_scenes import KINDS, scene
 
 #: Instants at which motions are compared.
 INSTANTS = 60
@@ -75,28 +76,35 @@ def hold(estimate: tuple[float, float], true: np.ndarray, doubt: np.ndarray) -> 
             assert told >= LEAST * error
 
 
+#: Scenes that are driven, and are released from where their drive has led them.
+SEEDS = [seed for seed in range(40) if scene(seed).rotation is not None]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(40), ids=[f"{seed} {KINDS[seed % len(KINDS)]}" for seed in range(40)])
-def test_the_estimate_of_a_random_release_covers_its_error(seed, tmp_path):
-    """Pivots, arches, guides, four-bars, bodies in series and free tips, loaded, damped and neither."""
-    design, duration, step = random_release(seed, tmp_path)
+@pytest.mark.parametrize("seed", SEEDS, ids=lambda seed: f"{seed} {KINDS[seed % len(KINDS)].__name__[1:]}")
+def test_the_estimate_of_a_random_release_covers_its_error(seed):
+    """Pivots, four-bars, cantilevers and bodies on three strips, loaded or not, over two swings."""
+    design = scene(seed)
+    swings, step = _usual(design, SplineSettings())
+    duration = 0.5 * swings
     steps = INSTANTS * math.ceil(duration / step / INSTANTS)
     motion = spline(design, None, steps, duration)
     assert motion.status.value == "converged"
     asked = put(design, FeSettings(elements=16), moving=True)
     at = {"start": design.rotation, "body": design.body, "duration": duration, "step": 0.5 * duration / steps}
-    coarse = elements.solve_motion(asked.modelled, integrator="generalised-alpha", samples=steps, **at)
-    found = (
-        motion.moves((len(motion.time) - 1) // INSTANTS),
-        moves(asked.modelled, coarse, (len(coarse.time) - 1) // INSTANTS),
-    )
+    how = {"integrator": "generalised-alpha", "samples": steps, "raise_on_failure": False}
+    coarse = elements.solve_motion(asked.modelled, **how, **at)
+    runs, found = [motion], [motion.moves((len(motion.time) - 1) // INSTANTS)]
+    if coarse.status.value == "converged":  # else it says why
+        runs.append(coarse)
+        found.append(moves(asked.modelled, coarse, (len(coarse.time) - 1) // INSTANTS))
     for more, times in FINER:
         points = (motion.control_points + more[0], motion.control_points + more[1])
         exact, doubt = truth(design, steps, duration, points, times)
         errors = [largest(each, exact) for each in found]
         if all(((doubt <= 0.5 * KNOWN * error) | (error <= NONE)).all() for error in errors):
             break
-    for told, error in zip((motion, coarse), errors, strict=True):
+    for told, error in zip(runs, errors, strict=True):
         hold((told.rotation_error, told.displacement_error), error, doubt)
 
 

@@ -7,7 +7,6 @@ import pytest
 
 import fe_reference
 import spline_model
-from spline_model import swinging_slide_stiffness
 from tests import gates
 from tests.models import refined
 from tests.table_one import BARE
@@ -17,13 +16,8 @@ EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
 #: Width and thickness [m]: Table 1's, and a wide thin strip that flattens as it bends.
 SECTIONS = {"table 1": (0.01, 0.005), "wide": (0.04, 0.0005)}
 INCREMENTS = 18
-#: Explicit steps of 10 and 20 elements [s], below the critical ones, that share instants.
-STEPS = {10: 5e-7, 20: 2e-7}
-
-
 #: Gates without and with roots, which are a smooth profile in the splines and springs in the elements.
 TORQUE = ("section_effects_torque", "section_effects_torque_with_roots")
-SWING = ("section_effects_swing", "section_effects_swing_with_roots")
 
 
 def scene(section, effects):
@@ -51,37 +45,6 @@ def test_models_agree_at_large_rotations(section, effects):
     gates.check(TORQUE[EFFECTS[2] in effects], difference(section, effects))
     if (section, effects) == ("wide", EFFECTS):
         gates.refuse(TORQUE[1], partial(difference, section, effects))
-
-
-def swing_difference(effects, *, control_points=8):
-    """Largest difference of the rotations over 4 ms from 1 rad [rad], of the elements in the limit."""
-    given, release = scene("table 1", effects), {"start": 1.0, "duration": 4e-3}
-    slide = swinging_slide_stiffness(control_points)
-    spline = spline_model.cross_axis_pivot(
-        **BARE, **given, control_points=control_points, slide_stiffness=slide
-    )
-    found = spline_model.solve_release(
-        spline, **release, step=1e-6, records=40, integrator="leapfrog", check=False
-    )
-    assert found.status.value == "converged", found.message
-    coarse, fine = (
-        fe_reference.solve_release(
-            fe_reference.cross_axis_pivot(**BARE, **given, elements=elements),
-            **release,
-            step=step,
-            samples=40,
-        ).rotation
-        for elements, step in STEPS.items()
-    )
-    return float(np.abs(found.rotation - (4.0 * fine - coarse) / 3.0).max())
-
-
-@pytest.mark.parametrize("effects", [*((name,) for name in EFFECTS), EFFECTS], ids="+".join)
-def test_models_swing_alike(effects):
-    """Requirement: with each effect and all, both models let go swing as they do without."""
-    gates.check(SWING[EFFECTS[2] in effects], swing_difference(effects))
-    if effects == ("root_compliance",):
-        gates.refuse(SWING[1], partial(swing_difference, effects))
 
 
 def test_roots_of_a_turned_pivot_vibrate_alike():

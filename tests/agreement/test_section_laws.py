@@ -8,8 +8,7 @@ import spline_model
 from fe_reference import ELEMENTS
 from spline_model import DEFAULT_EFFECTS
 from tests import gates
-from tests.models import BOTH
-from tests.table_one import BARE, SIDES, TABLE_ONE
+from tests.table_one import BARE
 
 #: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
 KNOWN = [
@@ -68,29 +67,6 @@ def test_plate_factors_are_those_of_the_literature(gate, models):
         found = [models.plate_factors(ratio, nu + poisson_ratio) for ratio, nu, *_ in KNOWN]
         factors = np.array([(each.constant, each.linear) for each in found])
         return np.abs(factors - np.array(KNOWN)[:, 2:]).max()
-
-    gates.hold(gate, error)
-
-
-@pytest.mark.parametrize(
-    ("gate", "models", "grid"),
-    [
-        ("spline_clamped_guide", spline_model, {"control_points": 9}),
-        ("spline_clamped_guide", spline_model, {"control_points": 6, "segments": 2}),
-        pytest.param("fe_clamped_guide", fe_reference, {}, marks=SLOW),
-    ],
-)
-def test_clamped_guide_is_as_stiff_as_its_plates(gate, models, grid):
-    """Requirement: a parallel guide is stiffer by f_s than its beams."""
-    given = {"driven_displacement": {"displacement": (0.0, 1e-6)}}
-
-    def error(effects=("clamped_width",), **coarse):
-        guides = [
-            strips(models, 0.4, 1e-5, (-0.5, 0.5), (*given, *more), given, **grid | coarse)
-            for more in ((), effects)
-        ]
-        plain, stiffer = (models.solve_mechanism(each, increments=1).bending_energy[-1] for each in guides)
-        return abs(stiffer / plain / models.plate_factors(0.4, 0.3).linear - 1.0)
 
     gates.hold(gate, error)
 
@@ -168,18 +144,3 @@ def test_roots_are_springs_at_both_clamps(name, models, grid):
         return max(np.abs(apart).max(), np.finfo(float).eps)
 
     gates.hold("spline_roots" if models is spline_model else "roots", error)
-
-
-@BOTH
-def test_sides_make_the_section(models):
-    """Requirement: sides give A = b t and I = b t^3 / 12; printed ones beside them count, rounded."""
-
-    def section(**given):
-        pivot = models.cross_axis_pivot(**given)
-        return pivot.strips[0] if models is fe_reference else pivot.design.strips[0]
-
-    made = section(**BARE, **SIDES)
-    assert made.area == 0.01 * 0.005
-    assert made.second_moment_of_area == pytest.approx(0.01 * 0.005**3 / 12.0, rel=1e-15)
-    both = section(**TABLE_ONE, **SIDES)
-    assert both.second_moment_of_area == TABLE_ONE["second_moment_of_area"]

@@ -2,45 +2,18 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import fe_reference
 from fe_reference import solve_statics as solve_elements
 from spline_model import cross_axis_pivot, solve_statics
-from studies.answers.settings import FeSettings, SplineSettings
-from studies.published.arcs import LIMIT, arc_of
-from studies.published.case import published
-from tests.fe.cases import extrapolated, observed_order
+from tests.fe.cases import extrapolated
 from tests.fe.cases import pivot as fe_pivot
 from tests.frames import opposed
 from tests.gates import hold
 from tests.table_one import TABLE_ONE
 
 pytestmark = pytest.mark.slow
-
-#: Limit loads that the elements reach: between both of Lee's frame load and displacement turn back.
-REACHED = {"williams_toggle": 2, "lees_frame": 1}
-
-
-def limits(name, settings):
-    """Limit loads of a published frame, as many as the elements reach."""
-    arc = arc_of(published(name).frame(), settings)
-    return np.array([arc.critical_load(LIMIT, place) for place in range(REACHED[name])])
-
-
-@pytest.mark.parametrize("name", REACHED)
-def test_limit_loads_agree(name):
-    """Requirement: both models find the same limit loads; those of the elements converge with order two."""
-    found = [limits(name, FeSettings(elements=count)) for count in (10, 20, 40)]
-    assert abs(observed_order(found) - 2.0) < 0.15
-    reference = extrapolated(found)
-
-    def error(control_points=12):
-        spline = limits(name, SplineSettings(control_points=control_points))
-        return float(np.abs(spline / reference - 1.0).max())
-
-    hold(f"limit_loads_{name}", error)
 
 
 def test_first_instability_of_the_pivot_agrees():

@@ -13,7 +13,7 @@ from tests.table_one import SIX, TABLE_ONE
 QUARTER_TURN = math.pi / 2
 INCREMENTS = 20
 #: Newton iterations of the 20-increment path that no change may exceed.
-MOST_ITERATIONS = 45
+MOST_ITERATIONS = 25
 DESIGNS = 200
 
 
@@ -24,12 +24,16 @@ def designs():
 
 @pytest.mark.parametrize("n", [4, 6, 8, 12])
 def test_static_path(benchmark, n):
-    """Requirement: the path to 90 degrees in 20 increments takes 45 Newton iterations or fewer."""
+    """Requirement: the path to 90 degrees in 20 increments takes 25 Newton iterations or fewer, and one
+    evaluation more a state; few states form more than one tangent, as a good prediction needs none."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=n)
     solution = benchmark(solve_statics, pivot, rotation=QUARTER_TURN, increments=INCREMENTS)
-    benchmark.extra_info.update(solution.counters | {"solve_s": solution.seconds["solve"]})
-    assert 0 < solution.counters["newton_iterations"] <= MOST_ITERATIONS
-    assert solution.counters["halved_increments"] == 0
+    counters = solution.counters
+    benchmark.extra_info.update(counters | {"solve_s": solution.seconds["solve"]})
+    assert 0 < counters["newton_iterations"] <= MOST_ITERATIONS
+    assert counters["residual_evaluations"] <= counters["newton_iterations"] + INCREMENTS + 2
+    assert counters["factorisations"] <= MOST_ITERATIONS + 1
+    assert (counters["increments"], counters["halved_increments"]) == (INCREMENTS, 0)
 
 
 def test_multiplier_path(benchmark):
@@ -53,7 +57,7 @@ def test_release(benchmark):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_batch(benchmark, threads):
-    """Requirement: a batch of designs reaches every end, each with 45 iterations or fewer."""
+    """Requirement: a batch of designs reaches every end, each with 25 iterations or fewer."""
     batch = benchmark(
         solve_many,
         designs(),

@@ -11,7 +11,7 @@ from studies.cases.problem import named_case
 from studies.cases.section import of_moments
 from studies.cost import model as models
 from studies.cost.constraint_model import constraint_model
-from studies.cost.model import geometry_of, spline
+from studies.cost.model import spline
 from studies.cost.pseudo_rigid import (
     four_bar,
     linear_pivot,
@@ -20,7 +20,6 @@ from studies.cost.pseudo_rigid import (
     small_angle_stiffness,
     spring,
 )
-from studies.cost.settings import SURROGATES
 from studies.errors import BadInput
 from tests import gates
 
@@ -101,20 +100,6 @@ def test_constants_of_table_1():
 
 
 @pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
-def test_four_bar_keeps_its_links(problem):
-    """Requirement: links keep their length."""
-    p, at_rest = np.linspace(-1.5, 1.5, 13), geometry_of(problem)
-    left = 0.5 * problem.length * (1.0 - link_length(problem))
-    ground = problem.crossing_ratio * problem.length - left
-    body = (1.0 - problem.crossing_ratio) * problem.length - left
-    arm = complex(*(at_rest.centre - at_rest.crossing))
-    moved = (four_bar.law_of(problem)(p).centre - at_rest.crossing) @ (1.0, 1j) - arm * np.exp(1j * p)
-    for direction in at_rest.direction:
-        link = np.abs(moved + (ground + body * np.exp(1j * p)) * complex(*direction))
-        assert link == pytest.approx(ground + body, rel=1e-14)
-
-
-@pytest.mark.parametrize("problem", [CASE, UNEVEN], ids=["Table 1", "uneven"])
 @pytest.mark.parametrize("model", [linear_pivot, four_bar, constraint_model], ids=lambda model: model.name)
 def test_laws_have_their_derivatives(model, problem):
     """Requirement: torque and stiffness are derivatives of the energy along the path, and the inertia of a
@@ -169,28 +154,6 @@ def test_swings_keep_their_energy(model):
         gates.hold("surrogate_energy", lambda step=usual: energy_drift(model, step))
     else:
         gates.check("surrogate_energy", energy_drift(model, usual))
-
-
-def test_pin_joint_swings_harmonically():
-    """Requirement: with constant inertia and stiffness the release is a cosine."""
-    law = pin_joint.law_of(CASE)
-    motion = pin_joint.swing(replace(CASE, rotation=1.0), 0.05, step=1e-5)
-    rest = law(np.zeros(1))
-    omega = math.sqrt(rest.stiffness[0] / rest.inertia[0])
-    assert motion.rotation == pytest.approx(np.cos(omega * motion.time), abs=1e-9)
-
-
-@pytest.mark.parametrize("name", SURROGATES)
-def test_every_surrogate_answers_alike(name):
-    """Requirement: path and motion come in the neutral arrays, with the time of the solver alone."""
-    path = SURROGATES[name].path(CASE)
-    motion = SURROGATES[name].swing(replace(CASE, rotation=0.5), 0.01, step=1e-4)
-    assert (path.rotation.shape, path.centre.shape) == ((21,), (21, 2))
-    assert path.torque.shape == path.stiffness.shape == (21,)
-    assert np.isfinite(path.stiffness).all()
-    assert path.centre[0] == pytest.approx(spline.path(CASE).centre[0], abs=1e-15)
-    assert [*motion.time[[0, -1]], motion.rotation[0]] == pytest.approx([0.0, 0.01, 0.5])
-    assert min(path.solve_s, motion.solve_s) > 0.0
 
 
 @pytest.mark.parametrize(

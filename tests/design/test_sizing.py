@@ -10,15 +10,26 @@ from studies.cases.effects import Effects
 from studies.design.evaluate import CENTRE_SHIFT, STATIONS, STIFFNESS, STRESS, VARIATION, answers, by_elements
 from studies.design.optimise import numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
-from studies.design.question import OF_PIVOT, PivotQuestion, variables_of, varied
-from studies.design.sizing import ANGLE, GRADE, LENGTH, SPRING_STEEL, asked, baseline, toleranced
-from studies.effects.audit import with_sections
+from studies.design.question import PivotQuestion, variables_of, varied
+from studies.design.sizing import (
+    AGAIN,
+    ANGLE,
+    BEAMS,
+    EFFECTS,
+    GRADE,
+    LENGTH,
+    SPRING_STEEL,
+    asked,
+    baseline,
+    toleranced,
+)
 from studies.record.progress import silent
+from studies.record.store import Store
 from tests import gates
 from tests.design.gradients import gradient_error
 
-#: Start of the searches that leads to the best optimum, and one that is twenty times outside.
-BEST, FAR = 1, 2
+#: Start of the searches that is twenty times outside; a bound that stops the narrow strips.
+FAR, STEEPEST = 2, "inclination at its most"
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +58,7 @@ def _quick(task):
     return found
 
 
-@pytest.mark.parametrize("objective", OF_PIVOT)
+@pytest.mark.parametrize("objective", [CENTRE_SHIFT, pytest.param(VARIATION, marks=pytest.mark.slow)])
 def test_jacobian_agrees_with_differences(own, objective):
     """Rows and Jacobian of the programme fit together at a design that is no optimum."""
     task = _task(own, objective, 1.0)
@@ -60,17 +71,18 @@ def test_optimum_of_narrow_strips(own, narrow):
     _, found = narrow
     assert found.violation < 1e-9 and found.residual < 1e-6
     assert found.objective < 0.5 * own[1].largest(CENTRE_SHIFT)
-    assert {each.name for each in found.active} == {
-        "stress",
-        "slenderness",
-        "aspect",
-        "inclination at its most",
-        "stiffness",
-    }
+    assert {each.name for each in found.active} == {"stress", "slenderness", "aspect", STEEPEST, "stiffness"}
     assert found.solved < 20
 
 
-@pytest.mark.parametrize("name", ["stress", "aspect", "slenderness", "stiffness", "inclination at its most"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "stress",
+        "aspect",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("slenderness", "stiffness", STEEPEST)),
+    ],
+)
 def test_price_is_what_another_limit_costs(narrow, name):
     """The price of a constraint foretells the optimum with its limit changed by a thousandth."""
     (task, found), change = narrow, 1e-3
@@ -83,7 +95,7 @@ def test_price_is_what_another_limit_costs(narrow, name):
         "aspect": {"ratios": (task.ratios[0], aspect)},
         "slenderness": {"ratios": (slenderness, task.ratios[1])},
         "stiffness": {"wanted": task.wanted * (1.0 + change)},
-        "inclination at its most": {"variables": (length, steeper, *others)},
+        STEEPEST: {"variables": (length, steeper, *others)},
     }[name]
     moved = _quick(replace(task, **changed)).objective / found.objective - 1.0
     assert moved / change == pytest.approx(price, rel=0.02)
@@ -112,7 +124,8 @@ def test_a_start_is_given_up(monkeypatch):
     assert {total for _, total in told} == {share} and told[-1][0] == share
 
 
-@pytest.mark.parametrize("start", [FAR, pytest.param(5, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("start", [FAR, 5])
 def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
     """Starts far outside end feasible, and at the same optimum when they are moved by 1e-14."""
     task = _task(own)
@@ -124,9 +137,9 @@ def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
 
 
 def test_optimum_holds_in_the_finite_elements(own, narrow):
-    """Objectives and constraints of the quick optimum are those of the elements, and its gradients are
-    those of the answers; splines of fewer control points miss the least variation, which is small."""
-    task, found = narrow
+    """Objectives and constraints of the quick optimum are those of the elements; splines of fewer control
+    points miss the least variation, which is small."""
+    _, found = narrow
     values = [0.080774, 0.767438, 0.9, 0.00174162, 0.0771115]
     steady = _task(own, VARIATION, 1.0).design(np.array(values))
 
@@ -135,10 +148,9 @@ def test_optimum_holds_in_the_finite_elements(own, narrow):
         return _difference(problem, by_spline)
 
     gates.hold("sizing_finite_elements", error)
-    at = variables_of(found.design)
-    gates.hold("sizing_gradients", lambda **steps: gradient_error(task, at, **steps))
 
 
+@pytest.mark.slow
 def test_tolerances_take_the_worst_corner(own):
     """What the tolerances do to a design is the worst of whole solves in all corners of them."""
     design = replace(own[0], increments=2)
@@ -158,23 +170,29 @@ def _difference(problem, found):
     return max(abs(spline[name] / elements[name] - 1.0) for name in spline)
 
 
-@pytest.mark.slow
+def stored(design, basis=BEAMS):
+    """A stored optimum, or Table 1's pivot, as what it was sized."""
+    rows = Store().load_tables("design/sizing")["designs"].set_index(["design", "basis"])
+    return rows.loc[(design, basis)]
+
+
 @pytest.mark.parametrize(
-    ("objective", "gate"), [(CENTRE_SHIFT, "sizing_centre_shift"), (VARIATION, "sizing_variation")]
+    ("gate", "design", "column"),
+    [
+        ("sizing_centre_shift", "least centre shift", "centre_shift_m"),
+        ("sizing_variation", "least variation of stiffness", "variation"),
+    ],
 )
-def test_factor_over_table_one(own, objective, gate):
-    """The best optimum is many times better than Table 1, in both models; other starts end at worse ones."""
-    task, by_start = _task(own, objective, 1.0), {}
-
-    def part(start=BEST):
-        by_start[start] = optimise(task, task.starts(8)[start])
-        assert by_start[start] is not None and by_start[start].converged
-        return by_start[start].objective / own[1].largest(objective)
-
-    gates.hold(gate, part)
-    found = by_start[BEST]
-    gates.check("sizing_finite_elements", _difference(found.design, found.answers))
-    gates.check("sizing_gradients", gradient_error(task, variables_of(found.design)))
+def test_factor_over_table_one(gate, design, column):
+    """The stored optimum is many times better than Table 1 and that of the elements; with clamps over the
+    whole width and roots it misses what was asked, and sized again it meets it."""
+    own = stored("Table 1")
+    gates.hold(gate, lambda **basis: stored(design, **basis)[column] / own[column])
+    gates.check("sizing_finite_elements", stored(design)["error"])
+    there, again = stored(design, EFFECTS), stored(design, AGAIN)
+    for limit in ("stiffness_Nm_per_rad", "largest_stress_Pa"):
+        assert there[limit] > 1.01 * own[limit]
+        assert again[limit] == pytest.approx(own[limit], rel=1e-6)
 
 
 @pytest.mark.slow
@@ -196,40 +214,3 @@ def test_gradients_under_a_sideways_load(own):
     task = _task((start, found))
     gates.check("sizing_gradients", gradient_error(task, variables_of(start)))
     gates.check("sizing_finite_elements", _difference(start, found))
-
-
-@pytest.fixture(scope="module")
-def wide(own):
-    """The least centre shift of wide strips as planar beams, and its task."""
-    task = _task(own, aspect=1.0)
-    found = optimise(task, task.starts(8)[BEST])
-    assert found is not None and found.converged
-    return task, found
-
-
-@pytest.mark.slow
-def test_what_was_sized_as_a_beam_is_off_as_a_plate_and_is_sized_again(wide):
-    """With plate effects and supports the former optimum misses what was asked; a new one meets it."""
-    task, former = wide
-    there = answers(with_sections(former.design)).measured.quantities()
-    assert there["stiffness"] > 1.01 * task.wanted
-    assert there["stress"] > 1.01 * task.allowable_stress
-    new = replace(task, start=with_sections(task.start))
-    found = optimise(new, former.at[:-1])
-    assert found is not None and found.converged
-    assert found.objective < 0.5 * there[CENTRE_SHIFT]
-
-    def part(roots=True):
-        held = [name for name in found.design.effects.names if roots or name != "root_compliance"]
-        tables = {name: table for name, table in found.design.effects.tables.items() if name in held}
-        effects = Effects(names=tuple(held), tables=tables)
-        return _difference(replace(found.design, effects=effects), found.answers)
-
-    gates.hold("sizing_with_roots", part)
-
-
-@pytest.mark.slow
-def test_gradients_with_sections_and_roots(own):
-    """The optimiser's gradients are those of answers with every effect of the third dimension assembled."""
-    start = with_sections(replace(own[0], increments=2))
-    gates.check("sizing_gradients", gradient_error(_task((start, answers(start))), variables_of(start)))

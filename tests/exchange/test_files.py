@@ -17,7 +17,6 @@ from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
-from studies.commands.solve import _frame
 from studies.exchange.formats import COLUMNS, contents, tables
 from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
 
@@ -118,25 +117,6 @@ def test_tables_agree_in_every_format(kind):
     rows = tables(found)["strips"]
     assert len(rows) == found.along.axial_force.size
     assert rows["axial_force_N"].to_numpy() == pytest.approx(found.along.axial_force.ravel())
-
-
-@pytest.mark.parametrize("name", ["large_steel_pivot", "four_bar_of_flexures"])
-def test_states_have_the_columns_of_the_solved_table(name):
-    """What `solve --csv` and the exported table of states both have is the same, row by row; tables are
-    joined by the number of the state, as a load factor stays 1 while a loaded pivot is turned."""
-    design = replace(named_design(name), increments=2)
-    answer = answer_static(design, SplineSettings(control_points=6))
-    found = tables(answer)
-    states, rows = found["states"], _frame([answer])
-    both = [column for column in states if column in rows]
-    assert {"load_factor", "torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa"} <= set(
-        both
-    )
-    assert ("rotation_rad" in both) == (name == "large_steel_pivot")
-    pd.testing.assert_frame_equal(states[both], rows[both], atol=1e-30)
-    assert states["state"].is_unique
-    for table in ("strips", "bodies", "reactions"):
-        assert len(found[table].merge(states, on="state")) == len(found[table])
 
 
 @KINDS

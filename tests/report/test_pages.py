@@ -4,9 +4,6 @@ import numpy as np
 import pypdfium2 as pdfium
 import pytest
 
-from report.build import OUTPUT
-from studies.record.source import ROOT
-
 #: Of a page of A4 [pt]: nothing is nearer to the edge than the running lines leave.
 CLEAR = 40.0
 #: Share of the page that at least is not white.
@@ -99,22 +96,3 @@ def test_file_says_what_it_is(content, pdf):
         "Provenance",
     ):
         assert any(part in title for title in titles), part
-
-
-#: What the report is made of; where any of it is younger than the file, that is of the past and no fault.
-MADE_OF = ("results/**/*.*", "report/**/*.*", "studies/**/*.*", "tests/gates.toml")
-
-
-def test_compiled_file_is_that_of_the_results(content):
-    """A report that was compiled from what now lies here has its fingerprint."""
-    if not OUTPUT.is_file():
-        pytest.skip(f"{OUTPUT.relative_to(ROOT)} was not compiled: `make report`")
-    found = {path for pattern in MADE_OF for path in ROOT.glob(pattern) if "__pycache__" not in path.parts}
-    if max(path.stat().st_mtime for path in found - {OUTPUT}) > OUTPUT.stat().st_mtime:
-        pytest.skip(f"{OUTPUT.relative_to(ROOT)} is of earlier results: `make report`")
-    document = pdfium.PdfDocument(OUTPUT)
-    try:
-        keywords = document.get_metadata_dict()["Keywords"]
-    finally:
-        document.close()
-    assert f"fingerprint {content['fingerprint']}" in keywords, "`make report` compiles it anew"

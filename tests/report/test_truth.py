@@ -2,7 +2,6 @@
 
 import re
 
-import numpy as np
 import pytest
 
 from studies.record.source import ROOT
@@ -12,29 +11,6 @@ from studies.stability.verdict import COLUMNS, DEFAULT, VARIED
 
 def _stored(study, name):
     return Store().load_tables(study)[name]
-
-
-def _number(written):
-    return float(written.partition("\u00a0")[0].rstrip("°"))
-
-
-def test_time_of_a_frame_holds_the_search_for_the_markers(content):
-    """Requirement: the time in the loop is that of tracking and solving, with its target and the verdict."""
-    table = _stored("paper/fig07_interactive", "frames_times")
-    most = np.percentile(table["track_ms"] + table["solve_ms"], 95)
-    written = content["facts"]["fig07.loop"]
-    assert _number(written) == pytest.approx(most, rel=0.01)
-    assert written.endswith(": met)" if most <= 1e3 / 25.0 else ": missed)")
-
-
-def test_rotations_where_a_simple_model_is_nearer_are_counted(content):
-    """Requirement: how often the four-bar's path is nearer than that of the published spline is said."""
-    rows = _stored("cost/surrogates", "errors").set_index(["model", "rotation_rad"])["trajectory"].abs()
-    angles = [angle for angle in rows["four-bar"].index if angle > 0.0]
-    nearer = [a for a in angles if rows["four-bar", a] < rows["n = 4, as the paper", a]]
-    assert _number(content["facts"]["surrogates.nearer"]) == pytest.approx(
-        100.0 * len(nearer) / len(angles), abs=0.5
-    )
 
 
 def test_default_is_counted_by_itself():

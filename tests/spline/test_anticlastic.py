@@ -7,17 +7,15 @@ import spline_model
 from spline_model import (
     DEFAULT_EFFECTS,
     cross_axis_pivot,
-    solve_many,
     solve_mechanism,
     solve_motion,
-    solve_statics,
 )
 from tests.agreement.test_section_laws import strips
 from tests.spline.swings import drift
 from tests.table_one import BARE
 
 CLAMPED = (*DEFAULT_EFFECTS, "clamped_width")
-CURLED, CURLING = (*DEFAULT_EFFECTS, "anticlastic"), (*CLAMPED, "anticlastic")
+CURLING = (*CLAMPED, "anticlastic")
 
 
 def thin_pivot(width, **changed):
@@ -32,32 +30,6 @@ def test_roll_up_reports_the_moment_that_bends_it():
     path = solve_mechanism(made, rotation=0.5, increments=40)
     assert path.bending_moment[-1] == pytest.approx(np.full_like(path.bending_moment[-1], path.torque[-1]))
     assert path.bending_energy[-1] == pytest.approx(path.work[-1], rel=1e-4)
-
-
-def test_curl_never_exceeds_the_plate():
-    """With both effects no strip is stiffer than one that is held flat, and each adds to the other."""
-    flat, torque = 1.0 / (1.0 - BARE["poisson_ratio"] ** 2), []
-    for effects in (DEFAULT_EFFECTS, CLAMPED, CURLED, CURLING):
-        pivot = thin_pivot(0.02, thickness=5e-4, effects=effects)
-        torque.append(solve_statics(pivot, rotation=1.0, increments=4).torque[-1])
-    plain, clamped, curved, both = np.array(torque) / torque[0]
-    assert 1.0 == plain < clamped < curved < both < flat
-
-
-@pytest.mark.parametrize(
-    ("effects", "changed"),
-    [
-        (CLAMPED, {"thickness": 2e-4, "youngs_modulus": 1e11}),
-        (CURLED, {"thickness": 3e-4, "width": 0.02}),
-    ],
-)
-def test_a_batch_has_the_profile_and_the_curl_of_its_designs(effects, changed):
-    """Designs of other sides keep the plate's profile in a batch, as b/L stays, or have their own curl."""
-    alone = thin_pivot(**{"width": 0.01, "effects": effects} | changed)
-    path = solve_statics(alone, rotation=1.0, increments=4)
-    values = {name: [value] for name, value in changed.items()}
-    found = solve_many(thin_pivot(0.01, effects=effects), values, rotation=1.0, increments=4)
-    assert found.torque[0] == pytest.approx(path.torque, rel=1e-9)
 
 
 @pytest.mark.parametrize("step", [5e-5, 1e-3])

@@ -65,15 +65,6 @@ def test_a_design_of_a_batch_that_misses_its_accuracy_is_told():
     assert "strain" in batch.resolution(1)
 
 
-def test_a_number_of_control_points_is_not_estimated():
-    """Requirement: a given number of control points is just that, and no error is claimed."""
-    designs, rotation = spread(2)
-    batch = solve_many(designs, rotation=rotation, increments=4, control_points=6)
-    assert batch.accuracy is None
-    assert (batch.control_points == 6).all()
-    assert np.isnan(batch.errors["torque"]).all()
-
-
 def test_what_a_path_lacks_has_no_error():
     """Requirement: strains that nobody asks for have no estimate, not one of 0; body stiffness and
     energy have theirs."""

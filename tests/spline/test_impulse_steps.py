@@ -7,17 +7,13 @@ import numpy as np
 import pytest
 
 from spline_model import (
-    BodyDesign,
     DrivenRotation,
-    StripDesign,
-    compliant_mechanism,
     impulse_solver,
     solve_impulses,
     solve_motion,
-    swinging_slide_stiffness,
 )
 from tests import gates
-from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, total
+from tests.spline.swings import POLYMER, QUARTER, pivot, total
 from tests.table_one import TABLE_ONE
 
 DAMPED = {
@@ -96,51 +92,6 @@ def test_a_drive_that_begins_and_ends():
 
 
 # ---- more than a pivot ----
-
-
-def chain():
-    """Two bodies one behind the other on strips, with weight and a moment on the outer one."""
-    strips = [
-        StripDesign(name="inner", start=(0.0, 0.0), end=(0.08, 0.0), tip="middle", **SECTION),
-        StripDesign(name="outer", start=(0.1, 0.0), end=(0.18, 0.0), root="middle", tip="end", **SECTION),
-    ]
-    bodies = [
-        BodyDesign(name="middle", centre=(0.09, 0.0), mass=5e-3, moment_of_inertia=2e-6),
-        BodyDesign(name="end", centre=(0.19, 0.0), mass=5e-3, moment_of_inertia=2e-6),
-    ]
-    return compliant_mechanism(
-        strips=strips,
-        bodies=bodies,
-        effects=(
-            "bending",
-            "inextensible",
-            "strip_inertia",
-            "body_inertia",
-            "gravity",
-            "strip_damping",
-            "applied_moment",
-        ),
-        parameters={
-            "strip_damping": {"relaxation_time": 1e-4},
-            "applied_moment": {"body": "end", "moment": 2e-3, "history": ((0.0, 0.0), (0.02, 1.0))},
-        },
-        control_points=5,
-        slide_stiffness=swinging_slide_stiffness(5),
-    )
-
-
-def chain_error(step=1e-4):
-    """Largest difference of the outer body's rotation to the energy-consistent integrator's."""
-    options = {"body": "end", "duration": 0.05, "records": 50}
-    exact = solve_motion(chain(), step=2.5e-5, **options)
-    run = solve_impulses(chain(), step=step, **options)
-    assert np.abs(exact.rotation).max() > 0.1
-    return np.abs(run.rotation - exact.rotation).max()
-
-
-def test_several_bodies_with_weight_load_and_damping():
-    """Requirement: two bodies on damped strips under weight and a growing moment move as elsewhere."""
-    gates.hold("impulse_chain", chain_error)
 
 
 def balance_error(form, step=4e-6):

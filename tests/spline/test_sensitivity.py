@@ -89,8 +89,6 @@ ROOTED = {"parameters": {"root_compliance": {"root": "monolithic"}}}
     ("effects", "grid"),
     [
         (("clamped_width",), {"measure": "spatial", "stretch": "consistent"}),
-        (("clamped_width", "anticlastic"), {"control_points": 7}),
-        (("root_compliance",), ROOTED | {"stretch": "consistent"}),
         (("clamped_width", "anticlastic", "root_compliance"), ROOTED),
     ],
 )

@@ -1,6 +1,5 @@
 """Sequential impulses: order, stability, sweeps and momenta."""
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -87,20 +86,6 @@ def test_work_of_a_picture():
             solves.append(outcome.counters["solves"])
         assert max(solves) <= 30
         assert np.percentile(solves, 95) <= 16
-
-
-def test_forces_of_the_step_before_save_work():
-    """Requirement: a step that begins from the last forces needs fewer linear systems than one without."""
-    solver = impulse_solver(pivot(POLYMER))
-    state, warm, cold = solver.start(QUARTER), 0, 0
-    for _ in range(50):
-        forgetful = state.z.copy()
-        forgetful[len(state.v) :] = 0.0
-        cold += solver.step(replace(state, z=forgetful), 0.01).counters["solves"]
-        outcome = solver.step(state, 0.01)
-        warm += outcome.counters["solves"]
-        state = outcome.state
-    assert warm < 0.9 * cold
 
 
 # ---- sweeps ----

@@ -9,11 +9,10 @@ from spline_model import (
     StripDesign,
     compliant_mechanism,
     cross_axis_pivot,
-    solve_many,
     solve_mechanism,
     solve_statics,
 )
-from tests.table_one import SECTION, SIX, TABLE_ONE
+from tests.table_one import SECTION, SIX
 
 METHODS = ("condensed", "multipliers")
 
@@ -76,21 +75,3 @@ def test_weight_is_in_the_balance_of_moments():
     assert defects[0] < 0.1
     assert defects[1] < 0.3 * defects[0]
     assert defects[2] < 0.3 * defects[1]
-
-
-def test_a_batch_says_what_is_stable():
-    """Requirement: many designs at once give inertia and moment defect of single solves, -1 behind a stop."""
-    designs = [TABLE_ONE, TABLE_ONE | {"crossing_ratio": 0.3}]
-    batch = solve_many(designs, rotation=2.5, increments=25, control_points=4)
-    single = solve_statics(
-        cross_axis_pivot(**TABLE_ONE, control_points=4),
-        rotation=2.5,
-        increments=25,
-        check=False,
-        raise_on_failure=False,
-    )
-    done = batch.states[0]
-    assert 1 < done < 26
-    assert (batch.inertia[0, :done] == 0).all()
-    assert (batch.inertia[0, done:] == -1).all()
-    assert np.allclose(batch.moment_defect[0, :done], single.moment_defect[:done], rtol=1e-6)

@@ -1,14 +1,12 @@
 """The load that a pivot bears: Euler's and Haringx' closed forms, both models, and the command that tells."""
 
 import cmath
-import json
 import math
 from dataclasses import replace
 
 import pytest
 from scipy.optimize import brentq
 
-from studies.__main__ import main
 from studies.answers.adapters import answer_static
 from studies.answers.critical import critical_load as capacity
 from studies.answers.settings import FeSettings, SplineSettings
@@ -102,16 +100,3 @@ def test_pulled_through_the_crossing_it_gives_way_in_tension(settings):
     found = capacity(loaded(0.5, 1.0), settings, direction=-DOWN)
     expected = 5.757 * RIGIDITY / LENGTH**2 * 2.0 * math.sin(INCLINATION)
     assert found.force == pytest.approx(expected, rel=2e-4)  # the digits that are known
-
-
-def test_command_tells_the_capacity(capsys):
-    """Requirement: the command names force, rotation held or free, error and difference, and has JSON."""
-    words = ["critical-load", "spring_steel_pivot", "--model", "spline,fe", "--held"]
-    assert main(words) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[2].startswith("force at -90 deg, rotation held: buckles at ")
-    assert lines[-1].startswith("fe differs from spline by ")
-    assert main([*words, "--json", "-"]) == 0
-    one, other = json.loads(capsys.readouterr().out)["answers"]
-    assert one["critical_load_N"] == pytest.approx(other["critical_load_N"], rel=1e-5)
-    assert (one["held"], one["kind"], one["status"]) == (True, "bifurcation", "converged")

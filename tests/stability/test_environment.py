@@ -60,7 +60,7 @@ def test_surroundings_do_not_change_the_defaults(command, variables, same, tmp_p
         np.testing.assert_allclose(other[name], one[name], rtol=0.0, atol=bound, err_msg=name)
 
 
-@pytest.mark.parametrize("settings", [SplineSettings(), FeSettings()], ids=["spline", "elements"])
+@pytest.mark.parametrize("settings", [SplineSettings(), pytest.param(FeSettings(), marks=pytest.mark.slow)])
 def test_order_of_strips_and_bodies_does_not_matter(settings):
     """Requirement: a linkage whose strips and bodies are listed backwards has the same path and modes."""
     given = replace(named_design("four_bar_of_flexures"), increments=4)

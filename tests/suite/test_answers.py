@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from spline_model import solve_impulses
-from studies.answers.adapters import answer_release, answer_static
+from studies.answers.adapters import answer_static
 from studies.answers.answer import centre_shift
 from studies.answers.metrics import (
     extrapolate,
@@ -20,10 +19,7 @@ from studies.answers.metrics import (
     richardson,
     trajectory_error,
 )
-from studies.answers.models import put
-from studies.answers.motion import Motion
-from studies.answers.reference import SWING_MESHES, SolvedMotion, limit_of_swings, rotation_error
-from studies.answers.settings import FeSettings, SplineSettings
+from studies.answers.settings import FeSettings
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
 from tests import gates
@@ -137,63 +133,3 @@ def test_statics_alone_implies_the_frequency_of_an_oscillator(cubic, amplitude):
     gates.check("quasi_static_frequency", implied(cubic, amplitude))
     if cubic:
         gates.refuse("quasi_static_frequency", partial(implied, cubic, amplitude))
-
-
-def test_limit_of_swings_removes_the_error_of_the_mesh():
-    """Swings whose rotation is off by h^2 and h^4 have the exact one as limit, and an uncertainty."""
-    instants = np.linspace(0.0, 0.05, 401)
-    swing = answer_release(TABLE_1, FeSettings(elements=2), duration=1e-5)
-    energies = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
-    arrays = {name: np.ones_like(instants) for name in energies} | {"time": instants}
-    levels = []
-    for elements in SWING_MESHES:
-        h = 1.0 / elements
-        rotation = np.cos(500.0 * instants) * (1.0 + 3.0 * h**2 + 7.0 * h**4)
-        bodies = {"body": np.stack((rotation, 2.0 * rotation, rotation), axis=1)}
-        levels.append(
-            dataclasses.replace(
-                swing, solution=SimpleNamespace(settings={"elements": elements}, bodies=bodies, **arrays)
-            )
-        )
-    limit = limit_of_swings(levels, instants[::4])
-    assert limit.rotation == pytest.approx(np.cos(500.0 * instants[::4]), abs=1e-12)
-    assert limit.uncertainty["rotation_rad"] < 1e-10
-    assert limit.frequency == pytest.approx(500.0 / (2.0 * np.pi), rel=1e-6)
-    assert levels[0].energy_error == 0.0
-
-
-def test_motions_are_compared_as_far_as_both_go():
-    """A coarse motion that outlasts what it is held against is asked at its own records, up to its end."""
-    fine, coarse = (
-        SolvedMotion(time=time, rotation=np.cos(3.0 * time))
-        for time in (np.linspace(0.0, 1.0, 101), np.array([0.0, 0.5, 1.5, 3.0]))
-    )
-    assert rotation_error(coarse, fine, coarse.time) == pytest.approx(0.0, abs=1e-7)
-    assert rotation_error(coarse, fine, fine.time) > 0.1
-
-
-@pytest.mark.parametrize("settings", [SplineSettings(control_points=4), FeSettings(elements=4)], ids=str)
-def test_solve_time_is_a_part_of_the_wall_time(settings):
-    """The increments or steps alone take some time, and less than the whole answer."""
-    problem = dataclasses.replace(TABLE_1, rotation=0.2, increments=3)
-    path = answer_static(problem, settings, repeat=2)
-    assert 0.0 < path.solve_s < path.wall_s
-    motion = answer_release(problem, settings, duration=1e-3)
-    assert motion.solve_s > 0.0
-
-
-def test_a_motion_by_impulses_is_a_neutral_answer():
-    """A trajectory of impulses becomes the neutral motion of the other integrators."""
-    asked = put(TABLE_1, SplineSettings(control_points=6), moving=True)
-    run = solve_impulses(asked.modelled, start=0.5, duration=0.05)
-    answer = Motion.of(asked, run, wall_s=0.0, solve_s=0.0)
-    assert answer.converged
-    own = {
-        "integrator": "sequential impulses, stable",
-        "step_s": 0.01,
-        "control_points": run.control_points,
-    }
-    assert answer.settings == asked.discretised(None) | own
-    assert answer.rotation[0] == pytest.approx(0.5)
-    assert "of the swing's period at rest" in answer.resolution
-    assert 0.0 < answer.energy_error <= 1.0  # all that the damping of the swing takes

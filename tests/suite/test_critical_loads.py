@@ -72,21 +72,13 @@ def test_few_elements_are_not_physics():
     assert answer.critical_points == ()
 
 
-#: The drive of its file, and what stands in its place.
-DRIVES = {"held": "rotation_deg = 0", "turned": "rotation_deg = 0.01", "free": ""}
-
-
-def pressed(drive):
-    """Return the case file of the pressed pivot under a drive."""
-    text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
-    return text.replace(DRIVES["held"], DRIVES[drive])
-
-
 @pytest.mark.slow
 def test_a_spline_that_stops_says_where_it_buckled(command, tmp_path):
     """Pressed far beyond what it bears, the spline stops and says so, with the force, and what may go on."""
     path = tmp_path / "pressed.toml"
-    path.write_text(pressed("turned").replace("-20e3", "-1e9"), encoding="utf-8")
+    text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
+    turned = text.replace("rotation_deg = 0", "rotation_deg = 0.01").replace("-20e3", "-1e9")
+    path.write_text(turned, encoding="utf-8")
     outcome = command("solve", path)
     assert outcome.code == 3
     assert re.search(r"lost its stability before, first at load factor \S+ \(force \d+ N\)", outcome.err)

@@ -4,12 +4,9 @@ import shutil
 import sys
 from pathlib import Path
 
-import pytest
-
 from studies.__main__ import main
 from studies.cost.openseespy import _loaded
 from studies.record.store import RESULTS
-from studies.registry import study_of
 
 #: Studies that hold the suite against the other codes.
 BESIDE_PEERS = ("cost/codes",)
@@ -37,17 +34,3 @@ def test_results_stay_without_the_other_codes(tmp_path, monkeypatch, capsys):
         for study in BESIDE_PEERS
     ]
     assert files_in(tmp_path) == before
-
-
-@pytest.mark.parametrize("study", BESIDE_PEERS)
-def test_one_code_is_not_enough(study, monkeypatch):
-    """With one of the codes alone the tables would lose the other: it is named, and nothing is computed."""
-    from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-    from studies.cost.openseespy import openseespy_frame
-
-    for module in (exudyn_ancf, exudyn_exact):
-        monkeypatch.setattr(module, "installed", lambda: True)
-    monkeypatch.setattr(openseespy_frame, "installed", lambda: False)
-    assert study_of(study).missing() == "it needs openseespy: python -m pip install '.[peers]'"
-    monkeypatch.setattr(openseespy_frame, "installed", lambda: True)
-    assert study_of(study).missing() == ""

@@ -1,4 +1,4 @@
-"""The models see nothing of this repository but themselves, and imports run one way."""
+"""The models see nothing of this repository but themselves, and of the studies one file sees both."""
 
 import ast
 import sys
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from studies.record.source import PACKAGES, ROOT, imported, imports
+from studies.record.source import ROOT, imports
 
 MODELS = {
     "spline_model": {"numpy", "scipy", "numba"},
@@ -72,43 +72,3 @@ def test_file_keeps_the_import_rules(path):
 def test_breach_is_seen(place, source, breach):
     """The check has teeth: each kind of forbidden import is found, and a relative one stays inside."""
     assert _breaches(ROOT / place, source) == breach
-
-
-def circles(graph: dict[str, set[str]]) -> list[list[str]]:
-    """Return the sets of modules that import one another, directly or through others: strong components."""
-
-    def reached(start: str, edges: dict[str, set[str]]) -> set[str]:
-        found: set[str] = set()
-        waiting = {start}
-        while waiting:
-            found.add(name := waiting.pop())
-            waiting |= edges[name] - found
-        return found
-
-    backwards: dict[str, set[str]] = {name: set() for name in graph}
-    for name, others in graph.items():
-        for other in others:
-            backwards[other].add(name)
-    components = {tuple(sorted(reached(name, graph) & reached(name, backwards))) for name in graph}
-    return sorted(list(each) for each in components if len(each) > 1)
-
-
-def test_imports_make_no_circle():
-    """No file imports one that imports it, directly or through others, for type checking included."""
-    files = {path: path.relative_to(ROOT).with_suffix("").parts for path in _files(*PACKAGES)}
-    modules = {".".join(parts).removesuffix(".__init__") for parts in files.values()}
-    graph = {name: imported(name, ROOT) for name in modules}
-    inside = [
-        f"{name} -> {other}"
-        for circle in circles(graph)
-        for name in circle
-        for other in sorted(graph[name].intersection(circle))
-    ]
-    assert not inside, "\n".join(inside)
-
-
-def test_a_circle_is_seen():
-    """Two files that import one another are found, through a third one too, and a chain is none."""
-    chain: dict[str, set[str]] = {"a": {"b"}, "b": {"c"}, "c": set(), "d": {"a", "c"}}
-    assert circles(chain) == []
-    assert circles({**chain, "c": {"a"}}) == [["a", "b", "c"]]

@@ -49,8 +49,6 @@ def test_what_lets_go_of_a_displacement_is_drawn(words, tmp_path, command):
     picture = tmp_path / "led.svg"
     assert command(name, FINDS / "led_guide.toml", *more, "--plot", picture).code == 0
     assert picture.stat().st_size > 0
-    analysis = ["--analysis", name, *([] if name == "modes" else ["--duration", 0.01])]
-    assert command("export", FINDS / "led_guide.toml", *analysis, "--out", tmp_path / "out").code == 0
 
 
 def test_explicit_steps_that_lose_energy_are_told():

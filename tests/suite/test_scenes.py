@@ -11,7 +11,13 @@ from studies.cases.problem import FOLDER
 COARSE = {"spline": [], "fe": ["--elements", 8]}
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.toml")))
+SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
+QUICK = ("cross_axis_pivot", "parallel_strip_guide")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in SHIPPED]
+)
 def test_shipped_cases_take_the_effects_of_their_sides(name, answered):
     """Every case that comes with the suite names its sides: both models take what asks for them, alike."""
     words = ("solve", name, "--effects=+clamped_width,+anticlastic,+root_compliance", "--increments", 2)

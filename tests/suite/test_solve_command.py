@@ -90,19 +90,6 @@ def test_accuracy_raises_the_control_points_and_is_reported(case, command):
     assert lines[-2].startswith("estimated error: trajectory ")
 
 
-@pytest.mark.parametrize("words", [["solve", "--increments", 2], ["modes", "--count", 2]], ids=lambda w: w[0])
-def test_accuracy_doubles_the_elements(words, case, command):
-    """Statics and modes of the elements take an accuracy: meshes that were tried and errors are reported."""
-    words = [words[0], case(), "--model", "fe", "--elements", 5, "--accuracy", 1e-2, *words[1:]]
-    answer = json.loads(command(*words, "--json", "-").out)
-    estimate = answer["estimate"]
-    meshes = estimate.pop("meshes")
-    assert meshes[:2] == [5, 10] and answer["settings"]["elements"] == meshes[-1]
-    assert 0.0 < max(value for name, value in estimate.items() if name != "accuracy") <= 1e-2
-    tried = ", ".join(map(str, meshes))
-    assert f"; elements tried: {tried}" in command(*words).out
-
-
 def test_accuracy_out_of_reach_is_exit_code_3(case, command):
     """An accuracy below round-off reports the best path and how far its estimate came."""
     outcome = command("solve", case(), "--model", "spline", "--accuracy", 1e-17, "--json", "-")

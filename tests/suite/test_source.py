@@ -1,8 +1,10 @@
 """The hash of a study's source changes with the code of the modules that it imports, and nothing else."""
 
+from graphlib import TopologicalSorter
+
 import pytest
 
-from studies.record.source import reached, source_hash
+from studies.record.source import PACKAGES, ROOT, imported, reached, source_hash
 from studies.record.store import inputs
 from studies.registry import STUDIES
 
@@ -78,3 +80,12 @@ def test_unknown_module_is_refused(tmp_path):
     """A module that does not exist is named."""
     with pytest.raises(FileNotFoundError, match=r"studies\.absent"):
         source_hash("studies.absent", root=tmp_path)
+
+
+def test_imports_make_no_circle():
+    """No file imports one that imports it, directly or through others, for type checking included."""
+    files = [
+        path.relative_to(ROOT).with_suffix("") for name in PACKAGES for path in (ROOT / name).rglob("*.py")
+    ]
+    modules = {".".join(file.parts).removesuffix(".__init__") for file in files}
+    TopologicalSorter({name: imported(name, ROOT) for name in modules}).prepare()  # an error names the circle
