@@ -13,7 +13,7 @@ from scipy.linalg import LinAlgError, eigh, null_space
 
 from spline_model.accuracy import search, wanted
 from spline_model.compile import System, compile_scene
-from spline_model.confirmed import Grid
+from spline_model.confirmed import Grid, at_limit
 from spline_model.effects import DrivenRotation
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -118,7 +118,8 @@ def _accurate_modes(
         try:
             return solve(pivot.on(*grid).in_motion())
         except ConvergenceError as error:  # more control points may reach the state
-            if not getattr(error.solution, "settled", True):
+            path = error.solution
+            if path is not None and (not path.settled or at_limit(path)):
                 raise
             return None
         except RoundOff:  # fewer control points may have an answer
