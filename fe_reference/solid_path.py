@@ -14,11 +14,13 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from .arrays import Array
-from .errors import ConvergenceError, InvalidParameter
+from .errors import ConvergenceError, InvalidParameter, finite
 from .solid import SolidStrip
 
 #: Newton iterations of one state, and the largest correction of a solved state in thicknesses.
 ITERATIONS, CORRECTION = 30, 1e-9
+#: Rotations that are closer than this are one node of the polynomial that predicts a state [rad].
+APART = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,6 +67,7 @@ def solve_solids(
         Root and tip of every strip at rest; their distance is the length of the strip.
     rotations : (S,) rad
         Rotations of the states in order. Small first steps (1, 2.5, 5, 9 degrees) help Newton's method.
+        A rotation may occur twice.
     centre : (2,) m
         Point of the body whose path is reported.
 
@@ -76,6 +79,8 @@ def solve_solids(
     ------
     ConvergenceError
         A state that Newton's method does not reach, or one that is unstable.
+    InvalidParameter
+        A rotation that is not finite, or strips that do not have the length of the mesh.
 
     Examples
     --------
@@ -91,14 +96,15 @@ def solve_solids(
     torques, strains, taken = [], [], 0
     known = [(np.zeros(3), np.zeros((len(body.ends), *strip.nodes.shape)))]
     at = [0.0]
-    for rotation in rotations:
+    for given in rotations:
+        rotation = finite("rotations", given, "rad")
         pose, u = _predicted(at, known, rotation)
         pose, u, torque, used = body.equilibrium(pose, u, rotation)
         taken += used
         states.append((pose, u))
         torques.append(torque)
         strains.append(body.largest_strain(u))
-        if rotation != 0.0:
+        if min(abs(rotation - other) for other in at) > APART:
             at, known = [*at, rotation][-4:], [*known, (pose, u)][-4:]
     return SolidPath(
         rotation=np.asarray(rotations, dtype=float),

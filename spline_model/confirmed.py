@@ -73,10 +73,10 @@ def ends_alike(one: StaticSolution, other: StaticSolution) -> bool:
         return False
     if not (one.settled or one.critical_points):
         return False
-    return one.status is other.status and _at_limit(one) == _at_limit(other)
+    return one.status is other.status and at_limit(one) == at_limit(other)
 
 
-def _at_limit(path: StaticSolution) -> bool:
+def at_limit(path: StaticSolution) -> bool:
     """Whether a path stopped at a limit point, which lies beyond its last state."""
     points = path.critical_points
     return path.status is not Status.CONVERGED and bool(points) and points[-1].inertia > path.inertia[-1]
@@ -89,7 +89,7 @@ def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
         return answer
     more = finer(*grid)
     better = outcome(more)
-    if ends_alike(answer, better) and (answer.status is Status.CONVERGED or _at_limit(answer)):
+    if ends_alike(answer, better) and (answer.status is Status.CONVERGED or at_limit(answer)):
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
@@ -105,12 +105,12 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
         if known >= len(answer.critical_points):
             break
     doubt, other = answer.critical_points[known:], better.critical_points[known:]
-    if doubt and not _at_limit(answer):
+    if doubt and not at_limit(answer):
         there = _place(other[0].load_factor, other[0].rotation) if other else "nowhere"
         what = f"a {doubt[0].kind} at {_place(doubt[0].load_factor, doubt[0].rotation)}"
         what += f" is at {there} with {more[1]}"
     else:
-        here = _end(answer) if _at_limit(answer) else answer.message
+        here = _end(answer) if at_limit(answer) else answer.message
         what = f"{here}; with {more[1]} {_end(better)}"
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
     message = f"not resolved with {named(*grid)}: {what}; {remedy(grid)}"

@@ -9,11 +9,11 @@ from functools import cache, lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
+from scipy.linalg import LinAlgError, eigh, null_space
 
 from spline_model.accuracy import search, wanted
 from spline_model.compile import System, compile_scene
-from spline_model.confirmed import Grid
+from spline_model.confirmed import Grid, at_limit
 from spline_model.effects import DrivenRotation
 from spline_model.errors import ConvergenceError, InvalidParameter, require_count, require_finite
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -41,6 +41,10 @@ SLOW = 1e-8
 """Part of the largest 1 / w^2 down to which modes count as slow."""
 ROUND_OFF = 1e-14
 """Squared frequency of a rigid motion, over the sum of the terms that cancel in its stiffness."""
+
+
+class RoundOff(InvalidParameter):
+    """Matrices whose natural frequencies are decided by round-off."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -114,8 +118,11 @@ def _accurate_modes(
         try:
             return solve(pivot.on(*grid).in_motion())
         except ConvergenceError as error:  # more control points may reach the state
-            if not getattr(error.solution, "settled", True):
+            path = error.solution
+            if path is not None and (not path.settled or at_limit(path)):
                 raise
+            return None
+        except RoundOff:  # fewer control points may have an answer
             return None
 
     def attempt(fewer: Grid, more: Grid) -> tuple[float, Modes] | None:
@@ -205,9 +212,16 @@ def _linear_modes(system: System, state: bytes, inertias: bytes) -> tuple[Array,
     norms = np.linalg.norm(rows, axis=1, keepdims=True)
     free = null_space(rows / norms) if len(rows) else np.eye(len(stiffness))
     inertia = by.T @ mass @ by
-    free = _without_massless(free, stiffness, inertia)
     rigid = len(props_of(system.scene))
-    values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
+    try:
+        free = _without_massless(free, stiffness, inertia)
+        values, vectors = _sorted_modes(free.T @ stiffness @ free, free.T @ inertia @ free, rigid)
+    except LinAlgError:
+        raise RoundOff(
+            "coordinates of the strips",
+            len(stiffness),
+            "fewer, or lengths and stiffnesses less far apart: round-off decides a frequency [1]",
+        ) from None
     shapes = free @ vectors
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     slid = np.einsum("im,ij,jm->m", shapes, slide, shapes)

@@ -18,16 +18,19 @@ from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import GROWING
+from studies.cases.keys import GROUND
 from studies.errors import BadInput
 
 #: The effect that is raised; those that load or drive bodies are removed.
 FORCE = "applied_force"
-#: Forces that are tried one after another, in the clamped Euler loads of all strips together, and increments.
+#: Forces that are tried one after another, in what the strips bear as Euler columns, and increments.
 PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
 #: Discretisations that are tried one after another: control points, then segments; in the given elements.
 POINTS, SEGMENTS, MESHES = tuple(range(8, 15, 2)), (2, 4, 8, 16), (1, 2, 4)
 #: Relative difference of two discretisations at which no finer one is tried, and up to which they agree.
 SETTLED, AGREED = 1e-5, 1e-2
+#: Parts of the largest Euler load that those of the strips are added up in.
+FINEST = 2**20
 #: Rotation that counts as soft [rad], and relative width to which its force is found.
 SOFT, FOUND = math.radians(5.0), 1e-9
 UNSTABLE, NONE = "unstable at zero force", ""
@@ -118,13 +121,30 @@ class _Question:
             raise BadInput(f"{asked.settings.model}: {error}") from None
 
     def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
-        """Yield forces [N], in the Euler loads of all strips, clamped at both ends, and the paths to them."""
-        strips = self.design.strips
-        loads = (part.youngs_modulus * part.second_moment_of_area / part.length**2 for part in strips)
-        unit = 4.0 * math.pi**2 * float(sum(loads))
+        """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them."""
+        unit = _euler_load(self.design, self.body)
         for part in PARTS:
             asked = self.asked(settings, part * unit)
             yield part * unit, asked, self.path(asked)
+
+
+def _euler_load(design: Design, body: str) -> float:
+    """Return the Euler loads, clamped at both ends, of the weakest strips between a body and the ground [N].
+
+    Strips side by side are added up; of strips in a row the weakest counts.
+    """
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.csgraph import maximum_flow
+
+    places = [body, GROUND, *(each.name for each in design.bodies if each.name != body)]
+    strips = [strip for strip in design.strips if strip.tip]
+    loads = np.array([s.youngs_modulus * s.second_moment_of_area / s.length**2 for s in strips])
+    shares = np.ceil(loads / loads.max() * FINEST).astype(np.int32)
+    ends = np.array([[places.index(strip.root), places.index(strip.tip or "")] for strip in strips])
+    both = np.concatenate([ends, ends[:, ::-1]]).T
+    graph = csr_matrix((np.tile(shares, 2), tuple(both)), shape=2 * (len(places),))
+    flow = maximum_flow(graph, 0, 1).flow_value or shares.sum()
+    return 4.0 * math.pi**2 * float(flow * loads.max() / FINEST)
 
 
 def critical_load(

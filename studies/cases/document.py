@@ -9,6 +9,9 @@ from typing import Any
 from studies.cases.rules import Key, Rule, shown
 from studies.errors import BadInput
 
+#: Names that a line can list, and how many of a longer list it shows.
+MANY, SHOWN = 40, 3
+
 
 class CaseError(BadInput):
     """A case file, or a value of it, that cannot be used: file, key, got, expected in one line."""
@@ -120,11 +123,15 @@ def tables(
 def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
     """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
 
-    Beside the nearest stands `what` it is.
+    Beside the nearest stands `what` it is. Of more than `MANY` names the `SHOWN` nearest are listed.
     """
     known = list(known)
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"{near[0]} (the nearest {what})" if near else "one of " + ", ".join(listed or known)
+    if near := difflib.get_close_matches(name, known, n=1):
+        return f"{near[0]} (the nearest {what})"
+    if listed or len(known) <= MANY:
+        return "one of " + ", ".join(listed or known)
+    few = difflib.get_close_matches(name, known, n=SHOWN, cutoff=0.0)
+    return f"{', '.join(few)} or another of {len(known)} {what}s"
 
 
 def one_of(where: str, label: str, value: Any, names: Sequence[str]) -> str:

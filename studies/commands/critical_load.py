@@ -5,9 +5,10 @@
 
 A dead force acts at the centre of the body of the case or of --body. Its direction is an angle from x to y in
 the axes of the ground. The force is raised from zero until stability is lost at a bifurcation or a limit
-point, up to twice the Euler loads of all strips. The rotation of the body is free, so that it may tip over,
-or --held. Weight and pre-strain of the case act in full. Its other loads and drives are removed. Stability
-under weight and pre-strain alone is checked first.
+point, up to twice the Euler loads of the strips that bear the body. Strips side by side are added up; of
+strips in a row the weakest counts. The rotation of the body is free, so that it may tip over, or --held.
+Weight and pre-strain of the case act in full. Its other loads and drives are removed. Stability under weight
+and pre-strain alone is checked first.
 
 A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
 error. Without --control-points the spline takes more control points until the force settles; elements are

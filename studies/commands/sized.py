@@ -17,6 +17,7 @@ from studies.commands.columns import cell
 from studies.design.evaluate import PLAIN, Accurate, by_elements
 from studies.design.optimise import SAME, Outcome, numbered, settled
 from studies.design.question import Question
+from studies.errors import BadInput
 
 #: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
 SHOWN = {
@@ -46,7 +47,7 @@ class Optimum:
         path, reason = answer_static(found.design, SplineSettings()), ""
         try:
             elements = by_elements(found.design).quantities(asked.quantities)
-        except NoReference as error:
+        except (NoReference, BadInput) as error:
             elements, reason = dict.fromkeys(asked.quantities, math.nan), str(error)
         return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
 

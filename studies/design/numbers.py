@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from spline_model.parameters import CENTRES, MATERIAL, POINTS
+from studies.cases.document import nearest
 from studies.cases.keys import SIDES
 from studies.cases.mechanism import Mechanism, read_mechanism
 from studies.cases.section import refuse_tapers
@@ -109,8 +110,9 @@ def _variable(where: str, document: Mapping[str, Any], text: str, heading: str) 
     known = plan.known(document, "spline")
     for name in given:
         if name not in known:
-            near = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]] or list(known)
-            raise BadInput(f"--free: got {name}, expected a number of {where}, such as {', '.join(near[:6])}")
+            alike = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]]
+            such = ", ".join(alike[:6]) or nearest(name, known)
+            raise BadInput(f"--free: got {name}, expected a number of {where}, such as {such}")
     own = _value(document, given[0])
     if own is None:
         raise BadInput(f"--free: got {given[0]}, expected a number that stands in {where}")

@@ -24,6 +24,8 @@ from studies.kinds import Array
 
 #: Stands for every row of a design without an answer: far outside, so that a line search comes back.
 OUTSIDE = -1e3
+#: Change of the objective over that of a limit, both relative, below which it is round-off.
+LEAST_PRICE = 1e-6
 #: Margin below which a row is active [1].
 ACTIVE = 1e-6
 #: Starts of a search unless it says otherwise: the design to compare with and points spread over the bounds.
@@ -198,8 +200,8 @@ class Programme:
             prices[name] = prices.get(name, 0.0) + float(fall * multiplier)
         prices.pop(self.question.objective, None)
         whole = (2.0 if self.question.objective == CENTRE_SHIFT else 1.0) * y[-1]
-        active = tuple(Active(name, price / whole) for name, price in prices.items() if price)
-        return active, float(residual)
+        told = ((name, price / whole) for name, price in prices.items())
+        return tuple(Active(name, price) for name, price in told if abs(price) > LEAST_PRICE), float(residual)
 
 
 class _Held(NamedTuple):

@@ -73,7 +73,8 @@ def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) 
     """Raise CaseError unless the case has the key."""
     if key not in known:
         expected = document.nearest(key, list(known))
-        raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}")
+        page = "" if expected.endswith(")") else ", which docs/cases.md lists"
+        raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}{page}")
 
 
 def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Axis:

@@ -105,6 +105,14 @@ def test_refusals(changed, message):
         strip(**changed)
 
 
+def test_a_rotation_may_occur_twice():
+    """A repeated rotation has the same state again, and the states that follow are predicted without it."""
+    torque = pivot([2.0, 2.0, 5.0, 5.0, 2.0], mesh=(4, 1, 1)).torque
+    assert torque[[1, 3, 4]] == pytest.approx(torque[[0, 2, 0]], rel=1e-9)
+    with pytest.raises(InvalidParameter, match=r"^rotations: got nan, expected a finite number"):
+        pivot([2.0, math.nan], mesh=(4, 1, 1))
+
+
 def test_a_step_that_is_too_long_is_an_error():
     """A quarter turn at once is no equilibrium, and the message names the rotation and the remedy."""
     with pytest.raises(ConvergenceError, match=r"^solids at 170 deg: .*; use smaller steps$"):

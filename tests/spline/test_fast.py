@@ -1,4 +1,4 @@
-"""Many pivots at once: the numbers of a batch are the same digits in any order and on any number of threads."""
+"""Many pivots at once: the digits of a batch do not depend on the order of rows or the number of threads."""
 
 import numpy as np
 

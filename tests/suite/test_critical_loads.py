@@ -40,6 +40,14 @@ def test_stability_at_zero_force_is_checked_first(name, share, answered):
         assert (point["kind"], point["load_factor"], point["rotation_rad"]) == ("limit point", 0.0, 0.0)
 
 
+def test_strips_in_a_row_are_loaded_by_what_the_weakest_bears(answered):
+    """Requirement: a chain of long strips and one that is 500 times shorter is not loaded by the Euler
+    load of the short one: both models have the force at which it turns by 5 degrees."""
+    found = answered("critical-load", FINDS / "mixed_lengths.toml", "--model", "spline,fe")
+    forces = [answer["rotation_5_deg_N"] for answer in found["answers"]]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
 def test_the_former_name_prints_the_new_one(command):
     """Requirement: `capacity` still works and prints the new name on the error stream."""
     outcome = command("capacity", FINDS / "heavy_pivot.toml")

@@ -41,6 +41,7 @@ BAD = [
     ({"sample": 'sample.file = "a.csv"', "vary": ""}, "a.csv: cannot be read (No such file"),
     ({"vary": ""}, "[vary]: got nothing to vary"),
     ({"vary": "vary.strips.left.area_m2 = [1e-5]"}, "got no key of the case"),
+    ({"vary": "vary.foo = [1]"}, " names, which docs/cases.md lists"),
     ({"vary": "vary.strip.crossing_ratio = 0.5"}, "vary.strip.crossing_ratio: got 0.5, expected a list or"),
     ({"vary": "vary.strip.crossing_ratio = { from = 0.5, to = 0.5 }"}, "got an empty range from 0.5 to 0.5"),
     (
