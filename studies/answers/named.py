@@ -84,9 +84,8 @@ def _free_ends(design: Design) -> Iterator[Quantity]:
     """Yield displacement and rotation of the free ends of strips."""
     for place, strip in enumerate(design.strips):
         if strip.tip is None:
-            yield from _moved(
-                f"{strip.name}_tip_displacement", f"tip of {strip.name}", partial(_end_moved, place)
-            )
+            moved = partial(_end_moved, place)
+            yield from _moved(f"{strip.name}_tip_displacement", f"tip of {strip.name}", moved, turns=True)
 
 
 def _points(design: Design) -> Iterator[Quantity]:
