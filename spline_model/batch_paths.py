@@ -187,7 +187,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     """
     scene = mechanism.driven(1.0, body)
     system = compile_scene(steady(scene) if first and has_loads(scene) else scene)
-    system.require_uncarried("designs")
+    system.require_plain("designs")
     model = reduced(system)
     if model is None:
         raise InvalidParameter("discretisation", "printed forces", "what the elements know")

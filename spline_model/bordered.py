@@ -55,6 +55,7 @@ def evaluate(
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
     gradient[: tables.weight.size] -= tables.weight
     system.frames.subtract(z, gradient, hessian)
+    system.followers.subtract(z, load_factor, gradient, hessian)
     if system.springs.size:
         at = system.layout.poses
         gradient[at] += system.springs @ (z[at] - system.rest[at])

@@ -25,7 +25,9 @@ from spline_model.effects import (
     StripInertia,
 )
 from spline_model.effects.base import Constraint
+from spline_model.effects.boundary import FOLLOWER
 from spline_model.errors import InvalidParameter
+from spline_model.followers import Followers
 from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
@@ -71,9 +73,26 @@ class System:
         return self._table("drives", DriveTable.of)
 
     @cached_property
+    def acting(self) -> LoadTable:
+        """Loads that grow, one row a component."""
+        return self._table("acting", LoadTable.of)
+
+    @cached_property
     def loads(self) -> LoadTable:
-        """Loads, one row a component."""
-        return self._table("loads", LoadTable.of)
+        """Those that have a potential."""
+        return self.acting.rows(self.acting.turns != FOLLOWER)
+
+    @cached_property
+    def followers(self) -> Followers:
+        """Forces that turn with bodies, growing and steady."""
+        return Followers.of(self.scene, self.acting)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether the forces are a gradient: all but followers and the paper's printed ones are."""
+        scene = self.scene
+        measures = {*(e.measure for e in scene.of(Bending)), *(e.measure for e in scene.of(Stretching))}
+        return "printed" not in measures and not self.followers.place.size
 
     @cached_property
     def weight(self) -> Array:
@@ -96,11 +115,14 @@ class System:
         own = self.layout.poses.start + 3 * len(self.scene.own_bodies)
         return np.flatnonzero((self.drives.prop == 0) & (self.drives.coordinate < own))
 
-    def require_uncarried(self, what: str) -> None:
-        """Refuse frames that bodies carry."""
-        if self.frames.place.size:
-            got = "a hinge on a body or a load beside its centre"
-            raise InvalidParameter(what, got, "none, but in statics, modes and the motion by default")
+    def require_plain(self, what: str) -> None:
+        """Refuse frames that bodies carry, and followers."""
+        for has, got in (
+            (self.frames.place.size, "a hinge on a body or a load beside its centre"),
+            (self.followers.place.size, "a load that follows its body"),
+        ):
+            if has:
+                raise InvalidParameter(what, got, "none, but in statics and the motion by default")
 
     def spring_energy(self, poses: Array) -> Array:
         """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""

@@ -171,7 +171,7 @@ def _held_model(mechanism: Mechanism) -> Reduced | None:
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None
     bodies = model.bodies
-    if system.is_preloaded or bodies.load.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
+    if system.is_preloaded or system.acting.value.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
         return None
     return replace(
         model,

@@ -73,7 +73,7 @@ def turning(driven: Callable[[float], Scene], rotations: Array, increments: int,
         aims = (rotations / largest).tolist()
         return [first, Leg(compile_scene(steady(whole)), aims, steady=first.system.loads)]
     system, factors = compile_scene(whole), rotations / largest
-    if not system.loads.value.any() and sum(map(bool, system.drives.target.tolist())) < 2:
+    if not system.acting.value.any() and sum(map(bool, system.drives.target.tolist())) < 2:
         return [Leg(system, factors.tolist())]
     return list(_sides(system, compile_scene(driven(-largest)), factors))
 

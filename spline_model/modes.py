@@ -162,6 +162,8 @@ def _modes(
     if held:
         scene = scene.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
     system = compile_scene(scene)
+    if system.followers.place.size:
+        raise InvalidParameter("effects", "a load that follows its body", "dead ones for natural frequencies")
     layout = system.layout
     try:
         z = static_state(mechanism, rotation, increments, body)[: layout.size]

@@ -163,7 +163,7 @@ def pivots(
         name: tuple(c[0].tolist()) if c.ndim > 1 else float(c[0]) for name, c in columns.items()
     }
     system = compile_scene(cross_axis_pivot(**first, **discretisation).driven(1.0))
-    if system.is_preloaded or system.loads.value.any():
+    if system.is_preloaded or system.acting.value.any():
         expected = "no loads on pivots by their keywords: a mechanism and its values"
         raise InvalidParameter("discretisation", dict(discretisation), expected)
     unit: dict[str, Any] = dict.fromkeys(

@@ -64,7 +64,7 @@ def sensitivities(
     given = _stepped(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
-    system.require_uncarried("asked")
+    system.require_plain("asked")
     z = solution.states
     model, base = _model_of(system, z), Given.of(asked.design)
     units = np.full(len(parameters), model.length), np.full(len(parameters), model.energy)

@@ -112,8 +112,8 @@ class DriveTable(NamedTuple):
 class LoadTable(NamedTuple):
     """One row a generalised force, F in all.
 
-    coordinate (F,) its index in z; value (F,) at factor 1; turns (F,) 1 for a moment;
-    first, pairs (F,) its piece of times and factors (H,), the history in a motion.
+    coordinate (F,) its index in z; value (F,) at factor 1; turns (F,) 1 for a moment, 2 for a part of a
+    follower; first, pairs (F,) its piece of times and factors (H,), the history in a motion.
     """
 
     coordinate: Indices
@@ -129,6 +129,11 @@ class LoadTable(NamedTuple):
         """Forces and moments on bodies that grow, one row a component."""
         growing = [load for load in scene.of(Sized) if not load.steady]
         return _table_of_loads(scene, growing) if growing else NO_LOADS
+
+    def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
+        """Some of the rows."""
+        own = {name: getattr(self, name)[kept] for name in ("coordinate", "value", "turns", "first", "pairs")}
+        return self._replace(**own)
 
 
 class Tables(NamedTuple):
@@ -174,7 +179,7 @@ NO_LOADS = _table_of_loads(Scene(strips=(), bodies=(), effects=()), ())
 def weight(scene: Scene) -> Array:
     """Generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names any."""
     strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
-    steady = [load for load in scene.of(Sized) if load.steady]
+    steady = [load for load in scene.of(Sized) if load.steady and not getattr(load, "follower", False)]
     if not (strips or bodies or steady):
         return np.zeros(0)
     force = np.zeros(scene.layout.coordinate_count)

@@ -193,10 +193,12 @@ def _zero(value: Callable[[float], float]) -> float | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedTangent:
-    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L)."""
+    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L); it is
+    symmetric but for followers."""
 
     stiffness: Array
     free: Array
+    symmetric: bool
 
     @classmethod
     def of(cls, work: Followed) -> ReducedTangent:
@@ -217,7 +219,8 @@ class ReducedTangent:
         constraints = rows[~soft]
         norms = np.linalg.norm(constraints, axis=1, keepdims=True)
         free = null_space(constraints / norms) if len(constraints) else np.eye(count)
-        return cls(stiffness=free.T @ stiffness @ free, free=free)
+        symmetric = work.system.has_potential
+        return cls(stiffness=free.T @ stiffness @ free, free=free, symmetric=symmetric)
 
     @property
     def grain(self) -> float:
@@ -225,8 +228,13 @@ class ReducedTangent:
         return float(np.finfo(float).eps * np.abs(self.stiffness).sum(axis=0).max())
 
     def eigenpair(self, number: int) -> tuple[float, Array]:
-        """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,)."""
+        """The eigenvalue of that number from the lowest, 0 on, and its direction (Q,); with followers the
+        smallest singular value, with the determinant's sign."""
         from scipy.linalg import eigh
 
+        if not self.symmetric:
+            _, values, vectors = np.linalg.svd(self.stiffness)
+            sign = float(np.linalg.slogdet(self.stiffness)[0])
+            return sign * float(values[-1]), np.asarray(self.free @ vectors[-1])
         values, vectors = eigh(self.stiffness, subset_by_index=(number, number))
         return float(values[0]), np.asarray(self.free @ vectors[:, 0])

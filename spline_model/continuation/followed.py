@@ -14,6 +14,7 @@ from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
+from spline_model.followers import Followers
 
 Array = NDArray[np.float64]
 
@@ -126,6 +127,11 @@ class Followed:
         np.add.at(force, loads.coordinate, loads.value)
         return force
 
+    @property
+    def followers(self) -> Followers:
+        """Forces that turn with bodies, among the unknowns."""
+        return self.system.followers
+
     def refuse(self, z: Array) -> str:
         """Why a state that was just evaluated is no strip; empty if it is one."""
         return checks.refuse(self.system, z)
@@ -234,7 +240,7 @@ class Followed:
         Exact: in a share of the preload the gradient is a square at most.
         """
         if not self.grows:
-            return self.push_of_loads
+            return self.push_of_loads + self.followers.push(z)
         apart = self.room()
         apart.fill(z, 0.0, load_factor - 0.5)
         less = apart.gradient.copy()

@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
-from spline_model.effects import Bending, Stretching
 from spline_model.newton import Newton
 
 Array = NDArray[np.float64]
@@ -24,7 +22,7 @@ forces of 1e11, round-off in the place of a pivot gives 1e15."""
 NO_STIFFNESS = 1e-14
 """Stiffness of a driven rotation that is none, over the sum of the terms that cancel in it."""
 NOT_TRACKED = -1
-"""Inertia of a state whose forces have no potential: its tangent is not symmetric."""
+"""Inertia of a state of printed forces, which have no potential: its tangent is not symmetric."""
 
 WORK_MISMATCH = 0.02
 """Largest difference between the potential gained in a step and the integral of its rate, over
@@ -37,28 +35,21 @@ NODES, WEIGHTS = (np.polynomial.legendre.leggauss(4)[i] / 2 for i in range(2))
 NODES = NODES + 0.5
 
 
-def _has_potential(system: System) -> bool:
-    """Whether the forces are a gradient: all but the paper's printed ones are."""
-    scene = system.scene
-    measures = {*(e.measure for e in scene.of(Bending)), *(e.measure for e in scene.of(Stretching))}
-    return "printed" not in measures
-
-
 def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
     """The point of a state that ``work`` was just evaluated at, s being the load factor.
 
     One symmetric factorisation gives the rate, the turn and, by Sylvester's law, the inertia: of
     the negative eigenvalues of the bordered matrix one belongs to each axial force and to each
-    constraint, the rest to the reduced tangent. Raises LinAlgError if it is singular.
+    constraint, the rest to the reduced tangent. With followers it is the sign of the determinant. Raises
+    LinAlgError if it is singular.
     """
     row, push = work.driven, work.push(z, load_factor)
     right = np.zeros((len(z), 1 if row is None else 2))
     right[:, 0] = push
     if row is not None:
         right[row, 1] = -1.0  # the drive's row is -(theta - angle)
-    found, inertia = (
-        _symmetric(work, right) if _has_potential(work.system) else (work.solve(right), NOT_TRACKED)
-    )
+    smooth = work.system.has_potential
+    found, inertia = _symmetric(work, right) if smooth else (work.solve(right), _sign(work))
     rate = found[:, 0].copy()
     conjugate, curvature = work.conjugate(z, load_factor)
     return Point(
@@ -70,7 +61,7 @@ def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, f
         stiffness=np.nan if row is None else _of_drive(work, row, found[:, 1]),
         inertia=inertia,
         energies=energies,
-        potential=work.potential(z, load_factor, energies),
+        potential=work.potential(z, load_factor, energies) if smooth else np.nan,
         conjugate=conjugate,
         conjugate_rate=curvature - float(push @ rate),
     )
@@ -135,6 +126,18 @@ def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
     return unit * found, negative - not_free
 
 
+def _sign(work: Followed) -> int:
+    """1 where the determinant of the reduced tangent is below zero, else 0; NOT_TRACKED of printed forces.
+
+    That of the whole one has another sign for each axial force and each constraint.
+    """
+    if not work.followers.place.size:
+        return NOT_TRACKED
+    matrix = work.hessian * (work.unit[:, None] * work.unit / work.energy)
+    negative = float(np.linalg.slogdet(matrix)[0]) < 0.0
+    return int(negative) ^ (len(matrix) - work.count) % 2
+
+
 def jumped(before: Point, after: Point, step: float, unit: float) -> str:
     """Why ``after`` is not reached from ``before`` along a path; empty if it may be.
 
@@ -142,7 +145,7 @@ def jumped(before: Point, after: Point, step: float, unit: float) -> str:
     integrated with both factors as cubic Hermite polynomials of the parameter, from the end
     values and slopes: exact to the fourth power of the step.
     """
-    if after.inertia == NOT_TRACKED:
+    if np.isnan(after.potential):
         return ""
     parts = _parts(before, after, step)
     done = float(WEIGHTS @ parts)

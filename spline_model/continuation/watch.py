@@ -130,6 +130,9 @@ class Watch:
         if (loads := system.loads).value.size:
             moved = (rows["unknowns"].array - system.rest)[:, loads.coordinate]
             work = rows["load_factor"] * (moved @ loads.value) + work
+        if system.followers.place.size:  # with drives and loads they do what is stored
+            moved = (rows["unknowns"].array - system.rest)[:, : system.weight.size]
+            work = rows["energies"].sum(axis=1) + system.spring_energy(rows["poses"]) - moved @ system.weight
         return Path(
             status=Status.NOT_CONVERGED if message else Status.CONVERGED,
             message=message or self.remark(int(rows["inertia"][-1])),

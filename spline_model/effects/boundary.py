@@ -26,6 +26,8 @@ History = tuple[tuple[float, float], ...]
 STEADY: History = ((0.0, 1.0),)
 GROUND = "ground"
 ALWAYS = (0.0, math.inf)
+FORCE, MOMENT, FOLLOWER = range(3)
+"""Kinds of components of loads; a follower's two stand one behind the other."""
 
 
 def _factor_of(history: History, time: float) -> float:
@@ -195,23 +197,28 @@ class Sized(Load):
         return self._times(_factor_of(self.history, time))
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """Place in z, value and kind (1: a moment) of each component."""
+        """Place in z, value and kind of each component."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AppliedForce(Sized):
-    """Dead force on a body at its centre: (fx, fy) x load factor, in a motion x history(t).  [N]"""
+    """Force on a body at its centre: (fx, fy) x load factor, in a motion x history(t).  [N]
+
+    Dead, or a ``follower`` that turns with the body: such a force has no potential.
+    """
 
     body: str
     force: tuple[float, float]
+    follower: bool = False
 
     def _times(self, factor: float) -> Self:
         return replace(self, force=(factor * self.force[0], factor * self.force[1]))
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
         """fx and fy of the body."""
-        return [(layout.bodies[self.body] + k, force, 0) for k, force in enumerate(self.force)]
+        kind = FOLLOWER if self.follower else FORCE
+        return [(layout.bodies[self.body] + k, force, kind) for k, force in enumerate(self.force)]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -226,7 +233,7 @@ class AppliedMoment(Sized):
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
         """The moment of the body."""
-        return [(layout.bodies[self.body] + 2, self.moment, 1)]
+        return [(layout.bodies[self.body] + 2, self.moment, MOMENT)]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

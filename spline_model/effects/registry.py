@@ -188,15 +188,20 @@ def _applied_force(
     body: str | None = None,
     history: History = STEADY,
     at: Vector | None = None,
+    follower: bool = False,
 ) -> Iterator[Effect | Body]:
-    """Dead force [N] on a body, the only one if it is not named, at its centre or at a point of it that lies
-    ``at`` (x, y) [m] at rest."""
+    """Force [N] on a body, the only one if it is not named, at its centre or at a point of it that lies
+    ``at`` (x, y) [m] at rest; dead, or a follower that turns with the body."""
     acts_on = design.body_named(body)
-    if at is not None:
+    if at is not None and follower:  # turned with its lever, its moment stays
+        (x, y), (left, low) = at, next(each.centre for each in design.bodies if each.name == acts_on)
+        moment = (x - left) * force[1] - (y - low) * force[0]
+        yield boundary.AppliedMoment(body=acts_on, moment=moment, history=history)
+    elif at is not None:
         name = f"point {tuple(at)} of {acts_on}"
         yield Body(name=name, centre=np.array(at, dtype=float), joint=True, on=acts_on)
         acts_on = name
-    yield boundary.AppliedForce(body=acts_on, force=force, history=history)
+    yield boundary.AppliedForce(body=acts_on, force=force, history=history, follower=follower)
 
 
 def _applied_moment(
@@ -207,15 +212,21 @@ def _applied_moment(
 
 
 def _tip_force(
-    design: Design, strip: str, force: Vector, moment: float = 0.0, history: History = STEADY
+    design: Design,
+    strip: str,
+    force: Vector,
+    moment: float = 0.0,
+    history: History = STEADY,
+    follower: bool = False,
 ) -> Iterator[Effect | Body]:
-    """Dead force [N] and moment [N m] at the free end of a strip, on a frame there."""
+    """Force [N] and moment [N m] at the free end of a strip, on a frame there; the force dead, or a follower
+    that turns with the section."""
     whole = next((s for s in design.strips if s.name == strip and s.tip is None), None)
     if whole is None:
         raise InvalidParameter("strip", strip, "a strip with a free end")
     frame = Body(name=tip_of(strip), centre=np.asarray(whole.end, dtype=float), joint=True)
     yield frame
-    yield boundary.AppliedForce(body=frame.name, force=force, history=history)
+    yield boundary.AppliedForce(body=frame.name, force=force, history=history, follower=follower)
     if moment != 0.0:
         yield boundary.AppliedMoment(body=frame.name, moment=moment, history=history)
 

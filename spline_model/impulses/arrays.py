@@ -69,6 +69,7 @@ class Problem(NamedTuple):
         """
         system = motion.system
         layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
+        system.require_plain("effects")
         if system.springs.size:
             raise InvalidParameter("effects", "spring", "a motion by solve_motion, for impulses know none")
         strips = {name: g for g, name in enumerate(layout.strips)}

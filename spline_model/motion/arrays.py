@@ -144,7 +144,7 @@ class Scratch(NamedTuple):
     and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
     along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
     condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms: of carried
-    frames, see ``spline_model.motion.step``.
+    frames, see ``spline_model.motion.step``; follow: values of followers.
     """
 
     dy: Annotated[Array, "Y"]
@@ -175,6 +175,7 @@ class Scratch(NamedTuple):
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
     arms: Annotated[Array, "C 6"]
+    follow: Annotated[Array, "F"]
 
 
 Kind = TypeVar("Kind", bound=tuple[Any, ...])
@@ -204,7 +205,7 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
-    sizes |= {"C": len(masses.frames)}
+    sizes |= {"C": len(masses.frames), "F": len(masses.load_at)}
     return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
 
 

@@ -19,11 +19,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton
+from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton, turned
 from spline_model.motion.strip import SHARE, SLOPE, keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
@@ -76,6 +77,11 @@ def _count_work(time, h, active, state, masses, work):
     dy, totals = work.dy, state.totals
     for f in range(masses.load_at.size):
         i = masses.load_at[f]
+        if masses.loads.turns[f] == FOLLOWER:
+            if i % 3 == 0:
+                x, y = turned(f, state, masses, work)
+                totals[0] += x * dy[i] + y * dy[i + 1]
+            continue
         moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
         totals[0] += load_at(f, time + 0.5 * h, masses) * moved
     for d in range(masses.drive_at.size):
@@ -185,7 +191,7 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
     return end
 
 
-def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
+def standing(scene: Scene, strips: Any, y: Array, s: int) -> str:
     """At how many degrees the bodies stand that a strip joins, in a state y (Y,)."""
     bodies = [i for i in (strips.roots[s], strips.tips[s]) if 0 <= i < len(scene.bodies)]
     angles = [f"{math.degrees(y[3 * i + 2]):.3g} degrees of {scene.bodies[i].name}" for i in bodies]
@@ -194,7 +200,7 @@ def turned(scene: Scene, strips: Any, y: Array, s: int) -> str:
 
 def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int) -> str:
     """Why a step from y (Y,) was given up, by what was counted, and what helps; s: the first to fold."""
-    strip, where = scene.strips[s], turned(scene, strips, y, s)
+    strip, where = scene.strips[s], standing(scene, strips, y, s)
     helps = f"take a shorter step, or more control points than {strip.basis.control_points}"
     if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
         return f"steps at {where} are halved too often; {helps}"

@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 from spline_model.effects import Spring
 from spline_model.errors import InvalidParameter
 from spline_model.motion.arrays import Masses, Poses
-from spline_model.motion.energy_consistent import forward, turned, why
+from spline_model.motion.energy_consistent import forward, standing, why
 from spline_model.motion.massless import evaluate, solve
 from spline_model.motion.moves import Moves
 from spline_model.motion.records import ENERGIES
@@ -47,7 +47,7 @@ def stepper(start: Start) -> Moves:
         )
     if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
         raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
-    motion.system.require_uncarried("effects")
+    motion.system.require_plain("effects")
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
     own = len(motion.system.scene.own_bodies)
@@ -207,7 +207,7 @@ class _Stepper(Moves):
         if self.counters[REFUSED] == FOLDS or least[soft] > SOFT:
             return why(self.counters, scene, strips, y, soft)
         return (
-            f"{scene.strips[soft].name} snaps through at {turned(scene, strips, y, soft)}: without "
+            f"{scene.strips[soft].name} snaps through at {standing(scene, strips, y, soft)}: without "
             "mass it goes from equilibrium to equilibrium, and there is none to go on to; give the strips "
             "their inertia (strip_inertia)"
         )

@@ -194,7 +194,7 @@ class Motion:
         """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
         loads = self.loads
         parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
-        return self.system.with_tables(loads=loads._replace(value=loads.value * parts) if parts else loads)
+        return self.system.with_tables(acting=loads._replace(value=loads.value * parts) if parts else loads)
 
     def require_material(self) -> None:
         """Refuse another measure than the material one, which only the leapfrog integrates."""
@@ -230,7 +230,7 @@ def set_in_motion(system: System) -> Motion:
     """The motion of a system; refuses a scene whose coordinates have no inertia."""
     if not system.scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
-    return Motion(system, system.drives, system.loads)
+    return Motion(system, system.drives, system.acting)
 
 
 def axial_rigidity(system: System) -> Array:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, condense, move_strip, to_reduced
 from spline_model.newton import ROUND_OFF
@@ -48,7 +49,32 @@ def prepare(time, h, state, strips, masses, work):
             work.steady[s, 2 * i] = -strips.numbers[s, ON_POINTS + 2 * i] - 2.0 / h * x
             work.steady[s, 2 * i + 1] = -strips.numbers[s, ON_POINTS + 2 * i + 1] - 2.0 / h * y
     for f in range(masses.load_at.size):
-        work.load[masses.load_at[f]] += load_at(f, time + 0.5 * h, masses)
+        work.follow[f] = load_at(f, time + 0.5 * h, masses)
+        if masses.loads.turns[f] != FOLLOWER:
+            work.load[masses.load_at[f]] += work.follow[f]
+
+
+@part()
+def turned(f, state, masses, work):
+    """A follower, whose parts are the f-th load and the next one, as its body stands amid a step."""
+    x, y, turn = work.follow[f], work.follow[f + 1], masses.load_at[f] + 2
+    angle = state.y[turn] + math.atan(0.5 * work.dy[turn])
+    cos, sin = math.cos(angle), math.sin(angle)
+    return cos * x - sin * y, sin * x + cos * y
+
+
+@part()
+def _add_followers(state, masses, work):
+    """Forces that turn with bodies."""
+    for f in range(0, masses.load_at.size - 1):
+        at = masses.load_at[f]
+        if masses.loads.turns[f] == FOLLOWER and at % 3 == 0:
+            x, y = turned(f, state, masses, work)
+            share = 0.5 / (1.0 + 0.25 * work.dy[at + 2] * work.dy[at + 2])
+            work.residual[at] -= x
+            work.residual[at + 1] -= y
+            work.tangent[at, at + 2] += share * y
+            work.tangent[at + 1, at + 2] -= share * x
 
 
 @part()
@@ -81,6 +107,7 @@ def _add_bodies(h, state, bodies, masses, work):
         raw[i] = 2.0 / h * masses.inertia[i] * (mean - state.rate[i]) + masses.drag[i] * mean
         raw[i] -= bodies.weight[i] + load
     _add_springs(h, state, bodies, masses, work)
+    _add_followers(state, masses, work)
     for i in range(masses.inertia.size):
         work.reduced[i] = raw[i]
 

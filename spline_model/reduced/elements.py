@@ -14,6 +14,7 @@ from spline_model import checks
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
+from spline_model.followers import Followers
 from spline_model.frames import Frames
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
@@ -107,7 +108,12 @@ class Elements(Followed):
     @property
     def compiled(self) -> bool:
         """Whether a path is followed by kernels where nothing happens on it."""
-        return not self.frames.place.size
+        return not (self.frames.place.size or self.followers.place.size)
+
+    @property
+    def followers(self) -> Followers:
+        """Forces that turn with bodies, among these unknowns."""
+        return self.model.followers
 
     @cached_property
     def held(self) -> slice:
@@ -204,6 +210,7 @@ class Elements(Followed):
             self.gradient[own] += springs @ (z[own] - model.bodies.rest[own])
             self.hessian[own, own] += springs
         self.frames.subtract(z, self.gradient, self.hessian)
+        self.followers.subtract(z, load_factor, self.gradient, self.hessian)
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
+from spline_model.followers import Followers
 from spline_model.frames import Frames
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
@@ -56,6 +57,14 @@ class Reduced:
         """Frames that bodies carry, among y; their multipliers are none of it."""
         frames = self.system.frames
         return Frames(frames.place - self.system.layout.poses.start, frames.lever / self.length)
+
+    @cached_property
+    def followers(self) -> Followers:
+        """Forces that turn with bodies, at places in y."""
+        given, unit = self.system.followers, self.length / self.energy
+        return Followers(
+            given.place - self.system.layout.poses.start, given.growing * unit, given.steady * unit
+        )
 
     @cached_property
     def drive_length(self) -> Array:

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from spline_model import (
     BodyDesign,
@@ -194,3 +195,45 @@ def test_motions_with_hinges_keep_their_energy():
         return np.abs(energy - energy[0]).max()
 
     gates.hold("spline_hinged_motion", error)
+
+
+def followed(load):
+    """x/L, y/L and turn of a tip under a force across its section [EI/L^2], integrated from there back."""
+
+    def rates(_, state):
+        _, _, turn, curvature = state
+        return -math.cos(turn), -math.sin(turn), -curvature, load * math.cos(turn)
+
+    x, y, turn, _ = solve_ivp(rates, (0.0, 1.0), np.zeros(4), rtol=1e-12, atol=1e-13).y[:, -1]
+    cos, sin = math.cos(turn), math.sin(turn)
+    return np.array([-cos * x - sin * y, sin * x - cos * y, -turn])
+
+
+def test_followers_bend_strips_as_the_elastica_has_it():
+    """Requirement: a force that turns with the tip bends a strip as its elastica, in both systems; beside one
+    a dead load still buckles it where the determinant vanishes, and one along it does not."""
+
+    def error(points=14, method="condensed"):
+        tip = {"strip": "beam", "force": (0.0, 10.0), "follower": True}
+        path = solve_mechanism(beam(points=points, tip_force=tip), increments=10, method=method, check=False)
+        return np.abs(path.tips["beam"][-1] - followed(10.0)).max()
+
+    gates.hold("spline_followers", error)
+    gates.check("spline_followers", error(method="multipliers"))
+    along = {"strip": "beam", "force": (-20.0, 0.0), "follower": True}
+    assert solve_mechanism(beam(tip_force=along)).critical_points == ()
+    both = [along | {"force": (-1e-9, 0.0)}, {"strip": "beam", "force": (-3.0, 0.0)}]
+    (found,) = solve_mechanism(beam(tip_force=both), check=False).critical_points
+    gates.check("spline_followers", abs(12.0 * found.load_factor / math.pi**2 - 1.0))
+
+
+def test_a_motion_under_a_follower_books_its_work():
+    """Requirement: what a force that turns with its body does in a motion is in the balance of energies."""
+    force = {"force": (-0.3, 1.0), "at": (1.1, -0.2), "follower": True, "history": ((0.0, 0.0), (0.2, 1.0))}
+
+    def error(booked=1.0):
+        run = solve_motion(beam("end", applied_force=force), duration=0.5, step=0.02, check=False)
+        assert run.status.value == "converged"
+        return np.abs(run.kinetic_energy + run.strain_energy - booked * run.work).max()
+
+    gates.hold("spline_follower_motion", error)

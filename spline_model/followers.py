@@ -1,0 +1,57 @@
+"""Forces that turn with their bodies: they have no potential, and their tangent is not symmetric."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spline_model.effects import AppliedForce
+from spline_model.effects.boundary import FOLLOWER
+from spline_model.scene import Scene
+from spline_model.tables import LoadTable
+
+Array = NDArray[np.float64]
+
+
+class Followers(NamedTuple):
+    """P forces that turn with bodies.
+
+    place (P,): of their x, behind which y and theta stand, among the unknowns; growing, steady (P, 2): at
+    load factor 1, and at any.
+    """
+
+    place: NDArray[np.int64]
+    growing: Array
+    steady: Array
+
+    @classmethod
+    def of(cls, scene: Scene, loads: LoadTable) -> Self:
+        """Those among all loads that grow and of the steady ones of a scene [N]."""
+        own = loads.rows(loads.turns == FOLLOWER)
+        full = [each for each in scene.of(AppliedForce) if each.follower and each.steady]
+        places = [*own.coordinate[::2], *(scene.layout.bodies[each.body] for each in full)]
+        force = np.concatenate((own.value.reshape(-1, 2), np.reshape([each.force for each in full], (-1, 2))))
+        grows = np.arange(len(places))[:, None] < len(own.value) // 2
+        return cls(np.array(places, dtype=np.int64), force * grows, force * ~grows)
+
+    def turned(self, z: Array, load_factor: float) -> Array:
+        """Forces (P, 2) at unknowns z and a load factor."""
+        (x, y), turn = (load_factor * self.growing + self.steady).T, z[self.place + 2]
+        cos, sin = np.cos(turn), np.sin(turn)
+        return np.stack((cos * x - sin * y, sin * x + cos * y), axis=-1)
+
+    def subtract(self, z: Array, load_factor: float, gradient: Array, hessian: Array) -> None:
+        """Subtract the forces from the gradient, and their derivatives from its."""
+        force, at = self.turned(z, load_factor), self.place
+        for k, across in enumerate((-force[:, 1], force[:, 0])):
+            np.subtract.at(gradient, at + k, force[:, k])
+            np.subtract.at(hessian, (at + k, at + 2), across)
+
+    def push(self, z: Array) -> Array:
+        """Derivative (N,) of the forces in the load factor."""
+        found = np.zeros(len(z))
+        for k, part in enumerate(self._replace(steady=0.0 * self.steady).turned(z, 1.0).T):
+            np.add.at(found, self.place + k, part)
+        return found
