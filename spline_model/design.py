@@ -108,9 +108,11 @@ class StripDesign:
     @property
     def taper(self) -> Taper | None:
         """The taper of the section, None of a constant one."""
+        if self.width_end is None and self.thickness_end is None:
+            return None
         sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
-        width, thickness = (end / start if start and end else 1.0 for start, end in sides)
-        return None if width == thickness == 1.0 else Taper(width, thickness)
+        taper = Taper(*(end / start if start and end else 1.0 for start, end in sides))
+        return None if taper == (1.0, 1.0) else taper
 
     @property
     def chord(self) -> float:

@@ -148,7 +148,8 @@ def compliant_mechanism(
     """
     grid = Discretisation(**described)
     fewest = max((math.ceil(2.0 * abs(strip.opening) / LARGEST_OPENING) for strip in strips), default=1)
-    grid = replace(grid, segments=max(grid.segments, fewest))
+    if fewest > grid.segments:
+        grid = replace(grid, segments=fewest)
     given = dict(parameters or {})
     names = tuple(effects)
     if grid.stretch == "inextensible":

@@ -159,10 +159,12 @@ class Scene:
         total = np.zeros((3, 2))
         for effect in self.of(StripGravity):
             if effect.strip == strip:
-                own = self.strip(strip)
-                parts = np.array([1.0, 0.0, 0.0]) if own.taper is None else own.taper.powers
-                length = float(own.share_of_length().sum()) / float(parts @ (1.0, 1.0 / 2.0, 1.0 / 3.0))
-                total += np.outer(effect.linear_density * length * parts, effect.acceleration)
+                own, parts = self.strip(strip), (1.0, 0.0, 0.0)
+                if own.taper is not None:
+                    parts = own.taper.powers
+                length = float(own.share_of_length().sum()) / (parts[0] + parts[1] / 2.0 + parts[2] / 3.0)
+                weight = effect.linear_density * length * np.asarray(effect.acceleration)
+                total += [part * weight for part in parts]
         return total
 
     @property

@@ -49,10 +49,10 @@ class Taper(NamedTuple):
         return self.side("width", u) * self.side("thickness", u)
 
     @property
-    def powers(self) -> Array:
-        """Parts (3,) of the area with 1, u and u^2."""
+    def powers(self) -> tuple[float, float, float]:
+        """Parts of the area over that at the start with 1, u and u^2."""
         b, t = self.width - 1.0, self.thickness - 1.0
-        return np.array([1.0, b + t, b * t])
+        return 1.0, b + t, b * t
 
     def second_moment(self, u: Array) -> Array:
         """Second moment of area over that at the start, at u (P,)."""

@@ -226,12 +226,14 @@ def _moment_of_load_beyond(p, points, numbers, rule, tables):
         cx += tables[VALUE, p, i] * points[2 * i]
         cy += tables[VALUE, p, i] * points[2 * i + 1]
     for k in range(3):
-        ax = ay = 0.0
+        qx, qy, ax, ay = numbers[PER_U + 2 * k], numbers[PER_U + 2 * k + 1], 0.0, 0.0
+        if qx == 0.0 and qy == 0.0:
+            continue
         for i in range(points.size // 2):
             ax += tables[BEYOND + k, p, i] * points[2 * i]
             ay += tables[BEYOND + k, p, i] * points[2 * i + 1]
         far = (1.0 - rule[WHERE, p] ** (k + 1)) / (k + 1)
-        moment += (ax - far * cx) * numbers[PER_U + 2 * k + 1] - (ay - far * cy) * numbers[PER_U + 2 * k]
+        moment += (ax - far * cx) * qy - (ay - far * cy) * qx
     return moment
 
 

@@ -31,6 +31,7 @@ CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
 PRINTED = {"measure": "printed", "stretch": "consistent"}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
 UNSTEADY = "measure: got 'printed', expected material or spatial"
+TAPERED = SIDES | {"thickness_end": 2.0 * SIDES["thickness"]}
 ROOT = 'expected "monolithic" or a number >= 0, its length over the thickness'
 
 
@@ -67,6 +68,9 @@ PIVOTS = [
     (SIDES | more(root_compliance={"root": "sharp"}), f"root: got 'sharp', {ROOT}"),
     (SIDES | more(root_compliance={"root": -1.0}), f"root: got -1.0, {ROOT}"),
     (more(root_compliance={"root": 0.4}), "thickness of strip_1: got None, expected width and"),
+    (TAPERED | SPATIAL, "stretch: got 'consistent', expected mixed for the tapered strip_1"),
+    (SIDES | {"width_end": 0.0}, "width_end: got 0.0, expected a finite number > 0 [m]"),
+    ({"thickness_end": 1e-3}, "width: got None, expected width and thickness, both or neither"),
     (SIDES | CURLED | SPATIAL, "measure: got 'spatial', expected material for anticlastic"),
     (SIDES | more(clamped_width={}, pre_strain={"curvature": 1.0}), "natural curvature of pre_strain: got 1"),
 ]
@@ -124,6 +128,7 @@ STRIPS = [
             {"tip": None, "tip_joint": "hinge"},
             "tip_joint of strip_0: got 'hinge', expected clamp of a free end",
         ),
+        ({"rise": math.nan}, "rise of strip_0: got nan, expected a finite number [m]"),
         ({"rise": 0.1}, "rise of strip_0: got 0.1, expected 0, a straight strip, for clamped_width"),
         ({"width": 5.0}, "width over length of strip_0: got 5.0, expected 0.005 to 4"),
         (NO_SIDES, "width of strip_0: got None, expected width and thickness [m] for clamped_width"),
@@ -215,6 +220,11 @@ ASKED = [
     (
         lambda: solve_many(clamped_pivot(), {"strip_1.width": 9.0}, rotation=0.1),
         "width over length of strip_1",
+    ),
+    (lambda: derived(given=TAPERED), "taper of strip_1: got (1.0, 2.0), expected none, a constant section"),
+    (
+        lambda: solve_many(cross_axis_pivot(**BARE | TAPERED), rotation=0.1),
+        "taper of strip_1: got (1.0, 2.0)",
     ),
     (lambda: solve_statics(pivot(), rotation=1e-13), "rotation: got 1e-13, expected 0, or legs of 1e-12"),
     (lambda: accurate(axial_modes=3), "axial_modes: got 3, expected none beside accuracy"),
