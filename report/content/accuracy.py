@@ -1,11 +1,9 @@
 """What was found of the paper's claims; errors of the benchmark pivot, convergence, hard cases."""
 
-import math
 from typing import Any
 
 import pandas as pd
 
-from report.content.basis import TORQUE
 from report.facts import FACTS, HOLDS, LISTINGS, Fact, Results, Stored, Table, listing
 from report.forms import Form, count, digits, percent, seconds, signed_percent, significant, times, unit
 from studies.registry import STUDIES
@@ -120,45 +118,11 @@ RELEASE = Stored("paper/fig06_release", "reference")
 MESHES = Stored("convergence/elements", "meshes", element="corotational")
 TWENTY = MESHES.where(elements=20)
 MOTIONS = Stored("paper/fig06_release", "summary")
-PLATE = Stored("model_form/plate", "paper")
-SOLIDS = Stored("model_form/solid_pivot", "deviations")
-SOLID_LIMITS = Stored("model_form/solid_pivot", "limits", law="st-venant-kirchhoff")
-PIVOTS = Stored("charts/pivot", "validity", pivot="cross_axis_pivot")
-GRAVITY = Stored("effects/worth", "worth", design="Table 1", scene="no gravity")
 
 
 def free(n: int) -> Stored:
     """Return the row of the map for the locking-free default: two axial modes fewer than control points."""
     return MAP.where(measure="material", stretch="mixed", control_points=n, axial_modes=n - 2)
-
-
-#: Source of an error of the torque -> rows and column that have it; the largest of several is drawn.
-BUDGET: dict[str, tuple[Stored, str]] = {
-    "membrane locking, n = 4 as published": (PAPER, "error_torque"),
-    "supports cut from one block": (PIVOTS, "roots"),
-    "plate action at the clamps": (PLATE, "excess"),
-    "n = 4 without locking": (free(4), "error_torque"),
-    "material law of solids": (SOLIDS.where(model="solid, neo-hookean"), "error_torque"),
-    "beams against solids": (SOLIDS.where(model="beam"), "error_torque"),
-    "uncertainty of the solids": (SOLID_LIMITS, "uncertainty"),
-    "shear": (TORQUE, "distance_to_material"),
-    "20 elements per strip": (TWENTY, "error_torque"),
-    "stretching": (RIGID, "error_torque"),
-    "n = 6 without locking": (free(6), "error_torque"),
-    "gravity": (GRAVITY, "torque"),
-    "n = 8 without locking": (free(8), "error_torque"),
-    "uncertainty of the reference": (STATICS.where(quantity="torque"), "uncertainty"),
-}
-
-
-@listing("budget")
-def _budget(results: Results) -> Table:
-    """Return every source with its error and the decimal logarithm of it, the largest first."""
-    sources = {each: rows.rows(results)[name].abs() for each, (rows, name) in BUDGET.items()}
-    yield ["source", "error", "logarithm"]
-    for source, errors in sorted(sources.items(), key=lambda each: -each[1].max()):
-        lowest = f"{percent(errors.min())} to " if len(errors) > 1 else ""
-        yield [source, lowest + percent(errors.max()), str(math.log10(errors.max()))]
 
 
 @listing("agreement")

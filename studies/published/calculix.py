@@ -20,7 +20,8 @@ from studies.cases.problem import Problem, named_case
 from studies.engine import Answer, Claim, Part, Study
 from studies.errors import Unanswered
 from studies.kinds import Array
-from studies.published.solid_pivot import COARSEST, STATES, meshed, turned
+from studies.published.solid_pivot import STATES
+from studies.published.solids import COARSEST, meshed, turned
 from studies.record.store import Digits
 
 PROGRAM = "ccx"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cases.section import of_sides
 from studies.engine import Answer, Part, Study, Tables
-from studies.published.solid_pivot import (
+from studies.published.solids import (
     COARSEST,
     FINE,
     ORDER,

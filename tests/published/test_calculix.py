@@ -6,7 +6,8 @@ import pytest
 from studies.cases.problem import named_case
 from studies.errors import Unanswered
 from studies.published import calculix
-from studies.published.solid_pivot import STATES, meshed, turned
+from studies.published.solid_pivot import STATES
+from studies.published.solids import meshed, turned
 from tests.gates import hold
 
 ccx = pytest.mark.skipif(bool(calculix.missing()), reason="ccx is not installed (calculix-ccx)")

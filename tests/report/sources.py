@@ -38,7 +38,7 @@ def prose(source: str) -> str:
     source = re.sub(r"#equation\[[^\]]*\]", " ", source)
     source = re.sub(r"<[\w-]+>|@[\w-]+", " ", source)
     source = re.sub(r'#import "[^"]*"|#include "[^"]*"', " ", source)
-    source = re.sub(r'(?:fact|see|seetable|plot|bars|listing|supported)\("[^"]*"', " ", source)
+    source = re.sub(r'(?:fact|see|seetable|plot|listing|supported)\("[^"]*"', " ", source)
     source = re.sub(
         r'"\w+_\w+"|slice\(0, \d+\)|update\(0\)|rgb\("#\w+"\)|"S1"|level: 2|len\(\) > 0',
         " ",

@@ -35,7 +35,7 @@ def test_typed_number_is_seen(typed):
 
 @pytest.mark.parametrize(
     ("kind", "functions"),
-    [("facts", ("fact",)), ("holds", ("supported",)), ("listings", ("listing", "bars"))],
+    [("facts", ("fact",)), ("holds", ("supported",)), ("listings", ("listing",))],
 )
 def test_what_is_given_is_quoted(kind, functions):
     """Every fact, condition and table is used by a section, and every one that is used is given."""
@@ -48,7 +48,7 @@ def test_every_figure_is_shown_and_referred_to():
     pages = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     elsewhere = re.findall(r"results/figures/(\w+)\.png", "".join(map(text, pages)))
     assert quoted("plot") <= drawn <= quoted("plot") | set(elsewhere)
-    assert quoted("plot") | quoted("bars") == quoted("see")
+    assert quoted("plot") == quoted("see")
 
 
 def test_every_table_is_referred_to():
@@ -65,8 +65,8 @@ def test_every_figure_has_words():
     """Each figure has an alternative text of a sentence; one without ends the build."""
     for path in SECTIONS:
         source = path.read_text(encoding="utf-8")
-        words = re.findall(r'#(?:plot|bars)\("\w+",[^"]*alt: "([^"]+)"', source)
-        assert len(words) == len(re.findall(r'#(?:plot|bars)\("', source)), path.name
+        words = re.findall(r'#plot\("\w+",[^"]*alt: "([^"]+)"', source)
+        assert len(words) == len(re.findall(r'#plot\("', source)), path.name
         assert all(len(each) > 40 and each.endswith(".") for each in words), path.name
 
 
