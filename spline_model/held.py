@@ -1,4 +1,4 @@
-"""A pivot whose body is held in a pose or turned about where it likes, state after state: ``HeldPivot``."""
+"""A mechanism of which one body is held in a pose, or in its rotation alone: ``HeldPivot``."""
 
 from __future__ import annotations
 
@@ -49,27 +49,30 @@ class HeldState:
 
 
 class HeldPivot:
-    """Static states of one body on its strips, each found from the one before.
+    """Static states of a mechanism in which one body is held, each found from the one before.
 
     ``hold`` prescribes x, y and theta (a body in the hand: Eq 7 and the driven displacements),
     ``turn`` theta alone. Exact for the discretised equations to TOLERANCE, as the path with the same
     drives is; leaves out gravity and loads. A call that finds no equilibrium in a bounded number of
-    iterations, or held strips that buckle, leaves the state as it was and says so.
+    iterations, or held strips that buckle, leaves the state as it was and says so. The other bodies
+    of a mechanism are free; ``body`` names the held one, by default that of the case.
     """
 
-    def __init__(self, mechanism: Mechanism) -> None:
-        model = _held_model(mechanism)
+    def __init__(self, mechanism: Mechanism, body: str | None = None) -> None:
+        model = _held_model(mechanism, body)
         if model is None:
-            expected = "one body on strips that bend and stretch, mixed form, no loads"
+            expected = "bodies on strips that bend and stretch, mixed form, no loads"
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
         self._arrays = model.arrays()
         self._y = at_rest(model)
         self._rest, self._preload = self._y.copy(), Preload.of(model)
-        every = np.arange(3, dtype=np.int64)
-        grasped = replace(model, bodies=model.bodies._replace(free=every[:0], held=every, driven=-1))
+        turn = int(model.bodies.held[0])
+        self._own = own = np.arange(turn - 2, turn + 1)
+        others = np.setdiff1d(np.arange(len(model.bodies.rest)), own)
+        grasped = replace(model, bodies=model.bodies._replace(free=others, held=own, driven=-1))
         self._grasped = grasped.arrays()
-        self.pose = self._y[:3] * self._unit
+        self.pose = self._y[own] * self._unit
         self._led: Arrays | None = None  # those that the state was led with; none behind ``restore``
         self.reset()
 
@@ -79,7 +82,7 @@ class HeldPivot:
 
     def reset(self) -> HeldState:
         """Back to rest, unloaded."""
-        return self.restore(np.concatenate((self._rest[:3] * self._unit, self._rest)))
+        return self.restore(np.concatenate((self._rest[self._own] * self._unit, self._rest)))
 
     @property
     def unknowns(self) -> Array:
@@ -106,14 +109,14 @@ class HeldPivot:
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
         reached, iterations = self._lead(self._arrays, np.array([rotation]), stable=False)
-        self.pose[:] = self._y[:3] * self._unit
+        self.pose[:] = self._y[self._own] * self._unit
         return self._state(reached, iterations)
 
     def _lead(self, arrays: Arrays, target: Array, *, stable: bool) -> tuple[float, int]:
         """Lead the held coordinates to ``target`` (D,) along a path of equilibria; the fraction of the way
         that was solved, of which nothing is kept but the whole, and Newton's iterations."""
         held = arrays.bodies.held
-        whole, longest = target - self._y[held], np.array([LONGEST_SHIFT, LONGEST_SHIFT, LONGEST_TURN])[held]
+        whole, longest = target - self._y[held], np.where(held % 3 == 2, LONGEST_TURN, LONGEST_SHIFT)
         if self._led is arrays and not whole.any():
             return 1.0, 0
         parts = max(1, math.ceil((np.abs(whole) / longest).max()))
@@ -131,18 +134,27 @@ class HeldPivot:
     def _state(self, reached: float, iterations: int) -> HeldState:
         model, space = self.model, self._arrays.space
         bear(self._y, self._arrays)
-        units, tangent = 1.0 / self._unit, space.tangent + space.tangent.T  # of an upper triangle
-        tangent.flat[::4] *= 0.5
+        units, full = 1.0 / self._unit, np.triu(space.tangent) + np.triu(space.tangent, 1).T
+        own, others = self._own, self._grasped.bodies.free
+        tangent = full[np.ix_(own, own)]
+        if len(others):  # which follow without a force
+            across = full[np.ix_(others, own)]
+            tangent = tangent - across.T @ np.linalg.solve(full[np.ix_(others, others)], across)
         return HeldState(
             solved=reached == 1.0,
             reached=reached,
             pose=self.pose.copy(),
-            force=space.vectors[FORCE, :3] * units * model.energy,
+            force=space.vectors[FORCE, self._own] * units * model.energy,
             tangent=tangent * (units[:, None] * units * model.energy),
             bending_energy=float(space.out[BENDING]) * model.energy,
             axial_energy=float(space.out[AXIAL]) * model.energy,
             iterations=iterations,
         )
+
+    @property
+    def poses(self) -> Array:
+        """Poses of all bodies (B, 3) [m, m, rad]."""
+        return self._y[: len(self.model.bodies.rest)].reshape(-1, 3) * self._unit
 
     @property
     def control_points(self) -> Array:
@@ -160,21 +172,25 @@ class HeldPivot:
         return np.asarray(unknowns_of(model, self._y[None], reaction[None])[0])
 
 
-def _held_model(mechanism: Mechanism) -> Reduced | None:
-    """The mechanism with its rotation driven; all axial forces are the strips' own."""
-    if len(mechanism.design.bodies) != 1 or mechanism.design.discretisation.segments != 1:
+def _held_model(mechanism: Mechanism, body: str | None) -> Reduced | None:
+    """The mechanism with a body's rotation driven; all axial forces are the strips' own."""
+    if mechanism.design.discretisation.segments != 1:
         return None
-    system = compile_scene(mechanism.driven(1.0))
+    system = compile_scene(mechanism.driven(1.0, body))
     model = reduced(system)
     if model is None or model.strips.stretching.any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None
-    bodies = model.bodies
-    if system.is_preloaded or system.acting.value.any() or len(bodies.held) != 1 or len(bodies.rest) != 3:
+    bodies, count = model.bodies, 3 * len(mechanism.design.bodies)
+    if system.is_preloaded or system.acting.value.any() or len(bodies.held) != 1 or len(bodies.rest) != count:
         return None
     return replace(
         model,
         strips=model.strips._replace(outer=0),
-        bodies=bodies._replace(load=bodies.load[:3], weight=bodies.weight[:3], free=bodies.free[:2]),
+        bodies=bodies._replace(
+            load=bodies.load[:count],
+            weight=bodies.weight[:count],
+            free=np.setdiff1d(np.arange(count), bodies.held),
+        ),
     )

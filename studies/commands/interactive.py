@@ -175,8 +175,10 @@ def _say_shared(address: str, camera: str) -> None:
     )
     print(
         f"studies: shared at {address}\n"
-        f"studies: who has this link, in this network, drives a pivot of his own{sees}; nothing is "
-        "encrypted; no file of this machine is read or written; a phone's own camera stays closed",
+        f"studies: everyone in this network who has this link moves a pivot of their own{sees}; nothing is "
+        "encrypted; no file of this machine is read or written\n"
+        "studies: a phone's own camera stays closed: browsers open it to https pages with a certificate that "
+        "they trust, which a private address cannot have",
         file=sys.stderr,
     )
     code = np.pad(cv2.QRCodeEncoder.create().encode(address) > 0, ((3, 4), (3, 3)), constant_values=True)

@@ -63,6 +63,7 @@ EVENTS: Events = {
     "parameter": {"name": _NAME, "value": ANYTHING, "part?": TRUTH},
     "preset": {"name": _NAME, "values?": _MAP, "case?": _MAP, "part?": TRUTH},
     "drive": {"by": _DRIVE},
+    "grasp": {"body": _NAME},
     "solver": {"name": _SOLVER, "sweeps?": _SWEEPS},
     "critical": {"force": ANYTHING},
     **{do: {} for do in ("tick", "catch", "pause", "resume", "step", "reset", "undo", "redo", "rest")},

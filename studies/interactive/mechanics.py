@@ -47,12 +47,12 @@ class Mechanics:
     """
 
     def __init__(self, piece: Piece, rest: Any = PRINTED) -> None:
-        self.piece, self._body = piece, piece.design.bodies[0].name
+        self.piece, self._body = piece, piece.body.name
         self.placed(rest)
         self._load = np.array([0.0, -(piece.values["load"] or 0.0), 0.0])
         self.control_points, self.doubt = self._chosen()
         free = piece.modelled(self.control_points, loaded=False)
-        self._held = HeldPivot(free)
+        self._held = HeldPivot(free, self._body)
         self.strips = Strips(piece.design, self._held.control_points)
         self._acting = piece.modelled(self.control_points) if self._load.any() else free
         self._system = compile_scene(self._acting.released())
@@ -64,17 +64,22 @@ class Mechanics:
 
     @property
     def _reach(self) -> float:
-        """Rotation up to which the design is known [rad]."""
-        return LITTLE if self.piece.design.rotation is None else REACH
+        """Rotation up to which the design is known [rad]: of several bodies, that of the case."""
+        design = self.piece.design
+        if design.rotation is None:
+            return LITTLE
+        return REACH if len(design.bodies) == 1 else min(REACH, abs(design.rotation))
 
     def _chosen(self) -> tuple[int, str]:
         """Return how many control points a strip takes, on the path by a moment alone to `REACH`, and what is
         to be said of their error; empty if it is below that of all answers."""
         design = self.piece.design
+        if design.rotation is None and len(design.bodies) > 1:  # a path to so stiff a rotation takes a minute
+            return FIRST, "not estimated: the case turns another body"
         heavy = abs(float(self._load[1])) * max(s.length for s in design.strips) > HEAVY * flexural_scale(
             design
         )
-        how: dict[str, Any] = {"increments": INCREMENTS, "raise_on_failure": False}
+        how: dict[str, Any] = {"body": self._body, "increments": INCREMENTS, "raise_on_failure": False}
         path = solve_mechanism(self.piece.modelled(loaded=not heavy), rotation=self._reach, **how)
         if path.status is not Status.CONVERGED or path.segments != 1:
             why = path.message or "its strips want segments, which a body in the hand does not take"
@@ -84,7 +89,8 @@ class Mechanics:
     @cached_property
     def longest_step(self) -> float:
         """Longest step [s] that resolves a swing about rest in phase and amplitude."""
-        lowest = natural_frequencies(self.piece.modelled(self.control_points, loaded=False)).frequency[0]
+        free = self.piece.modelled(self.control_points, loaded=False)
+        lowest = natural_frequencies(free, body=self._body).frequency[0]
         return 1.0 / (STEPS_PER_PERIOD * float(lowest)) if lowest > 0.0 else math.inf
 
     def pace(self, piece: Piece) -> None:
@@ -98,7 +104,7 @@ class Mechanics:
 
     def placed(self, rest: Any) -> None:
         """Markers at `rest` (3,) are those of the design at rest."""
-        self.placing = Placing(self.piece.design, rest)
+        self.placing = Placing(self.piece.design, rest, self._body)
 
     def reset(self) -> None:
         """Back to rest, held."""
@@ -162,7 +168,7 @@ class Mechanics:
 
     def grounded(self, pose: Array) -> bool:
         """Whether the centre of a body at `pose` (3,) lies beyond the ground's clamps."""
-        ground, centre = self.placing.clamps[:, 0].mean(axis=0), self.placing.centre
+        ground, centre = self.placing.base, self.placing.centre
         return bool((pose[:2] - ground) @ (centre - ground) < 0.0)
 
     def stiffness_spread(self, ways: Array) -> float:
@@ -251,6 +257,7 @@ class Mechanics:
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
         return Snapshot(
             **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
+            poses=self._held.poses.copy(),
             force=state.force - self._load,
             tangent=state.tangent,
             centre=Snapshot.pole(state.pose, Snapshot.free_turn(state.tangent), 0.0),
@@ -266,7 +273,8 @@ class Mechanics:
         known = self._shown(pose, points, now.strain, now.kinetic)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
         centre = Snapshot.pole(pose, velocity, LEAST_TURN / self.step)
-        return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
+        poses = np.array([now.z[layout.body(body.name)] for body in self.piece.design.bodies])
+        return Snapshot(**known, poses=poses, velocity=velocity, centre=centre, iterations=now.iterations)
 
     def _shown(self, pose: Array, points: Array, strain: float, kinetic: float = 0.0) -> dict[str, Any]:
         """Return what follows from the pose, the control points of the strips (S, n, 2) and the energies."""

@@ -85,8 +85,8 @@ class _Impulses:
     what is stable."""
 
     def __init__(self, design: Mechanism, z: Array, v: Array, form: str, sweeps: int) -> None:
-        swept = sweeps if form == "printed" else None
-        self._solver = solver = impulse_solver(design, form=form, sweeps=swept)
+        swept, body = sweeps if form == "printed" else None, design.design.bodies[0].name
+        self._solver = solver = impulse_solver(design, form=form, sweeps=swept, body=body)
         self._out, self.longest = solver.look(solver.start_at(z, v)), math.inf
         if form == "printed":
             limit, damping = stability_limit(design), solver.system.scene.of(StripDamping)

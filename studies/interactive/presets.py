@@ -14,7 +14,8 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import Design, as_toml, design_of, document_of
 from studies.cases.document import parsed
 from studies.cases.effects import DEFAULT
-from studies.cases.keys import GROUND, MATERIALS
+from studies.cases.keys import GROUND, HINGE, MATERIALS
+from studies.cases.mechanism import Body
 from studies.cases.problem import FOLDER, Problem
 from studies.cases.section import of_sides, refuse_tapers
 from studies.errors import BadInput
@@ -133,9 +134,27 @@ class Piece:
         if isinstance(base, Problem):
             return replace(base, effects=effects, **own)  # type: ignore[arg-type]
         body = {own_name: own.pop(name) for name, own_name in _OF_BODY.items()}
+        held = _held(base)
         strips = tuple(replace(strip, **own) for strip in base.strips)  # type: ignore[arg-type]
-        bodies = (replace(base.bodies[0], **body),)  # type: ignore[arg-type]
+        bodies = tuple(replace(b, **body) if b is held else b for b in base.bodies)  # type: ignore[arg-type]
         return replace(base, strips=strips, bodies=bodies, effects=effects)
+
+    @property
+    def body(self) -> Body:
+        """The body that is held."""
+        return _held(self.base)
+
+    def grasped(self, body: str) -> "Piece":
+        """Return the same mechanism with another body held, which its case does not turn."""
+        names = [each.name for each in self.base.bodies]
+        if body not in names:
+            raise BadInput(f"body: got {body[:40]!r}, expected one of {', '.join(names)}")
+        if body == self.body.name:
+            return self
+        document = {**self.document, "drive": {"body": body, "increments": self.base.increments}}
+        base = _read(document)
+        values = dict(self.values) | {name: getattr(_held(base), own) for name, own in _OF_BODY.items()}
+        return replace(self, name=OWN, document=document, base=base).changed(values)
 
     def modelled(self, control_points: int | None = None, *, loaded: bool = True) -> Any:
         """Return the design as the spline model has it; without a number its control points are left open."""
@@ -158,14 +177,25 @@ class Piece:
 
 
 def _read(document: Mapping[str, Any]) -> Design:
-    """Return the design of a case file; BadInput unless it is one body on strips from the ground."""
+    """Return the design of a case file; BadInput unless bodies on strips, some from the ground, are in it."""
     design = design_of("design.toml", document)
     refuse_tapers("design.toml", design.strips, "the interactive environment")
-    if len(design.bodies) != 1:
-        raise BadInput(f"bodies: got {len(design.bodies)}, expected one body on strips from the ground")
-    if odd := [strip.name for strip in design.strips if strip.root != GROUND or strip.tip != design.body]:
-        raise BadInput(f"strips: got {odd[0]}, expected each from the ground to {design.body}")
+    if left := [name for name in ("support", "spring") if name in design.effects.names]:
+        raise BadInput(f"scene: got a {left[0]}, expected strips and bodies alone")
+    hinged = [strip.name for strip in design.strips if HINGE in (strip.root_joint, strip.tip_joint)]
+    if hinged:
+        raise BadInput(f"strips: got {hinged[0]} with a hinge, expected clamped ends")
+    names = {GROUND, *(body.name for body in design.bodies)}
+    if odd := [strip.name for strip in design.strips if not {strip.root, strip.tip} <= names]:
+        raise BadInput(f"strips: got {odd[0]} with a free end, expected both ends on a body or the ground")
+    if not design.bodies or not any(GROUND in (strip.root, strip.tip) for strip in design.strips):
+        raise BadInput("bodies: got none on the ground, expected strips from the ground to a body")
     return design
+
+
+def _held(design: Design) -> Body:
+    """Return the body that the case drives."""
+    return next((body for body in design.bodies if body.name == design.body), design.bodies[0])
 
 
 def _of_strips(design: Design) -> dict[str, float | None]:
@@ -194,7 +224,7 @@ def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
         "load": -given.get("applied_force", {}).get("force", (0.0, 0.0))[1],
         "time_scale": 1.0,
     }
-    values |= {own: getattr(design.bodies[0], attribute) for own, attribute in _OF_BODY.items()}
+    values |= {own: getattr(_held(design), attribute) for own, attribute in _OF_BODY.items()}
     values |= _of_strips(design)
     if isinstance(design, Problem):
         values |= {n: getattr(design, n) for n in ("length", "inclination", "crossing_ratio")}
@@ -203,7 +233,8 @@ def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
     piece = Piece(name=name, document=document, base=design, values=ordered, **titles)
     if "time_scale" in known:
         return piece.changed({})
-    frequency = float(natural_frequencies(piece.modelled(loaded=False), count=1).frequency[0])
+    modes = natural_frequencies(piece.modelled(loaded=False), count=1, body=piece.body.name)
+    frequency = float(modes.frequency[0])
     return piece.changed({"time_scale": min(1.0, 1.0 / frequency) if frequency > 0.0 else 1.0})
 
 
@@ -229,9 +260,7 @@ PRESETS: dict[str, Piece] = {
         time_scale=1.0 / 200.0,
     ),
 }
-SHIPPED = sorted(
-    path.stem for path in FOLDER.glob("*.toml") if len(parsed(path).get("bodies", ["its own"])) == 1
-)
+SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
 def own(case: str) -> Piece:

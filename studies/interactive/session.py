@@ -115,7 +115,7 @@ class Session:
             self._warn(code)
         if self._tick(event) or self.paused:
             return
-        body = placing.body(marker, near=self.wanted[2])
+        body = placing.held(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - placing.centre), body[2]])
         if placing.looks_swapped(marker):
             self._warn("swapped")
@@ -238,6 +238,11 @@ class Session:
     def _parameter(self, event: dict[str, Any]) -> None:
         self._change(self.mechanics.piece.changed({event["name"]: event["value"]}), event)
 
+    def _grasp(self, event: dict[str, Any]) -> None:
+        """Hold another body of the mechanism, from rest on."""
+        self.mechanics.reset()
+        self._change(self.mechanics.piece.grasped(event["body"]), event)
+
     def _preset(self, event: dict[str, Any]) -> None:
         self._change(self._chosen(event["name"], event), event)
 
@@ -265,7 +270,9 @@ class Session:
         loads = [each.values["load"] or 0.0 for each in (before.piece, piece)]
         if not before.piece.like(piece, "load", "relaxation_time") or loads[0] * loads[1] < 0.0:
             self.critical = None
-        if piece.name != before.piece.name:
+        if piece.body.name != before.piece.body.name:
+            self.wanted = np.zeros(3)
+        elif piece.name != before.piece.name:
             self.wanted[:2] *= self.mechanics.strips.length / before.strips.length
         if piece.design.rotation is None and self.drive == "rotation":
             self.drive = "pull"  # its case turns no body

@@ -161,7 +161,7 @@ def curved(session: Any) -> dict[str, Any]:
 #: What a state tells of the session, of its clock and of the mechanics as it is.
 OF_SESSION = ("paused", "drive", "solver", "sweeps", "sight", "wanted", "critical")
 OF_CLOCK = ("steps", "simulated")
-OF_NOW = ("iterations", "pose", "velocity", "centre", "force", "stiffness", "shape")
+OF_NOW = ("iterations", "pose", "poses", "velocity", "centre", "force", "stiffness", "shape")
 
 
 def shown(session: Any) -> dict[str, Any]:
@@ -188,6 +188,10 @@ def shown(session: Any) -> dict[str, Any]:
             "marker": placing.marker(now.pose),
             "clamps": placing.clamps,
             "centre": placing.centre,
+            "ends": placing.ends,
+            "centres": placing.centres,
+            "bodies": placing.names,
+            "body": placing.body,
             "depth": mechanics.strips.depth[:, 0],
             "length": mechanics.strips.length,
         },

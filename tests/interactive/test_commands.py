@@ -49,7 +49,6 @@ WORDS = {
     "--film pyproject.toml": "--film: got pyproject.toml, expected a film that OpenCV reads",
     "--film demo --camera 0": "--camera: got 0 beside --film, expected one of them",
     "--preset rubber": "preset: got 'rubber', expected one of polymer, table-1",
-    "four_bar_of_flexures": "bodies: got 3, expected one body on strips from the ground",
     "polymer_pivot --preset polymer": "--preset: got polymer beside a case, expected one of them",
     "--port 99999": "--port: got 99999, expected 0 (any) to 65535",
     "--camera 77": "--camera: got no picture from camera 77 of this machine, expected one that is",

@@ -44,7 +44,7 @@ PAGE = Path(__file__).parent / "page"
 #: Closing codes: bad message, no right, too many.
 BAD, FORBIDDEN, FULL = 4400, 4403, 4429
 LAST_PORT = 65535
-#: Bytes of the token that stands in the address behind the #; sockets at a time; names of this machine.
+#: Bytes of the token behind the # of the address; sockets at a time, one of them of this machine; its names.
 TOKEN_BYTES, MOST_SOCKETS, HOSTS = 24, 4, ("127.0.0.1", "localhost")
 #: How long a socket may take to say hello [s].
 PATIENCE = 5.0
@@ -57,7 +57,7 @@ class Server:
         self.settings = settings
         self.token = secrets.token_urlsafe(TOKEN_BYTES)
         self.port = settings.port
-        self.open = 0
+        self.open, self.guests = 0, 0
         self._listeners: list[sockets.socket] = []
         self._uvicorn: uvicorn.Server | None = None
         self._app = Starlette(
@@ -169,6 +169,7 @@ class Server:
         """One socket: hello with the token, then its connection; any fault closes this socket only."""
         await socket.accept()
         begin, counted = time.monotonic(), False
+        guest = socket.client is None or socket.client.host not in HOSTS
         try:
             async with asyncio.timeout(PATIENCE):
                 hello = protocol.event(await socket.receive_text())
@@ -176,11 +177,13 @@ class Server:
                 raise BadInput("do: got no hello of this version, expected one first")
             if not hmac.compare_digest(str(hello.get("token")).encode(), self.token.encode()):
                 await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
-            elif self.open >= MOST_SOCKETS:  # who has no token takes no page's place
+            elif (
+                self.open >= MOST_SOCKETS or guest * self.guests >= MOST_SOCKETS - 1
+            ):  # one place is the owner's
                 await _close(socket, FULL, "too many pages are open")
             else:
                 counted = True
-                self.open += 1
+                self.open, self.guests = self.open + 1, self.guests + guest
                 await Connection(socket, self.settings, first=self.open == 1).serve()
         except BadInput as error:
             await _close(socket, BAD, str(error))
@@ -193,7 +196,7 @@ class Server:
         except RuntimeError as error:
             LOG.debug("socket closed while it was written to: %s", error)
         finally:
-            self.open -= counted
+            self.open, self.guests = self.open - counted, self.guests - counted * guest
             LOG.info("a page was open for %.0f s", time.monotonic() - begin)
 
 

@@ -58,6 +58,9 @@ export class Pointer {
     const clamp =
       this.view.shaping && this.studio.state.values.length && !this.down.size ? this.nearest(event) : null;
     if (!clamp && !this.held) return;
+    const { bodies, body } = this.studio.state.placing,
+      other = this.view.bodyAt(this.studio.state, event.clientX, event.clientY, this.reach(event));
+    if (!clamp && other >= 0 && other !== body) return this.send({ do: "grasp", body: bodies[other] });
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.focus();
     if (clamp) {
@@ -110,7 +113,11 @@ export class Pointer {
         }),
       )
       .sort((p, q) => p[0] - q[0])[0];
-    return near[0] <= (event.pointerType === "touch" ? FINGER : REACH) ? near[1] : null;
+    return near[0] <= this.reach(event) ? near[1] : null;
+  }
+
+  reach(event) {
+    return event.pointerType === "touch" ? FINGER : REACH;
   }
 
   // Half the ground, half the body and the height between them are what a clamp changes; both sides stay alike.

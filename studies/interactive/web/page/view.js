@@ -1,5 +1,5 @@
 // The picture with the pivot over it. Places are in the pivot's frame [m]; a homography takes them to pixels.
-const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", path: "#7dff6a", load: "#ffb000" };
+const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", base: "#9fb0bf", path: "#7dff6a", load: "#ffb000" };
 const WIDTH = 640,
   HEIGHT = 480;
 // Least width of a strip on the picture [px], and colours from no stress to yield.
@@ -16,6 +16,14 @@ function stressed(share) {
     k = Math.floor(place),
     part = place - k;
   return `rgb(${STRESS[k].map((low, i) => Math.round(low + part * (STRESS[k + 1][i] - low))).join()})`;
+}
+
+// Distance of a place from a chord, all [px].
+function apart([x, y], [x0, y0], [x1, y1]) {
+  const [dx, dy] = [x1 - x0, y1 - y0],
+    square = dx * dx + dy * dy,
+    u = square ? Math.max(0, Math.min(1, ((x - x0) * dx + (y - y0) * dy) / square)) : 0;
+  return Math.hypot(x - x0 - u * dx, y - y0 - u * dy);
 }
 
 const multiply = (a, b) =>
@@ -143,18 +151,31 @@ export class View {
     return [box.left + (u / this.size[0]) * box.width, box.top + (v / this.size[1]) * box.height];
   }
 
-  // A place that moves with the body, by where it is at rest.
-  moved(state, [px, py]) {
-    const [x, y, t] = state.pose,
-      [x0, y0] = state.placing.centre,
+  // A place that moves with a body, the held one by default, by its place at rest; the ground is -1.
+  moved(state, [px, py], body = state.placing.body) {
+    if (body < 0) return [px, py];
+    const [x, y, t] = state.poses[body],
+      [x0, y0] = state.placing.centres[body],
       cos = Math.cos(t),
       sin = Math.sin(t);
     return [x + cos * (px - x0) - sin * (py - y0), y + sin * (px - x0) + cos * (py - y0)];
   }
 
   clamp(state, strip, end) {
-    const place = state.placing.clamps[strip][end];
-    return end ? this.moved(state, place) : place;
+    return this.moved(state, state.placing.clamps[strip][end], state.placing.ends[strip][end]);
+  }
+
+  // The body at a place on the page, by the chords between its clamps; -1 for the ground or none.
+  bodyAt(state, clientX, clientY, reach) {
+    const { clamps, ends, bodies } = state.placing;
+    const far = bodies.map((_, k) => {
+      const all = clamps.flatMap((strip, s) =>
+        [0, 1].filter((end) => ends[s][end] === k).map((end) => this.page(...this.clamp(state, s, end))),
+      );
+      return Math.min(...all.map((place) => apart([clientX, clientY], all[0], place)));
+    });
+    const nearest = far.indexOf(Math.min(...far));
+    return far[nearest] <= reach ? nearest : -1;
   }
 
   draw(state, picture, centres) {
@@ -320,15 +341,18 @@ export class View {
   }
 
   plates(state) {
-    const { clamps, centre, length } = state.placing,
+    const { clamps, ends, centre, centres, length, body } = state.placing,
       moved = (place) => this.moved(state, place),
       over = 0.07 * length;
-    // From the first clamp to the last, and a little farther; across the strip where there is only one.
-    const bar = (end) => {
-      const all = clamps.map((strip) => strip[end]),
+    // From the first clamp of a body to the last, and a little farther; across the strip where there is only one.
+    const bar = (owner) => {
+      const own = clamps.flatMap((strip, s) =>
+          strip.flatMap((place, end) => (ends[s][end] === owner ? [[place, strip]] : [])),
+        ),
+        all = own.map(([place]) => place),
         p = all[0],
         q = all[all.length - 1],
-        along = clamps[0];
+        along = own[0][1];
       const way =
         all.length > 1 ? [q[0] - p[0], q[1] - p[1]] : [along[0][1] - along[1][1], along[1][0] - along[0][0]];
       const d = Math.hypot(...way) || 1,
@@ -338,10 +362,16 @@ export class View {
         [q[0] + ex, q[1] + ey],
       ];
     };
-    this.line(bar(0), "#9fb0bf", 7);
-    this.line(bar(1).map(moved), COLOURS.plate, 7);
+    this.line(bar(-1), COLOURS.base, 7);
+    centres.forEach((_, k) =>
+      this.line(
+        bar(k).map((place) => this.moved(state, place, k)),
+        k === body ? COLOURS.plate : COLOURS.base,
+        7,
+      ),
+    );
     if (state.mode !== "released" && state.sight.state !== "none") return;
-    const tips = clamps.map((strip) => strip[1]),
+    const tips = clamps.flatMap((strip, s) => strip.filter((_, end) => ends[s][end] === body)),
       mid = [0, 1].map((i) => tips.reduce((sum, tip) => sum + tip[i], 0) / tips.length);
     const far = Math.hypot(centre[0] - mid[0], centre[1] - mid[1]) > 0.05 * length;
     this.line([moved(mid), moved(far ? centre : [mid[0], mid[1] + 0.24 * length])], COLOURS.plate, 3);
