@@ -1,6 +1,7 @@
 """How long work takes: bars on the error stream for more than two seconds, and times that are measured."""
 
 import sys
+import time
 import timeit
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -8,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
-from tqdm import tqdm
 
 from studies.kinds import Progress
 
@@ -35,14 +35,18 @@ class Bar:
     """A progress callable `bar(done, total)` that draws on a terminal, once work has lasted two seconds."""
 
     def __init__(self, label: str) -> None:
-        self._label = label
+        self._label, self._begin = label, time.monotonic()
         self._bar: Any = None  # tqdm is generic in its stubs only
 
     def __call__(self, done: int, total: int) -> None:
         """Show that `done` of `total` parts are done."""
         if self._bar is None:
-            how: Any = {"delay": DELAY, "leave": False, "dynamic_ncols": True, "disable": None}
-            self._bar = tqdm(total=total, desc=self._label, **how)
+            if time.monotonic() - self._begin < DELAY:
+                return
+            from tqdm import tqdm  # short work does not import it
+
+            how: Any = {"leave": False, "dynamic_ncols": True, "disable": None}
+            self._bar = tqdm(total=total, initial=done, desc=self._label, **how)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
 

@@ -8,7 +8,10 @@ import pytest
 from studies.record.source import ROOT
 from studies.registry import STUDIES, question_of, selected
 
-HEAVY = ("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib", "spline_model", "fe_reference")
+HEAVY = (
+    *("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib", "tqdm"),
+    *("spline_model", "spline_model.compile", "fe_reference"),
+)
 
 
 def _loaded_by(words: list[str]) -> set[str]:
