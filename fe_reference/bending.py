@@ -1,21 +1,20 @@
 """The moment of a strip whose section curls across its width no more than clamps and curvature let it.
 
 A section that is free to curl (anticlastic bending) has the rigidity EI, one that is held flat
-EI / (1 - nu^2). With g the share of its curl that the clamps leave (`plate`) and f that which its own
-curvature leaves, the energy per length and what follows from it are
+EI / (1 - nu^2). With f the share of its curl that its own curvature leaves and P(f) what the clamps leave of
+this (`plate`), times nu^2, the energy per length and what follows from it are
 
-    U = (1/2) D kappa^2 (1 - nu^2 g f),    D = EI / (1 - nu^2),    M = dU/dkappa
+    U = (1/2) D kappa^2 (1 - P(f)),    D = EI / (1 - nu^2),    M = dU/dkappa
 
     f = (2 / x) (cosh x - cos x) / (sinh x + sin x),    x^2 = c |kappa|,    c = sqrt(3 (1 - nu^2)) b^2 / t
 
 for a rectangle of width b and thickness t: the curl that its edges are too far apart to keep. f is a smooth
 function of w = x^4 = (c kappa)^2, and with f_1 = w f'(w) and f_2 = w^2 f''(w)
 
-    M = D kappa (1 - nu^2 g f_M),            f_M = f + f_1,
-    dM/dkappa = D (1 - nu^2 g f_K),          f_K = f + 5 f_1 + 2 f_2.
+    M = D kappa (1 - P - P' f_1),                              f_M = f + f_1,
+    dM/dkappa = D (1 - P - P' (f_K - f) - 2 P'' f_1^2),        f_K = f + 5 f_1 + 2 f_2.
 
-The product of g and f is no plate theory: what holds a section flat twice is counted twice. Beside a shell
-between clamps it is up to 1.2 % too stiff, and g alone up to 4.5 % too soft (b/L to 1, c |kappa| to 33).
+P has `TERMS` coefficients, of f, f^2, ... Without clamps it is nu^2 f.
 
 All three are read off a table over x^2 = c |kappa|, to round-off and at one cost for any strip.
 
@@ -33,9 +32,11 @@ from .arrays import Array, inlined, kernel
 Shares = tuple[float, float, float]
 Bent = tuple[float, float, float, float, float, float]
 
-#: f, f_M and f_K are polynomials of TERMS terms in pieces of x^2, PIECES a unit, up to x = FAR, from where
+#: Coefficients of P; where those of the first point of an element stand in its row.
+TERMS, LEFT = 7, 10
+#: f, f_M and f_K are polynomials of POWERS terms in pieces of x^2, PIECES a unit, up to x = FAR, from where
 #: e^-x does not count, and in 1/x beyond.
-TERMS, PIECES, FAR = 8, 3, 37
+POWERS, PIECES, FAR = 8, 3, 37
 
 
 def _closed(x: Array) -> Array:
@@ -54,12 +55,12 @@ def _closed(x: Array) -> Array:
 
 
 def _table() -> Array:
-    """Return the coefficients of the polynomials (pieces, 3, TERMS), the lowest first, in t from 0 to 1 over
+    """Return the coefficients of the polynomials (pieces, 3, POWERS), the lowest first, in t from 0 to 1 over
     a piece of x^2; the last are those in 1/x."""
     pieces = np.arange(PIECES * FAR**2)
-    t, table = chebyshev.chebpts1(TERMS), np.zeros((len(pieces) + 1, 3, TERMS))
+    t, table = chebyshev.chebpts1(POWERS), np.zeros((len(pieces) + 1, 3, POWERS))
     values = _closed(np.sqrt((pieces + 0.5 * (1.0 + t[:, None])) / PIECES))
-    fitted = chebyshev.chebfit(t, values.transpose(1, 0, 2).reshape(TERMS, -1), TERMS - 1)
+    fitted = chebyshev.chebfit(t, values.transpose(1, 0, 2).reshape(POWERS, -1), POWERS - 1)
     for k, parts in enumerate(fitted):
         powers = Chebyshev.basis(k, domain=[0.0, 1.0]).convert(kind=Polynomial).coef
         table[:-1, :, : k + 1] += parts.reshape(3, -1).T[:, :, None] * powers
@@ -101,16 +102,23 @@ def _polynomial(c: Array, t: float) -> float:
 
 
 @inlined(fastmath={"contract"})
-def section(curl: Array, rigidity: float, held: float, reach: float, curvature: float) -> Shares:
+def section(curl: Array, rigidity: float, left: Array, reach: float, curvature: float) -> Shares:
     """Return energy [J/m], moment [N m] and tangent rigidity [N m^2] of a section at a curvature [1/m].
 
     Args:
-        curl: CURL. rigidity: of the section held flat, D [N m^2]. held: nu^2 g. reach: c [m], 0 for f = 1.
+        curl: CURL. rigidity: of the section held flat, D [N m^2]. left: coefficients of P (TERMS,). reach: c
+            [m], 0 for f = 1.
     """
     f, f_m, f_k = _left_by_curvature(curl, reach, curvature)
-    moment = rigidity * curvature * (1.0 - held * f_m)
-    energy = 0.5 * rigidity * curvature * curvature * (1.0 - held * f)
-    return energy, moment, rigidity * (1.0 - held * f_k)
+    value = slope = bend = 0.0  # P, P' and P'' / 2, by Horner's rule
+    for k in range(len(left), -1, -1):
+        bend = slope + f * bend
+        slope = value + f * slope
+        value = f * value + (left[k - 1] if k > 0 else 0.0)
+    first = f_m - f
+    moment = rigidity * curvature * (1.0 - value - slope * first)
+    energy = 0.5 * rigidity * curvature * curvature * (1.0 - value)
+    return energy, moment, rigidity * (1.0 - value - slope * (f_k - f) - 4.0 * bend * first * first)
 
 
 @inlined(fastmath={"contract"})
@@ -122,8 +130,8 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
         first, second: turns of its end sections from the chord [rad].
     """
     even, odd = (second - first) * rate, ROOT_3 * (first + second) * rate
-    u_1, m_1, s_1 = section(curl, row[8], row[9], row[11], even - odd)
-    u_2, m_2, s_2 = section(curl, row[8], row[10], row[11], even + odd)
+    u_1, m_1, s_1 = section(curl, row[8], row[LEFT : LEFT + TERMS], row[9], even - odd)
+    u_2, m_2, s_2 = section(curl, row[8], row[LEFT + TERMS :], row[9], even + odd)
     equal, unlike = 0.5 * (m_2 + m_1), 0.5 * ROOT_3 * (m_2 - m_1)
     both, apart = rate * (s_2 + s_1), ROOT_3 * rate * (s_2 - s_1)
     energy = 0.5 * row[2] * (u_1 + u_2)
@@ -131,7 +139,7 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
 
 
 @kernel()
-def curve(curl: Array, rigidity: Array, held: Array, reach: Array, moments: Array) -> None:
+def curve(curl: Array, rigidity: Array, left: Array, reach: Array, moments: Array) -> None:
     """Write the curvatures [1/m] of the sections of N nodes (N,) in place of their moments (S, N) [N m]."""
     for n in range(len(rigidity)):
         for k in range(len(moments)):
@@ -139,7 +147,7 @@ def curve(curl: Array, rigidity: Array, held: Array, reach: Array, moments: Arra
             curvature = moment / rigidity[n]
             # M grows with kappa everywhere: Newton's steps, until they grow no smaller
             for _ in range(STEPS):
-                parts = section(curl, rigidity[n], held[n], reach[n], curvature)
+                parts = section(curl, rigidity[n], left[n], reach[n], curvature)
                 step = (parts[1] - moment) / parts[2]
                 if not abs(step) < last:
                     break

@@ -36,7 +36,7 @@ Mech. Eng. 58 (1986) 79-116.
 import math
 
 from .arrays import Array, Indices, inlined, kernel
-from .bending import bent_element, section
+from .bending import LEFT, TERMS, bent_element, section
 
 Energies = tuple[float, float, float]
 #: The step of the displacement over an element [m], and the turns of its end sections [rad].
@@ -154,7 +154,7 @@ def _reissner(
     unit = 0.5 * length
     bent = unit * moment * curvature
     if row[8] != row[4]:
-        bent, moment, rigidity = section(curl, row[8], row[9], row[11], curvature)
+        bent, moment, rigidity = section(curl, row[8], row[LEFT : LEFT + TERMS], row[9], curvature)
         bent *= length
     lever = 0.5 * length * (axial * sliding - shear * stretch)
     f[0], f[1] = axial * c - shear * s, axial * s + shear * c
@@ -197,8 +197,8 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
     """Evaluate all elements at once.
 
     Args:
-        given: whether they are Reissner's, the table (E, 12), first nodes (E,); the second is the next one;
-            CURL.
+        given: whether they are Reissner's, the table (E, 10 + 2 TERMS), first nodes (E,), of which the second
+            is the next one; CURL.
         share: of the natural strains that acts. asked: FORCES, TANGENT or MATERIAL.
         u (nodes, 3): displacements and turns.
         written: the force (nodes, 3) that holds the elements; ends (E, 5): force x, y [N] at the second node,

@@ -21,11 +21,12 @@ import numpy as np
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
 from .arrays import Array, Flags, Indices, kernel
+from .bending import TERMS
 from .effects import CURL, PreStrain, RootCompliance
 from .law import Energies, Given, Written, elements
 from .model import Model
 from .places import FREE
-from .plate import left_by_clamps, shares
+from .plate import left_by_clamps, left_in_elements
 
 #: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of
 #: the weight adds to the stiffness of its turn [N m].
@@ -187,8 +188,8 @@ class Elements:
         strips their compliances are the means over the element: end force and end moment lengthen and turn
         it exactly; all else errs by the second order of its length.
         linear_density, rotary_density: rho A [kg/m], rho I [kg m], (E,), means over the element.
-        plate (E, 4): nu^2 of sections that do not curl freely, else 0; the share of their curl that clamps
-        leave at two points; the reach [m] of anticlastic bending, as in `bending`.
+        plate (E, 2 + 2 TERMS): nu^2 of sections that do not curl freely, else 0; the reach [m] of anticlastic
+        bending; the coefficients of what clamps leave of the curl at two points, as in `bending`.
     """
 
     chord: Array
@@ -217,13 +218,12 @@ class Elements:
         )
 
     def table(self, natural: PreStrain) -> Array:
-        """Return the rows of `law`, (E, 12)."""
+        """Return the rows of `law`, (E, 10 + 2 TERMS)."""
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
         known = np.transpose([*self.chord, self.length, *rigidities, *own])
-        square, shares = self.plate[:, :1], self.plate[:, 1:3]
-        flat = self.flexural_rigidity[:, None] / (1.0 - square)
-        return np.hstack([known, flat, square * shares, self.plate[:, 3:]])
+        flat = self.flexural_rigidity[:, None] / (1.0 - self.plate[:, :1])
+        return np.hstack([known, flat, self.plate[:, 1:]])
 
 
 def _tapers(model: Model) -> tuple[Array, ...]:
@@ -242,30 +242,34 @@ def strip_basis(model: Model) -> Basis:
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
 
 
-def nodal_shares(model: Model) -> Array:
-    """Return the share of their curl that the clamps leave the sections at the nodes (G, P)."""
-    if "clamped_width" not in model.effects:
-        return np.ones_like(model.arcs)
-    return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
+def nodal_terms(model: Model) -> Array:
+    """Return what the clamps leave of the curl of sections at the nodes (G, P, TERMS), as in `bending`."""
+    if "clamped_width" in model.effects:
+        return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
+    rows = np.zeros((*model.arcs.shape, TERMS))
+    rows[..., 0] = [[strip.poisson_ratio**2] for strip in model.strips]
+    return rows
 
 
-def _clamped(model: Model, k: int) -> tuple[float, float, Array]:
-    """Return width over length and Poisson's ratio of a strip, and the parts of its length at the nodes."""
-    strip, length = model.strips[k], float(model.lengths[k])
-    return (strip.width or 0.0) / length, strip.poisson_ratio, model.arcs[k] / length
+def _clamped(model: Model, k: int) -> tuple[float, float, Array, bool]:
+    """Return width over length and Poisson's ratio of a strip, the parts of its length at the nodes, and
+    whether it flattens."""
+    strip, length, flattens = model.strips[k], float(model.lengths[k]), "anticlastic" in model.effects
+    return (strip.width or 0.0) / length, strip.poisson_ratio, model.arcs[k] / length, flattens
 
 
 def _plate(model: Model, k: int) -> Array:
-    """Return what the sections of a strip curl in its elements (E, 4)."""
-    strip, rows = model.strips[k], np.zeros((model.elements, 4))
+    """Return what the sections of a strip curl in its elements (E, 2 + 2 TERMS)."""
+    strip, rows = model.strips[k], np.zeros((model.elements, 2 + 2 * TERMS))
     if strip.width is None or strip.thickness is None or not set(CURL) & set(model.effects.names):
         return rows
     nu = strip.poisson_ratio
-    rows[:, 0], rows[:, 1:3] = nu**2, 1.0
+    rows[:, [0, 2, 2 + TERMS]] = nu**2
     if "clamped_width" in model.effects:
-        rows[:, 1:3] = shares(*_clamped(model, k), 1 if model.element == "reissner" else 2)
+        left = left_in_elements(*_clamped(model, k), 1 if model.element == "reissner" else 2)
+        rows[:, 2:] = np.broadcast_to(left, (model.elements, 2, TERMS)).reshape(model.elements, -1)
     if "anticlastic" in model.effects:
-        rows[:, 3] = np.sqrt(3.0 * (1.0 - nu**2)) * strip.width**2 / strip.thickness
+        rows[:, 1] = np.sqrt(3.0 * (1.0 - nu**2)) * strip.width**2 / strip.thickness
     return rows
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .bending import CURL, curve
+from .bending import CURL, TERMS, curve
 from .effects import PreStrain
 from .errors import InvalidParameter
 from .law import FORCES
-from .mesh import nodal_shares
+from .mesh import nodal_terms
 from .model import Model, require_model
 from .places import FREE
 from .structure import Structure, structure_of
@@ -131,17 +131,17 @@ def _sections(model: Model) -> tuple[Array, Array]:
 def _bent(model: Model, moment: Array) -> Array:
     """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
     rigidity = _moduli(model) * _sections(model)[1]
-    plate = structure_of(model).elements.plate.reshape(len(rigidity), -1, 4)[:, :1]
+    plate = structure_of(model).elements.plate.reshape(len(rigidity), model.elements, -1)[:, :1]
     if not plate[..., 0].any():
         free: Array = moment / rigidity
         return free
-    square, reach = plate[..., 0], plate[..., 3]
-    held, nodes = square * nodal_shares(model), moment.shape[1:]
-    flat, held, reach = (
-        np.broadcast_to(each, nodes).ravel() for each in (rigidity / (1.0 - square), held, reach)
+    square, reach = plate[..., 0], plate[..., 1]
+    flat, reach = (
+        np.broadcast_to(each, moment.shape[1:]).ravel() for each in (rigidity / (1.0 - square), reach)
     )
+    left = nodal_terms(model).reshape(-1, TERMS)
     curvature = moment.reshape(len(moment), -1).copy()
-    curve(CURL, flat, held, reach, curvature)
+    curve(CURL, flat, left, reach, curvature)
     return curvature.reshape(moment.shape)
 
 

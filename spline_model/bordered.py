@@ -29,7 +29,7 @@ from spline_model.quadrature import (
     WIDTH,
 )
 from spline_model.strip.compiled import kernel, part
-from spline_model.strip.laws import SPATIAL, bending_law, mixed_law, stretching_law
+from spline_model.strip.laws import SPATIAL, bending_law, curl_law, mixed_law, stretching_law
 from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW, SIGN
 
 Array = NDArray[np.float64]
@@ -130,13 +130,15 @@ def bend(phi, v, numbers, measure):
     """Bending: energy, m, m_phi, m_v, f, f_phi and f_v; as printed (Eq 12) without d|C'|/dq."""
     curvature, rigidity = numbers[CURVATURE], numbers[RIGIDITY]
     if measure == PRINTED:
-        density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, 0.0, 0.0, SPATIAL)
+        density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, SPATIAL)
         ratio = phi / v
         slope = rigidity * (2.0 * ratio - curvature) / v
         return density, m, m_phi, m_v, -m * ratio, -slope, slope * ratio
-    density, m, m_phi, m_v, f, f_v = bending_law(
-        phi, v, numbers[SPEED], curvature, rigidity, numbers[DROP], numbers[CURL], measure
-    )
+    density, m, m_phi, m_v, f, f_v = bending_law(phi, v, numbers[SPEED], curvature, rigidity, measure)
+    if numbers[CURL] > 0.0:
+        strain = phi / numbers[SPEED] - curvature
+        by_energy, by_moment, by_tangent = curl_law(strain, numbers[DROP:], numbers[CURL])
+        density, m, m_phi = density * by_energy, m * by_moment, m_phi * by_tangent
     return density, m, m_phi, m_v, f, m_v, f_v
 
 

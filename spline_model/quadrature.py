@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from spline_model.effects import MEASURES, Bending, MixedStretching, Stretching, StripDamping
 from spline_model.scene import Scene, Strip
-from spline_model.strip.laws import curl_factors
+from spline_model.strip.laws import TERMS, curl_factors
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 FIRST, WIDTH, MODE, MODES, MEASURE = range(5)
 """Columns of ``PointTable.place``."""
-WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXATION, DROP, CURL = range(11)
+WEIGHT, SPEED, REST, CURVATURE, RIGIDITY, STRAIN, STRETCHING, COMPLIANCE, RELAXATION, CURL, DROP = range(11)
 """Columns of ``PointTable.numbers``."""
 
 
@@ -27,9 +27,9 @@ class PointTable(NamedTuple):
     place (P, 5): index in z of the strip's first x and its number of control points; index in z of its
     first axial force, and their number; code of the measure. basis (2, P, S):
     first and second derivatives, S the most control points. modes (P, M): values of the axial forces' modes.
-    numbers (P, 11): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
+    numbers (P, 17): Gauss weight; J0 [m]; curvature at rest and stress-free [1/m]; EI [N m^2]; natural
     strain; EA of stretching by quadrature [N]; compliance 1/EA of the axial forces [1/N]; relaxation time
-    [s]; the two numbers of ``curl_law`` [1, m]. What does not act is zero.
+    [s]; the numbers of ``curl_law`` [m, 1]. What does not act is zero.
     """
 
     place: Indices
@@ -48,7 +48,8 @@ class PointTable(NamedTuple):
         most = max((at.modes.count for _, at, _ in groups if isinstance(at, MixedStretching)), default=0)
         parts = [_rows(scene, *group, widest, most) for group in groups]
         if not parts:
-            return cls(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), np.zeros((0, 0)), np.zeros((0, 11)))
+            none = np.zeros((0, DROP + TERMS))
+            return cls(np.zeros((0, 5), np.int64), np.zeros((2, 0, 0)), none[:, :0], none)
         place, basis, modes, numbers = zip(*parts, strict=True)
         joined = np.ascontiguousarray(np.concatenate(basis, axis=1))
         return cls(np.concatenate(place), joined, np.concatenate(modes), np.concatenate(numbers))
@@ -70,7 +71,7 @@ class PointTable(NamedTuple):
 
     def moments(self, strain: Array) -> Array:
         """Bending moments (P,) [N m] of curvatures that are counted from the stress-free ones [1/m]."""
-        drop, curl = self.numbers[:, DROP], self.numbers[:, CURL]
+        drop, curl = self.numbers[:, DROP:], self.numbers[:, CURL]
         factor = curl_factors(strain, drop, curl)[1] if curl.any() else 1.0
         return np.asarray(self.rigidity * strain * factor)
 
@@ -112,7 +113,7 @@ def _rows(
     u, weight = strip.basis.gauss_rule(effect.gauss_points)
     basis = np.array([strip.basis.evaluate(u, order) for order in (1, 2)])
     count, width = len(weight), basis.shape[2]
-    place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, 11))
+    place, numbers = np.zeros((count, 5), dtype=np.int64), np.zeros((count, DROP + TERMS))
     modes = np.zeros((count, most))
     place[:, FIRST] = scene.layout.strips[strip.name][0]
     place[:, WIDTH], place[:, MEASURE] = width, MEASURES.index(effect.measure)
@@ -125,7 +126,7 @@ def _rows(
         numbers[:, CURVATURE] += effect.natural_curvature
         numbers[:, RIGIDITY] = effect.rigidity_at(strip.basis.degree, u)
         if effect.curl is not None:
-            numbers[:, DROP] = effect.curl.drop(strip.basis.degree, u)
+            numbers[:, DROP:] = effect.curl.drop(strip.basis.degree, u)
             numbers[:, CURL] = effect.curl.flattening
     if axial is not None:
         numbers[:, STRAIN] = axial.natural_strain

@@ -44,6 +44,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import gauss_legendre
+from spline_model.strip.laws import TERMS
 
 Array = NDArray[Any]
 
@@ -55,6 +56,8 @@ DEGREE = 5
 MOST_STEPS = 30
 TOLERANCE = 1e-13
 """Of the two compliances, 1 / f; round-off is some 1e-15."""
+NARROWEST = 0.005
+"""Width over length below which the profile is the same in widths."""
 ROOT_DEGREE = 4
 """Of the polynomial that a root's compliance is projected on: within 3.5e-4 of springs up to 45 degrees."""
 LEAST = 0.25
@@ -149,10 +152,10 @@ class _Profile:
         """g at s (P,), zero at the clamps."""
         return self.size * (1.0 - _decay(np.asarray(s), self.reach))
 
-    def compliance(self, s: Array) -> Array:
-        """EI / R at s (P,)."""
+    def compliance(self, s: Array, filled: float = 1.0) -> Array:
+        """EI / R at s (P,); filled: part of the width that curls."""
         square = self.poisson_ratio**2
-        return np.asarray((1.0 - square) / (1.0 - square * self.share(s)))
+        return np.asarray((1.0 - square) / (1.0 - square * filled * self.share(s)))
 
 
 def _decay(s: Array, reach: complex) -> Array:
@@ -172,6 +175,10 @@ def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
 
     Newton's method in log A and log l; of a complex ratio in the real part, and their rates for the rest.
     """
+    if abs(ratio) < NARROWEST:
+        own, share = profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
+        size, reach = 1.0 + (own.size - 1.0) * share, own.reach * share
+        return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
     if ratio.imag != 0.0:
         own = profile_of(ratio.real, poisson_ratio)
         part = 1j * ratio.imag / ratio.real * _by_ratio(ratio.real, poisson_ratio)
@@ -289,9 +296,40 @@ def _rigidity(
     return np.asarray(rigidity)
 
 
-def _projected(ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float]) -> Array:
-    """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials."""
-    profile, (left, right) = profile_of(ratio, poisson_ratio), reach
-    s, weight = _graded(ratio.real, reach, 16 + most)
-    shares = weight * profile.compliance(s) / (right - left)
+def curl_terms(
+    ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
+) -> Array:
+    """Return what the curl takes of a plate's rigidity at u (P,) of a piece, as a curve follows it.
+
+    Coefficients (P, TERMS) of f, f^2, ..., with f the share of the curl that curvature leaves. They take
+    1 - (1 - nu^2) R / EI of clamps of a strip of width f b/L at TERMS values of f, which are Chebyshev's.
+    """
+    if not ratio:
+        return np.eye(1, TERMS)[np.zeros(len(u), dtype=int)] * poisson_ratio**2
+    return _curl_terms(ratio, poisson_ratio, degree, reach, u.tobytes())
+
+
+@lru_cache(maxsize=256)
+def _curl_terms(
+    ratio: complex, poisson_ratio: float, degree: int, reach: tuple[float, float], at: bytes
+) -> Array:
+    most, u = max(2, degree - 3), np.frombuffer(at)
+    filled = 0.5 * (1.0 - np.cos(np.pi * np.arange(TERMS) / (TERMS - 1)))
+    values = legendre.legvander(2.0 * u - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
+    taken = [np.full(len(u), poisson_ratio**2 + 0.0 * ratio)]
+    for part in filled[1:]:
+        stiffer = 1.0 / (values @ _projected(ratio, poisson_ratio, most, reach, part))
+        taken.append((1.0 - (1.0 - poisson_ratio**2) * stiffer) / part)
+    terms = np.linalg.solve(np.vander(filled, increasing=True), taken).T
+    terms.setflags(write=False)
+    return np.asarray(terms)
+
+
+def _projected(
+    ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float], filled: float = 1.0
+) -> Array:
+    """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials; filled: part f of the width."""
+    profile, (left, right) = profile_of(filled * ratio, poisson_ratio), reach
+    s, weight = _graded(filled * ratio.real, reach, 16 + most)
+    shares = weight * profile.compliance(s, filled) / (right - left)
     return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

@@ -97,7 +97,7 @@ def add_points(s, a, h, state, shape, strips, masses, local, work):
             h00, h01, h02, h03, h10, h11, h12, h13, h20, h21, h22, h23, h30, h31, h32, h33,
         ) = bending_between(
             old[0], old[1], old[2], old[3], v0, x1, y1, x2, y2, v1,
-            speed, given[CURVATURE], given[RIGIDITY], given[DROP], given[CURL], rate,
+            speed, given[CURVATURE], given[RIGIDITY], given[DROP:MODES], given[CURL], rate,
         )  # fmt: skip
         inverse, w, tension, stiffness = 1.0 / v1, 2.0 / (v0 + v1), 0.0, 0.0
         dx, dy = 0.5 * (old[0] + x1) * w, 0.5 * (old[1] + y1) * w

@@ -14,6 +14,7 @@ from spline_model.reduced.many import Designs
 from spline_model.reduced.model import Reduced, at_rest
 from spline_model.reduced.numbers import bends_of
 from spline_model.strip.element import DROP, MODES, PER_U, REACH, RIGIDITY, ROOT, STRETCHING, TIP, WHERE
+from spline_model.strip.laws import TERMS
 
 Array = NDArray[Any]
 
@@ -59,12 +60,13 @@ def _springs(model: Reduced, length: Array, energy: Array) -> Array:
 
 
 def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, energy: Array) -> Array:
-    """What changes along the strips of designs (D, S, P, 5 + K); arguments as of ``designs_of``."""
+    """What changes along the strips of designs (D, S, P, 11 + K); arguments as of ``designs_of``."""
     along, wide, longer = model.strips.along, length[:, None] / model.length, given.span / base.span
     rigid = given.rigidity / base.rigidity * (model.energy / energy * (model.length / length))[:, None]
     thicker, wider = np.moveaxis(given.sides / base.sides, -1, 0)
     speed, ones = longer / wide, np.ones_like(longer)
-    factor = np.stack((speed, ones * wide, rigid, ones, wider**2 / thicker / wide, speed**-0.5), axis=-1)
+    curl = wider**2 / thicker / wide
+    factor = np.stack((speed, ones * wide, rigid, curl, *TERMS * (ones,), speed**-0.5), axis=-1)
     found = along * factor[:, :, None, np.minimum(np.arange(along.shape[-1]), MODES)]
     scene, u = model.system.scene, model.shape.rule[WHERE]
     for s, bend in enumerate(bends_of(scene)):
@@ -76,7 +78,7 @@ def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, e
                 rigidity = own.rigidity_at(degree, u) / (model.energy * model.length)
                 found[d, s, :, RIGIDITY] = rigidity * rigid[d, s]
                 if own.curl:
-                    found[d, s, :, DROP] = own.curl.drop(degree, u)
+                    found[d, s, :, DROP:MODES] = own.curl.drop(degree, u)
     return np.asarray(found)
 
 

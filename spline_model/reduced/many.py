@@ -30,7 +30,7 @@ Array = NDArray[Any]
 class Designs(NamedTuple):
     """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
 
-    along (D, S, G, 5 + K), numbers (D, S, 12 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
+    along (D, S, G, 11 + K), numbers (D, S, 12 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
     G): curvature; start (D, Y): at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H):
     change of the held coordinates; springs (D, 3 B, 3 B) as in ``Bodies``.
     """
@@ -57,7 +57,7 @@ NOWHERE = Route(LINE, LINE, LINE, 0.0)
 class Stations(NamedTuple):
     """Where strains are asked for: P stations along the strips in place of the Gauss points.
 
-    along (D, S, P, 5 + K) as in ``Strips``; fibre (D, S, 2): strain of a force and of a moment; strips,
+    along (D, S, P, 11 + K) as in ``Strips``; fibre (D, S, 2): strain of a force and of a moment; strips,
     shape, local: of the stations, the former with the numbers of the design at hand.
     """
 

@@ -150,7 +150,7 @@ def _mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
 
 
 def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes: Array) -> Array:
-    """What changes along the strips (S, P, 5 + K), at the points of a shape; speeds: as of ``speeds_of``."""
+    """What changes along the strips (S, P, 11 + K), at the points of a shape; speeds: as of ``speeds_of``."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     bends, u, degree = bends_of(scene), shape.rule[WHERE], scene.strips[0].basis.degree
     speed, rest = speeds
@@ -160,7 +160,7 @@ def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes
     along[..., RIGIDITY] = np.array([e.rigidity_at(degree, u) for e in bends]) / (energy * length)
     for row, bend, parts, back in zip(along, bends, _mixed_of(scene).values(), to_modes, strict=True):
         if bend.curl is not None:
-            row[:, DROP], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
+            row[:, DROP:MODES], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
         if parts:
             row[:, MODES:] = _values(tuple(e.modes for e in parts), u.tobytes()) @ back
     return along

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.strip.compiled import aligned
+from spline_model.strip.laws import TERMS
 
 Array = NDArray[np.float64]
 GROUNDED = -1
@@ -30,7 +31,8 @@ VALUE, FIRST, SECOND, BEYOND = range(4)
 """Places of ``Shape.tables``."""
 WHERE, WEIGHT = range(2)
 """Places of ``Shape.rule``."""
-SPEED, CURVATURE, RIGIDITY, DROP, CURL, MODES = range(6)
+SPEED, CURVATURE, RIGIDITY, CURL, DROP = range(5)
+MODES = DROP + TERMS
 """Places along a strip, ``Strips.along``."""
 STRETCHING, STRAIN, ROOT, TIP, REACH, PER_U, ON_POINTS = 0, 1, 2, 5, 8, 10, 16
 """Places of a strip's numbers."""
@@ -89,7 +91,7 @@ class Shape(NamedTuple):
 class Strips(NamedTuple):
     """What tells S strips from one another, in few arrays: each costs every kernel that they are passed to.
 
-    along (S, G, 5 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
+    along (S, G, 11 + K): J0, stress-free curvature, EI, the numbers of ``curl_law``, and the modes of the
     axial force at the Gauss points, orthonormal as compliances weigh them, of which ``split`` belong to the
     stretching, the others to the sliding of control points; compliance (S, K) of each; gain (S, K) the
     stiffness by which they are condensed; numbers (S, 16 + 2 n): EA of stretching by quadrature, 0 for the

@@ -15,6 +15,8 @@ import numpy as np
 from spline_model.strip.compiled import called, part
 
 MATERIAL, SPATIAL = range(2)
+TERMS = 7
+"""Coefficients of the polynomial of ``curl_law``."""
 
 
 @called()
@@ -47,46 +49,57 @@ def curled(x):
 
 
 @called()
+def curl_parts(f, h, t, drop):
+    """Factors of energy, moment and tangent of ``curl_law`` by f, h and h + x h' / 2."""
+    p = d = e = rest = 0.0 * (f + drop[0])
+    for k in range(len(drop) - 1, -1, -1):
+        p, d, e, rest = drop[k] + f * p, p + f * d, d + f * e, rest + drop[k]
+    p, d, e = f * p, p + f * d, 2.0 * (d + f * e)
+    whole, bend = 1.0 / (1.0 - rest), h - f
+    return (
+        whole * (1.0 - p),
+        whole * (1.0 - p - d * bend),
+        whole * (1.0 - p - d * (t - f) - 2.0 * e * bend * bend),
+    )
+
+
+@called()
 def curl_law(b, drop, curl):
     """How the flattening of a strip that curls across its width multiplies energy, moment and tangent.
 
-    The energy density is 1/2 R b^2 (1 - P f(x)) / (1 - P), x^2 = curl |b|, and R the rigidity at b = 0:
+    The energy density is 1/2 R b^2 (1 - P(f(x))) / (1 - P(1)), x^2 = curl |b|, and R the rigidity at b = 0:
 
         f = (2 / x) (cosh x - cos x) / (sinh x + sin x),      h = f + x f' / 4,
 
-    1 - P h for the moment and 1 - P (h + x h' / 2) for the tangent. P (drop): nu^2, or what clamps leave of
-    it. f is smooth in y = x^4.
+    f is the share of the curl that is left. P (drop) are the coefficients of f, f^2, ...: nu^2 alone, or what
+    clamps leave of it. Moment and tangent follow by the derivatives of P. f is smooth in y = x^4.
     Source: Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
     """
     y = curl * curl * b * b
     f, h, t = nearly_flat(y) if y.real < 1.0 else curled(np.sqrt(np.sqrt(y)))
-    whole = 1.0 / (1.0 - drop)
-    return whole * (1.0 - drop * f), whole * (1.0 - drop * h), whole * (1.0 - drop * t)
+    return curl_parts(f, h, t, drop)
 
 
 def curl_factors(b: Any, drop: Any, curl: Any) -> Any:
-    """``curl_law`` of arrays, real or complex: factors (3, ...) of energy, moment and tangent."""
-    near, far = (getattr(each, "py_func", each) for each in (nearly_flat, curled))
+    """``curl_law`` of arrays, real or complex, with drop (P, K): factors (3, P, ...)."""
+    near, far, parts = (getattr(each, "py_func", each) for each in (nearly_flat, curled, curl_parts))
     y = np.asarray(curl * curl * b * b)
     small = y.real < 1.0
-    parts = np.where(small, near(np.where(small, y, 0.0)), far(np.sqrt(np.sqrt(np.where(small, 1.0, y)))))
-    return (1.0 - drop * parts) / (1.0 - drop)
+    own = np.where(small, near(np.where(small, y, 0.0)), far(np.sqrt(np.sqrt(np.where(small, 1.0, y)))))
+    rows = np.moveaxis(drop, -1, 0)
+    return np.array(parts(*own, rows.reshape(*rows.shape, *[1] * (y.ndim + 1 - rows.ndim))))
 
 
 @part()
-def bending_law(phi, v, speed, curvature, rigidity, drop, curl, measure):
-    """Energy, its derivatives in phi (the moment), phi phi, phi v, v and v v.
+def bending_law(phi, v, speed, curvature, rigidity, measure):
+    """Energy, its derivatives in phi (the moment), phi phi, phi v, v and v v, but for ``curl_law``.
 
-    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0, times the factor of ``curl_law`` where curl is not zero
+    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0
     spatial (1)   1/2 EI (phi / v - kappa_0)^2 v     (Eq 10)
     """
     if measure == MATERIAL:
         b = phi / speed - curvature
-        energy, moment, tangent = 0.5 * rigidity * b * b * speed, rigidity * b, rigidity / speed
-        if curl.real > 0.0:
-            by_energy, by_moment, by_tangent = curl_law(b, drop, curl)
-            energy, moment, tangent = energy * by_energy, moment * by_moment, tangent * by_tangent
-        return energy, moment, tangent, 0.0, 0.0, 0.0
+        return 0.5 * rigidity * b * b * speed, rigidity * b, rigidity / speed, 0.0, 0.0, 0.0
     ratio = phi / v
     b = ratio - curvature
     return (

@@ -88,7 +88,7 @@ def flatten_at(s, strips, lanes):
     for p in range(lanes.shape[1]):
         at, x1, y1, x2, y2 = strips.along[s, p], lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
         phi = (x1 * y2 - y1 * x2) / (x1 * x1 + y1 * y1)
-        factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP], at[CURL])
+        factors = curl_law(phi / at[SPEED] - at[CURVATURE], at[DROP:MODES], at[CURL])
         lanes[GIVEN + 3, p], lanes[GIVEN + 4, p], lanes[GIVEN + 5, p] = factors
 
 
@@ -109,7 +109,7 @@ def slopes_at(
         a1, b1, a2, b2, v, weight = x1[p], y1[p], x2[p], y2[p], lengths[p], weights[p]
         r = 1.0 / (v * v)
         phi = (a1 * b2 - b1 * a2) * r
-        _, m, _, _, f, _ = bending_law(phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure)
+        _, m, _, _, f, _ = bending_law(phi, v, speed[p], curvature[p], rigidity[p], measure)
         f += force[p]
         if stretching.real > 0.0:
             f += stretching_law(v, speed[p], strain, stretching, measure)[1]
@@ -136,9 +136,7 @@ def laws_at(
         v, r = np.sqrt(square), 1.0 / square
         ex, ey = a1 / v, b1 / v
         phi = (a1 * b2 - b1 * a2) * r
-        density, m, m_phi, m_v, f, f_v = bending_law(
-            phi, v, speed[p], curvature[p], rigidity[p], 0.0, 0.0, measure
-        )
+        density, m, m_phi, m_v, f, f_v = bending_law(phi, v, speed[p], curvature[p], rigidity[p], measure)
         m, m_phi = m * by_m[p], m_phi * by_t[p]
         bending += weight * density * by_e[p]
         stored, by_v, by_vv, by_n = axial_laws(v, speed[p], strain, count, stretching, force[p], measure)
@@ -300,7 +298,7 @@ def forces_at(s, a, strips, shape, local):
         x1, y1, x2, y2 = lanes[0, p], lanes[1, p], lanes[2, p], lanes[3, p]
         square, speed = x1 * x1 + y1 * y1, along[p, SPEED]
         v, phi = np.sqrt(square), (x1 * y2 - y1 * x2) / square
-        law = bending_law(phi, v, speed, along[p, CURVATURE], along[p, RIGIDITY], 0.0, 0.0, strips.measure)
+        law = bending_law(phi, v, speed, along[p, CURVATURE], along[p, RIGIDITY], strips.measure)
         lanes[MOMENT_AT, p] = law[1] * lanes[GIVEN + 4, p]
         lanes[FORCE_AT, p] += numbers[STRETCHING] * (v / speed - 1.0 - numbers[STRAIN])
 

@@ -200,7 +200,7 @@ EFFECTS: dict[str, str] = {
     "clamped_width": "clamps over the whole width, which stiffen wide strips (of known sides); alone up to "
     "4.5 % too soft",
     "anticlastic": "sections that flatten as wide strips bend, which stiffens them (of known sides); with "
-    "clamped_width up to 1.2 % too stiff",
+    "clamped_width within 0.1 % of a shell",
     "root_compliance": "clamped ends that turn, as in a body of the strips' material (of known sides)",
     "shear": "sections that turn against the strips (fe-shear)",
     "pre_strain": "curvature and strain that the strips would have if they were free",

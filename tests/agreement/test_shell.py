@@ -1,4 +1,4 @@
-"""A bent strip between clamps as a shell: what clamped width and anticlastic bending leave of it, in numbers.
+"""A bent strip between clamps as a shell: how far clamped width and anticlastic bending are from it.
 
 Marguerre and Donnell's shallow shell of curvature kappa, whose deflection w across the bent strip is small
 beside its radius: strains u_x + kappa w, v_y and u_y + v_x, curvatures kappa + w_xx, w_yy and w_xy. Both ends
@@ -72,17 +72,17 @@ def strip_factor(ratio, flatness, effects):
     ("ratio", "flatness", "together", "alone"),
     [
         (0.125, 1, 0.0, -0.1),
-        (0.125, 10, 0.2, -3.9),
+        (0.125, 10, 0.0, -3.9),
         (0.25, 1, 0.0, -0.1),
-        (0.25, 5, 0.3, -1.6),
-        (0.25, 20, 0.4, -4.5),
-        (0.5, 10, 0.9, -1.9),
-        (1.0, 5, 0.7, -0.1),
-        (1.0, 20, 1.2, -0.9),
+        (0.25, 5, 0.0, -1.6),
+        (0.25, 20, 0.0, -4.5),
+        (0.5, 10, 0.0, -1.9),
+        (1.0, 5, -0.1, -0.1),
+        (1.0, 20, 0.0, -0.9),
     ],
 )
 def test_how_far_the_effects_are_from_a_shell(ratio, flatness, together, alone):
-    """Both effects are too stiff and clamped width alone is too soft, by the per cent that findings print."""
+    """Both effects agree with a shell, and clamped width alone is too soft, by the per cent of findings."""
     shell = shell_factor(ratio, flatness)
     found = [100.0 * (strip_factor(ratio, flatness, effects) / shell - 1.0) for effects in (BOTH, CLAMPED)]
     # half a unit of the printed digit, and 0.01 for Ritz's
