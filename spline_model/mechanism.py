@@ -27,7 +27,7 @@ from spline_model.effects.registry import (
 )
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import loose, props_of
-from spline_model.scene import AXES, Body, Effect, Scene, Strip
+from spline_model.scene import Body, Effect, Scene, Strip
 
 LARGEST_OPENING = math.radians(100.0)
 """Angle of an arc at rest above which it is cut into segments."""
@@ -41,15 +41,6 @@ class Mechanism:
     effects: tuple[str, ...]
     parameters: Parameters
     scene: Scene
-
-    def pinned(self, *bodies: str) -> Self:
-        """The same mechanism with these bodies' centres supported, free to turn: pin joints to the ground."""
-        known = self.parameters.get("support", ())
-        known = (known,) if isinstance(known, Mapping) else known
-        supports = (*known, *({"body": name, "fixed": AXES[:2]} for name in bodies))
-        names = tuple(dict.fromkeys((*self.effects, "support"))) if supports else self.effects
-        parameters = {**self.parameters, "support": supports} if supports else self.parameters
-        return replace(self, effects=names, parameters=parameters).with_discretisation()
 
     def with_discretisation(self, **changes: Any) -> Self:
         """The same mechanism with other keywords of ``Discretisation``."""

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from fe_reference.control import Control, equilibrate
-from fe_reference.effects import DrivenDisplacement
 from fe_reference.loads import full_load
 from fe_reference.model import Model
 from fe_reference.path import Path, follow
+from fe_reference.places import prescribed
 from fe_reference.response import respond
 from fe_reference.structure import Structure, structure_of
 from studies.answers.models import put
@@ -103,7 +103,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
     asked = put(frame.design, settings)
     how: dict[str, Any] = {"increments": frame.design.increments, "control": "arc-length", "branch": branch}
     with asked.refusals():
-        path = asked.model.solve_mechanism(asked.modelled.pinned(*frame.pins), raise_on_failure=False, **how)
+        path = asked.model.solve_mechanism(asked.modelled, raise_on_failure=False, **how)
     if (path.inertia < 0).any():
         raise BadInput(
             f"spline: measure: got {settings.measure}, expected one with a potential: stability has no other"
@@ -126,18 +126,10 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
 
 
 def _led(model: Model, frame: Frame) -> Control:
-    """Return the control of a frame: its pins held, its load or the displacement of its body growing."""
-    structure = structure_of(model)
-    ways: dict[str, tuple[float | None, float | None]] = {name: (0.0, 0.0) for name in frame.pins}
-    named = model.effects.find(DrivenDisplacement)
-    if named is not None:
-        ways[frame.body] = named.displacement
-    ends = {
-        structure.body_slice(model.body_index(name)).start + k: part
-        for name, way in ways.items()
-        for k, part in enumerate(way)
-        if part is not None
-    }
+    """Return the control of a frame: its supports, its load or the displacement of its body growing."""
+    structure, ends = structure_of(model), {}
+    for at, (end, _) in prescribed(model, model.body_index(frame.body)).items():
+        ends[structure.body_slice(at // 3).start + at % 3] = end
     held = np.array(sorted(ends), dtype=np.int64)
     values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])
     return Control(structure=structure, held=held, values=values, load=full_load(structure))

@@ -22,7 +22,7 @@ TABLES = Path(__file__).parent / "tables"
 DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
 LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
 CENTRE_SHIFT = "centre_shift"
-#: Asked of a path, without pins; the others of a path with its critical points, or of a pivot.
+#: Asked of a path; the others of a path with its critical points, or of a pivot.
 PLACES = (DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION)
 QUANTITIES = (*PLACES, LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION, CENTRE_SHIFT)
 EQUAL, AT_MOST, AT_LEAST = "equal", "at most", "at least"
@@ -66,7 +66,6 @@ PROBLEM = (
     _key("problem", "title", text("a title")),
     _key("problem", "source", text("where the values are in print")),
     _key("problem", "body", text("the name of the body whose place is asked"), optional=True),
-    _key("problem", "pins", _names(), optional=True),
     _key("problem", "models", _names(*MODELS)),
     _key("problem", "answers", _names(*ANSWERS)),
 )
@@ -128,7 +127,7 @@ class Frame:
 
     Attributes:
         load: force or displacement at load factor 1, in its units.
-        body: whose place is reported; pins: bodies that are held in their places and free to turn.
+        body: whose place is reported.
         tilt: turn of that body from which elements, which have no way onto a branch, find it [rad]; without
             one they are loaded aside.
     """
@@ -136,7 +135,6 @@ class Frame:
     design: Mechanism
     load: float
     body: str
-    pins: tuple[str, ...] = ()
     tilt: float = 0.0
 
     @property
@@ -160,7 +158,7 @@ class _Published:
     Attributes:
         name: of its file. title, source: in words. values: in print.
         models, answers: who is asked, and for which kinds of answer.
-        body: whose place is reported; pins: bodies that are held and free to turn.
+        body: whose place is reported.
     """
 
     name: str
@@ -171,7 +169,6 @@ class _Published:
     answers: tuple[str, ...]
     design: Design
     body: str = ""
-    pins: tuple[str, ...] = ()
 
     def frame(self, load: float | None = None, answer: str = BEAM) -> Frame:
         """Return the design under so many times its loads, of None those of its first value, as a beam or
@@ -179,7 +176,7 @@ class _Published:
         load = self.values[0].load if load is None else load
         assert isinstance(self.design, Mechanism)
         acting = self.design.effects.grown(load, WEIGHT).plus(*(() if answer == BEAM else answer.split(", ")))
-        return Frame(design=replace(self.design, effects=acting), load=load, body=self.body, pins=self.pins)
+        return Frame(design=replace(self.design, effects=acting), load=load, body=self.body)
 
 
 def printed(name: str) -> list[tuple[Any, ...]]:
@@ -217,20 +214,7 @@ def read_published(path: Path) -> _Published:
     rest = {key: part for key, part in content.items() if key not in ("problem", "values")}
     design = design_of(where, rest)
     if isinstance(design, Mechanism):
-        _require_bodies(where, design, about, values)
+        known = [each.name for each in design.bodies]
+        if (body := about.get("body", "no such key")) not in known:
+            raise CaseError(f"{where}: problem.body: got {body}, expected {document.nearest(body, known)}")
     return _Published(name=path.stem, values=values, design=design, **about)
-
-
-def _require_bodies(
-    where: str, design: Mechanism, about: Mapping[str, Any], values: tuple[Value, ...]
-) -> None:
-    """Raise CaseError unless the body that is asked for, and the pinned ones, are there and can be asked."""
-    known = [body.name for body in design.bodies]
-    pins = about.get("pins", ())
-    for name in (about.get("body", ""), *pins):
-        if name not in known:
-            expected = document.nearest(name, known)
-            raise CaseError(f"{where}: problem.body: got {name or 'no such key'}, expected {expected}")
-    moved = [value.quantity for value in values if value.quantity in PLACES]
-    if pins and moved:
-        raise CaseError(f"{where}: problem.pins: got them beside {moved[0]}, expected limit loads alone")

@@ -10,10 +10,8 @@ from studies.cases.document import is_mechanism, parsed
 from studies.cases.problem import FOLDER
 from studies.published.case import FOLDER as PUBLISHED
 
-#: Published problems that need pins, which a case file cannot state: without pins nothing holds the frame.
-UNHELD = {"lees_frame"}
 SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
-PROBLEMS = sorted({path.stem for path in PUBLISHED.glob("*.toml")} - UNHELD)
+PROBLEMS = sorted(path.stem for path in PUBLISHED.glob("*.toml"))
 CASES = (*SHIPPED, *PROBLEMS)
 
 #: Asked of every case by the quick tests, and by the slow ones.

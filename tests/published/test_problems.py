@@ -67,7 +67,6 @@ def test_what_is_missing_is_said(tmp_path, key):
         ('body = "tip"', 'body = "top"', "problem.body: got top"),
         ('answers = ["beam"]', 'answers = ["bean"]', "problem.answers"),
         ('answers = ["beam"]', 'answers = ["beam", "clamped_width"]', "limit: got none of clamped_width"),
-        ('body = "tip"', 'body = "tip"\npins = ["tip"]', "problem.pins"),
         ("[[values]]", "[[numbers]]", "values: got"),
     ],
 )
