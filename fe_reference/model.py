@@ -110,10 +110,9 @@ class StripDesign(Checked):
     @property
     def tapered(self) -> bool:
         """Whether its section changes along it."""
-        sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
-        return any(end is not None and end != start for start, end in sides)
+        return self.growth(1.0) != (1.0, 1.0)
 
-    def growth(self, places: Array) -> tuple[Array, Array]:
+    def growth(self, places: Any) -> tuple[Any, Any]:
         """Return area and second moment at places, parts of the length, over those at the start."""
         sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
         b, t = (1.0 + places * (end / start - 1.0 if start and end else 0.0) for start, end in sides)

@@ -159,12 +159,10 @@ class Scene:
         total = np.zeros((3, 2))
         for effect in self.of(StripGravity):
             if effect.strip == strip:
-                own, parts = self.strip(strip), (1.0, 0.0, 0.0)
-                if own.taper is not None:
-                    parts = own.taper.powers
-                length = float(own.share_of_length().sum()) / (parts[0] + parts[1] / 2.0 + parts[2] / 3.0)
-                weight = effect.linear_density * length * np.asarray(effect.acceleration)
-                total += [part * weight for part in parts]
+                own = self.strip(strip)
+                mass = effect.linear_density * own.length_to(np.ones(1))
+                parts = (1.0, 0.0, 0.0) if own.taper is None else own.taper.powers
+                total += np.outer(parts, mass * effect.acceleration)
         return total
 
     @property

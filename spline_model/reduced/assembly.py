@@ -26,7 +26,6 @@ from spline_model.strip.element import (
     LAST,
     LEVER,
     MOMENT_AT,
-    ON_POINTS,
     PER_U,
     POINTS,
     RIGIDITY,
@@ -255,17 +254,13 @@ def moment_defect(y, strips, shape, local, smallest):
         x, y0 = points[2 * tip], points[2 * tip + 1]
         bx, by = points[2 * inner] - x, points[2 * inner + 1] - y0
         moment = bx * gradient[2 * inner + 1] - by * gradient[2 * inner]
-        heavy = False
-        for i in range(PER_U, ON_POINTS):
-            heavy = heavy or numbers[i] != 0.0
         for i in range(n):
             lever[i] = (x - points[2 * i]) * fy - (y0 - points[2 * i + 1]) * fx + moment
         for p in range(rule.shape[1]):
             left = moments[p]
             for i in range(n):
                 left -= tables[VALUE, p, i] * lever[i]
-            if heavy:
-                left -= _moment_of_load_beyond(p, points, numbers, rule, tables)
+            left -= _moment_of_load_beyond(p, points, numbers, rule, tables)
             if along[p, RIGIDITY] > 0.0:
                 ds = rule[WEIGHT, p] * along[p, SPEED] / along[p, RIGIDITY]
                 wrong += ds * left * left
