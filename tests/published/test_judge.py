@@ -79,13 +79,14 @@ def test_deviations_of_a_coarse_mesh_are_named(judged):
     assert code == 1 and found["torque_Nm"] == ("20 of 20", "deviates")
 
 
-def test_uncertainty_is_added_to_the_tolerance(judged):
+@pytest.mark.parametrize(("share", "code"), [(0.999, 0), (-0.999, 0), (1.001, 1), (-1.001, 1)])
+def test_uncertainty_is_added_to_the_tolerance(judged, share, code, tmp_path, monkeypatch):
     """A value passes up to the tolerance times the scale plus the uncertainty, on both sides."""
-    known = pd.read_csv(benchmark.FOLDER / "beam.csv").query("quantity == 'vibration_rotation_rad'").iloc[:1]
-    tolerance = benchmark.QUANTITIES["vibration_rotation_rad"][2]
-    allowed = (tolerance * known["scale"] + known["uncertainty"]).item()
-    for factor, code in ((0.999, 0), (-0.999, 0), (1.001, 1), (-1.001, 1)):
-        assert judged([known.assign(value=known["value"] + factor * allowed)])[0] == code
+    _, _, tolerance = benchmark.QUANTITIES["torque_Nm"]
+    known = rows("torque_Nm", [0.5], [8.0]).assign(uncertainty=3e-3, scale=4.0)
+    known.to_csv(tmp_path / "beam.csv", index=False)
+    monkeypatch.setattr("studies.commands.judge.FOLDER", tmp_path)
+    assert judged([known.assign(value=8.0 + share * (4.0 * tolerance + 3e-3))])[0] == code
 
 
 @pytest.mark.parametrize(
