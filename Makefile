@@ -7,6 +7,8 @@ BIN := .venv/bin
 STAMP := .venv/installed
 EXTRA := .venv/interactive
 STUDIES := paper convergence
+PAGE := studies/interactive/web/page
+PRETTIER := npx --yes prettier@3.10.1 --print-width 118
 
 # One thread: the matrices are small, and timings must not depend on what else runs.
 export OMP_NUM_THREADS := 1
@@ -71,6 +73,8 @@ lint: $(STAMP)  ## check style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	@if $(PRETTIER) --version >/dev/null 2>&1; then $(PRETTIER) --check $(PAGE)/*.js; \
+	else echo "prettier: skipped, needs Node.js and a package registry"; fi
 
 size: $(STAMP)  ## count code lines, files and public names of every package, beside the aim
 	$(BIN)/python -m tests.size

@@ -245,3 +245,41 @@ def test_sliders_are_live_and_undone_at_once(page):
     page.wait("studio.state.values.thickness === JSON.parse(sessionStorage.design).values.thickness")
     page.key("z")
     page.wait(f"studio.state.values.thickness === {before}")
+
+
+def test_body_is_grasped_by_pointing(page):
+    """Requirement: a click on another body of a mechanism holds it; a drag then moves it, and the others
+    follow; an undo gives back the first body."""
+    chosen(page, "preset", "four_bar_of_flexures")
+    page.wait("studio.state.poses.length === 3")
+    x, y = page.ask("studio.view.page(studio.state.poses[1][0] + 0.02, studio.state.poses[1][1])")
+    drag(page, [(x, y)])
+    page.wait("studio.state.placing.body === 1 && studio.state.drive === 'pull'")
+    drag(page, [(x, y), (x + 20, y), (x + 40, y)])
+    page.wait("studio.state.poses[1][0] > 0.055 && studio.state.poses[0][2] < -0.05")
+    page.key("z")
+    page.key("z")
+    page.wait("studio.state.placing.body !== 1")
+    assert page.ask("studio.errors") == []
+
+
+def test_comma_is_a_decimal_point(page):
+    """Requirement: a number that is typed with a comma is not read without it."""
+    page.ask(
+        "(e => { e.focus(); e.select(); })(document.querySelector(\"input[aria-label='body mass in g']\"))"
+    )
+    for key in "0,6":
+        page.key(key)
+    page.key("Enter")
+    page.wait("Math.abs(studio.state.values.body_mass - 0.6e-3) < 1e-12")
+
+
+def test_release_while_scrubbing_goes_live(page):
+    """Requirement: a release while an earlier state is shown goes back to the live state first."""
+    page.wait("studio.ring.length > 6")
+    page.key("[")
+    page.wait("!studio.ring.live")
+    page.key("r")
+    page.wait("studio.ring.live && studio.state.mode === 'released'")
+    page.key("r")
+    page.wait("studio.state.mode === 'held'")

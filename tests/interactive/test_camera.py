@@ -140,6 +140,7 @@ def test_camera_file(tmp_path):
     camera = Camera(fx=600.0, fy=601.0, cx=320.0, cy=240.0, k1=-0.1)
     camera.write(tmp_path / "camera.json")
     assert Camera.read(tmp_path / "camera.json") == camera
-    (tmp_path / "bad.json").write_text('{"fx": "wide"}', encoding="utf-8")
-    with pytest.raises(BadInput, match=r"bad.json: got no camera, expected JSON with fx, fy, cx, cy"):
-        Camera.read(tmp_path / "bad.json")
+    for bad in ('{"fx": "wide"}', '{"fx": 0, "fy": 600, "cx": 320, "cy": 240}'):
+        (tmp_path / "bad.json").write_text(bad, encoding="utf-8")
+        with pytest.raises(BadInput, match=r"bad.json: got no camera, expected JSON with fx, fy, cx, cy"):
+            Camera.read(tmp_path / "bad.json")

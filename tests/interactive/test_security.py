@@ -191,6 +191,22 @@ def test_page_is_shared_at_one_more_address():
             pass
 
 
+def test_one_place_is_for_this_machine():
+    """Requirement: guests take all places but one; this machine takes the last one."""
+    with Server(Settings(camera="none", share=NETWORK)) as server, contextlib.ExitStack() as every:
+        theirs = f"{NETWORK}:{server.port}"
+        for k in range(MOST_SOCKETS):
+            place = connect(f"ws://{theirs}/ws", origin=f"http://{theirs}", source_address=(NETWORK, 0))
+            guest = every.enter_context(place)
+            say(guest, do="hello", version=1, token=server.token)
+            if k < MOST_SOCKETS - 1:
+                answer(guest, "welcome")
+            else:
+                assert closing(guest)[0] == 4429
+        with opened(server) as own:
+            assert told(own, do="tick")["mode"] == "held"
+
+
 def test_page_is_not_shared_unless_asked(server):
     """Requirement: without being asked the server listens to this machine alone, and knows no other name."""
     with pytest.raises(OSError), connect(f"ws://{NETWORK}:{server.port}/ws"):

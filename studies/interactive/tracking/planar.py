@@ -69,7 +69,10 @@ class Camera:
         """Return the camera of a file that `write` made; BadInput in one line if it is none."""
         try:
             values = json.loads(path.read_text(encoding="utf-8"))
-            return cls(**{name: float(value) for name, value in values.items()})
+            camera = cls(**{name: float(value) for name, value in values.items()})
+            if not (np.isfinite(list(asdict(camera).values())).all() and min(camera.fx, camera.fy) > 0.0):
+                raise ValueError("fx and fy must be positive, all numbers finite")
+            return camera
         except (OSError, ValueError, TypeError, AttributeError) as error:
             raise BadInput(f"{path}: got no camera, expected JSON with fx, fy, cx, cy ({error})") from None
 

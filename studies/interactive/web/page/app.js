@@ -34,6 +34,7 @@ const pointer = new Pointer(at("stage"), view, studio, send, controls, redraw);
 function send(event) {
   if (event.do !== "pose") pointer.forget();
   if (["preset", "undo", "redo"].includes(event.do)) controls.settle();
+  if (!ring.live && !["pose", "tick"].includes(event.do)) actions.live(); // no change of a state that is not shown
   if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
   socket.send(event);
 }
@@ -209,7 +210,7 @@ const actions = {
   turn: (angle) => pointer.nudge([0, 0, angle]),
   move: (x, y) =>
     studio.state?.drive === "rotation"
-      ? say("The hand holds the rotation alone: M lets it hold the whole pose.")
+      ? say("Only the rotation is prescribed: press M to prescribe the shift, too.")
       : pointer.nudge([x, y, 0].map((way) => 1e-3 * way * studio.state.placing.length)),
   zoom: (factor) => {
     view.zoom(factor);

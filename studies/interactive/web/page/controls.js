@@ -28,9 +28,7 @@ export class Controls {
   build(welcome) {
     this.welcome = welcome;
     at("preset").replaceChildren(...Object.entries(welcome.presets).map(([name, p]) => new Option(p.title, name)));
-    at("solver").replaceChildren(
-      ...Object.entries(welcome.solvers).map(([name, title]) => new Option(title, name)),
-    );
+    at("solver").replaceChildren(...Object.entries(welcome.solvers).map(([name, title]) => new Option(title, name)));
     at("preset").onchange = () => this.send({ do: "preset", name: at("preset").value });
     at("drive").onchange = () => this.send({ do: "drive", by: at("drive").value });
     at("solver").onchange = () => this.send({ do: "solver", name: at("solver").value });
@@ -40,7 +38,7 @@ export class Controls {
       this.send({ do: "solver", name: at("solver").value, sweeps: Number(at("sweeps").value) });
     this.flying = this.next = this.drag = null;
     at("material").replaceChildren(
-      new Option("of one's own", ""),
+      new Option("other", ""),
       ...Object.keys(welcome.materials).map((name) => new Option(name, name)),
     );
     at("material").onchange = () =>
@@ -87,8 +85,8 @@ export class Controls {
       if (this.state) row.set(this.state.values[p.name]);
     };
     // A slider reaches as far as the design is large.
-    row.fit = (si, state, anew) => {
-      if (!anew && si >= row.low && si <= row.high) return;
+    row.fit = (si, state, renewed) => {
+      if (!renewed && si >= row.low && si <= row.high) return;
       if (p.scale === "linear") return ends(p.low, p.high);
       if (p.scale === "log")
         return ends(Math.max(p.low, si / this.welcome.span), Math.min(p.high, si * this.welcome.span));
@@ -186,13 +184,13 @@ export class Controls {
     if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]),
-      anew = state.preset !== this.preset;
+      renewed = state.preset !== this.preset;
     if (seen === this.seen) return;
     Object.assign(this, { seen, preset: state.preset });
     for (const { h, limit } of this.hand)
       if (!h.low) limit(...[-1, 1].map((side) => tidy(side * SHIFT * h.per * state.placing.length, 3)));
     if (![...at("preset").options].some((option) => option.value === state.preset))
-      at("preset").append(new Option("a design of one's own", state.preset));
+      at("preset").append(new Option("own design", state.preset));
     at("preset").value = state.preset;
     at("material").value =
       Object.entries(this.welcome?.materials ?? {}).find(([, m]) =>
@@ -201,7 +199,7 @@ export class Controls {
     at("preset-note").textContent = this.welcome?.presets[state.preset]?.note ?? "";
     for (const [name, row] of this.rows) {
       const value = state.values[name];
-      if (typeof value === "number") row.fit(value, state, anew);
+      if (typeof value === "number") row.fit(value, state, renewed);
       row.set(value);
     }
   }
@@ -219,6 +217,11 @@ function pair(label, unit) {
   name.textContent = label;
   range.type = "range";
   number.type = "number";
+  number.addEventListener("beforeinput", (event) => {
+    if (event.data !== ",") return; // which browsers leave out: 0,6 would become 6
+    event.preventDefault();
+    document.execCommand("insertText", false, ".");
+  });
   range.setAttribute("aria-label", `${label}, slider`);
   number.setAttribute("aria-label", `${label} in ${unit}`);
   mark.className = "unit";

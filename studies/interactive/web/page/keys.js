@@ -29,7 +29,7 @@ const KEYS = [
     (a, s) => (s ? a.move(0, -1) : a.turn(-5 * DEGREE)),
     "↓",
   ],
-  ["M", "next of what the hand holds", (a) => a.drive()],
+  ["M", "next set of prescribed coordinates", (a) => a.drive()],
   ["Z", "undo", (a) => a.undo()],
   ["Y", "redo", (a) => a.redo()],
   ["[", "back in the last minute", (a) => a.back()],

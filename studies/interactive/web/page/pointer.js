@@ -57,6 +57,7 @@ export class Pointer {
     }
     const clamp =
       this.view.shaping && this.studio.state.values.length && !this.down.size ? this.nearest(event) : null;
+    if (!this.on && !clamp) this.controls.say("The markers in the picture move the body.");
     if (!clamp && !this.held) return;
     const { bodies, body } = this.studio.state.placing,
       other = this.view.bodyAt(this.studio.state, event.clientX, event.clientY, this.reach(event));

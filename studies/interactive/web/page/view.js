@@ -1,5 +1,12 @@
 // The picture with the pivot over it. Places are in the pivot's frame [m]; a homography takes them to pixels.
-const COLOURS = { ground: "#00e5ff", moving: "#ff2bd6", plate: "#dfe6ec", base: "#9fb0bf", path: "#7dff6a", load: "#ffb000" };
+const COLOURS = {
+  ground: "#00e5ff",
+  moving: "#ff2bd6",
+  plate: "#dfe6ec",
+  base: "#9fb0bf",
+  path: "#7dff6a",
+  load: "#ffb000",
+};
 const WIDTH = 640,
   HEIGHT = 480;
 // Least width of a strip on the picture [px], and colours from no stress to yield.
