@@ -77,6 +77,10 @@ def solve_solids(
     ConvergenceError
         A state that Newton's method does not reach, or one that is unstable.
 
+    References
+    ----------
+    Bonet and Wood (2008), as in ``fe_reference.solid``.
+
     Examples
     --------
     >>> strip = SolidStrip(
