@@ -66,13 +66,36 @@ class Clamp(Constraint):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DrivenRotation(Constraint):
-    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
+    """The rotation of a body prescribed as angle x load factor, one row in rad.
 
-    In a motion it acts in ``held``, from - to [s], and changes by angle x the change of
-    history(t) from where the body is when it begins; a body that is caught loses the velocity
-    that the drive does not have. Its multiplier is the torque
-    that has to be applied to the body [N m]; positive counter-clockwise. A ``prop`` only keeps a free
-    rigid motion from being indeterminate (``spline_model.rigid``).
+    In a motion it acts in ``held`` and changes by angle x the change of history(t) from where the body is
+    when it begins. A body that is re-clamped loses the velocity that the drive does not have. The multiplier
+    is the torque on the body [N m], positive counter-clockwise.
+
+    Parameters
+    ----------
+    body : str
+    angle : float, rad
+    history : pairs of s and 1, default ((0, 1),)
+        Times and factors of the angle in a motion.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive in a motion.
+    prop : bool, default False
+        The drive only keeps a free rigid motion from being indeterminate (``spline_model.rigid``).
+
+    Raises
+    ------
+    InvalidParameter
+        An angle or history that is not finite, or an interval that ends before it begins.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
+
+    Examples
+    --------
+    >>> DrivenRotation(body="body", angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
     """
 
     rows: ClassVar[int] = 1
@@ -92,12 +115,36 @@ class DrivenRotation(Constraint):
 class DrivenDisplacement(Constraint):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    None in place of dx or dy leaves that way free, and its row out. A ``steady`` one is there in full at any
-    load factor.
+    Without a history it holds the start of a motion and then is released; with one it goes on holding
+    through the motion, as ``DrivenRotation``. The multipliers are the applied force [N].
 
-    The paper's "two other driving constraints" (section 4). Without a history it holds the start of
-    a motion and lets go; with one it goes on holding through the motion, as ``DrivenRotation``. The
-    multipliers are the applied force [N]. A ``prop`` is as that of ``DrivenRotation``.
+    Parameters
+    ----------
+    body : str
+    displacement : (2,) m
+        None in place of dx or dy leaves this direction free, without a row.
+    history : pairs of s and 1, default None
+        Times and factors of the displacement in a motion.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive in a motion.
+    steady : bool, default False
+        In full at any load factor.
+    prop : bool, default False
+        As in ``DrivenRotation``.
+
+    Raises
+    ------
+    InvalidParameter
+        No direction, or a value that is not finite.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), section 4: "two other driving constraints".
+
+    Examples
+    --------
+    >>> DrivenDisplacement(body="body", displacement=(1e-3, None)).displacement
+    (0.001, None)
     """
 
     body: str
