@@ -1,15 +1,18 @@
 """Docstrings of this repository as Sphinx wants them.
 
 They are prose with formulas in plain text, where `|r|`, `a*` and `q_` mean what they look like. So nothing in
-them is markup but backticks: an indented block is a formula or a command line as it stands, and a section
-("Args:", "Raises:") is a list of its entries.
+them is markup but backticks: an indented block is a formula or a command line as it stands, as is an example
+that begins with >>>. A section ("Args:", "Raises:", or underlined as numpydoc has it) is a list of its
+entries.
 """
 
 import re
 import textwrap
 
 PACKAGES = ("spline_model", "fe_reference", "studies")
-SECTIONS = "Args|Parameters|Attributes|Returns|Yields|Raises"
+SECTIONS = "Args|Parameters|Attributes|Returns|Yields|Raises|Notes|References|Examples?"
+#: Sections of text, not of entries.
+TEXTS = ("Notes", "References", "Example", "Examples")
 
 _LINK = re.compile(r"\](?:\((?!https?:|#)([\w./-]+))")
 _CODE = re.compile(r"(?<!`)(`{1,2})(?!`)(.+?)(?<!`)\1(?!`)")
@@ -55,24 +58,28 @@ def as_rst(text: str) -> str:
     for block in re.split(r"\n\s*\n", text.strip("\n")):
         if not block.strip():
             continue
-        if block[0] == " ":
-            found.append("::\n\n" + textwrap.indent(textwrap.dedent(block), "    "))
-        elif head := _HEAD.match(block):
+        if head := _HEAD.match(block):
             found.append(f"**{head[1]}**")
-            found += _entries(textwrap.dedent(block[head.end() :].strip("\n")))
+            block = textwrap.dedent(block[head.end() :].strip("\n"))
+        if block.startswith((" ", ">>>")):
+            found.append("::\n\n" + textwrap.indent(textwrap.dedent(block), "    "))
+        elif head:
+            found += _entries(block, names="---" in head[2] and head[1] not in TEXTS)
         else:
             found.append(_line(block))
     return "\n\n".join(found) + "\n"
 
 
-def _entries(body: str) -> list[str]:
-    """Return the entries of a section, each a list item; a line that names nothing goes on."""
+def _entries(body: str, *, names: bool) -> list[str]:
+    """Return the entries of a section, each a list item; a line that names nothing goes on, unless all lines
+    that are not indented are `names`."""
     items: list[list[str]] = []
     for line in body.split("\n"):
-        if items and (line.startswith(" ") or not _ENTRY.match(line)):
+        if items and (line.startswith(" ") or not (names or _ENTRY.match(line))):
             items[-1].append(line)
         else:
             items.append([line])
+    items = [[f"{item[0]}.", *item[1:]] if names and len(item) > 1 else item for item in items]
     return [f"- {_item(chr(10).join(item))}" for item in items]
 
 

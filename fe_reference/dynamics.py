@@ -94,7 +94,39 @@ class Run(Checked):
 
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
-    """Let a pivot go at rest from the static state at a rotation: `solve_motion` of the one body there is."""
+    """Release the only body at rest from the static state at a rotation.
+
+    Parameters
+    ----------
+    pivot : Model
+    start : float, rad
+        Rotation at the release; None: no rotation is driven.
+    duration : float, s
+    options
+        Keywords of `solve_motion`.
+
+    Returns
+    -------
+    Trajectory
+        T records, the start first: time (T,), rotation (T,), energies (T,) and more.
+
+    Raises
+    ------
+    InvalidParameter, ConvergenceError
+        As in `solve_motion`.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Fig 6.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
+    >>> motion.time.shape
+    (6,)
+    """
     require_model(pivot)
     pivot.body_index(None)
     return solve_motion(pivot, start=start, duration=duration, **options)
@@ -103,32 +135,58 @@ def solve_release(pivot: Model, *, start: float | None, duration: float, **optio
 def solve_motion(
     mechanism: Model, *, check: bool = True, raise_on_failure: bool = True, **asked: Any
 ) -> Trajectory:
-    """Let a mechanism go at rest from a static state, and follow the motion of all its bodies.
+    """Compute the motion of all bodies of a mechanism that is released at rest.
 
     The start is in static equilibrium: with the rotation of a body driven to `start`, gravity, natural
     strains in full, and every load and the driven displacement at its value times its history at t = 0
-    (without a history: in full). Then the rotation lets go, and so does a driven displacement without a
-    history; one with a history goes on leading. Loads go on as value times history(t), constant before its
-    first and after its last time.
+    (without a history: in full). Then the rotation is released, and so is a driven displacement without a
+    history; one with a history continues. Loads go on as value times history(t), constant before its first
+    and after its last time.
 
-    Args:
-        mechanism: strips, bodies and effects; both elements and both integrators go together. Masses are
-            lumped.
-        check: whether companions of other elements and steps say how far the motion is uncertain:
-            `rotation_error`, `displacement_error`, and in `resolution` where that is much. They cost about
-            a third of the motion, an implicit one nearly as much as itself, or eight of it with few
-            elements; none is made with an accuracy.
-        raise_on_failure: whether a motion that ends early raises, or is returned with its status.
-        asked: duration [s], and what else a `Run` knows.
+    Parameters
+    ----------
+    mechanism : Model
+        Both elements work with both integrators. Masses are lumped.
+    check : bool, default True
+        Compute companion motions of other elements and steps. They estimate `rotation_error` and
+        `displacement_error`, and set `resolution` where these are large. They cost about a third of the
+        motion, an implicit one nearly as much as itself, or eight times as much with few elements. None is
+        made with an accuracy.
+    raise_on_failure : bool, default True
+        Raise an error for a motion that ends early, or return it with its status.
+    asked
+        Duration [s], and the other attributes of ``fe_reference.dynamics.Run``.
 
-    Unless the scene names the rotary inertia of the sections, the
-    corotational element has none but a numerical one (see `mass`).
+    Returns
+    -------
+    Trajectory
+        T records, the start first: time (T,), rotation (T,), energies (T,) and more.
 
-    Raises:
-        InvalidParameter: a value outside its domain, a run too long to finish or to keep, nothing with
-            inertia, parts without inertia in the explicit integrator, a start that is held but not settled.
-        ConvergenceError: statics does not reach the start; or (unless `raise_on_failure` is False) the motion
-            blew up, a step had no solution or the accuracy was not reached: carries what there is.
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain, a run too long to finish or to keep, nothing with inertia, parts without
+        inertia in the explicit integrator, a start that is held but not settled.
+    ConvergenceError
+        Statics does not reach the start. Or, unless `raise_on_failure` is False, the motion blew up, a step
+        had no solution or the accuracy was not reached; it carries the part that was computed.
+
+    Notes
+    -----
+    Unless the scene names the rotary inertia of the sections, the corotational element has none but a
+    numerical one (see ``fe_reference.mass``).
+
+    References
+    ----------
+    Chung and Hulbert (1993), as in ``fe_reference.schemes``.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> motion = solve_motion(pivot, start=0.1, duration=1e-4, samples=5, check=False)
+    >>> bool(motion.rotation[-1] < 0.1)
+    True
     """
     require_model(mechanism)
     require_kind("check", check, bool, "True or False")

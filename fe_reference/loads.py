@@ -172,10 +172,33 @@ ALWAYS = (0.0, math.inf)
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenRotation(Checked):
-    """The rotation of a body led through angle [rad] times the change of a history, from where it is.
+    """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
 
-    It acts between the two instants `held` [s]. A body that is caught loses the velocity that the drive does
-    not have.
+    A body that is re-clamped loses the velocity that the drive does not have.
+
+    Parameters
+    ----------
+    body : str, default None
+        None: the only one.
+    angle : float, rad
+    history : pairs of s and 1, default ((0, 1),)
+        Times and factors of the angle.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
+
+    Examples
+    --------
+    >>> DrivenRotation(angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
     """
 
     body: str | None = None

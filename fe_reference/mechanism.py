@@ -25,14 +25,43 @@ def compliant_mechanism(
 ) -> Model:
     """Return the model of a mechanism at rest, free of stress unless it has natural strains.
 
-    Args:
-        strips, bodies: the designs. effects: their names. parameters: of the named effects; some of these may
-            have several sets of parameters, and then act once with each.
-        elements: number of elements a strip. element: "corotational" or "reissner".
+    Parameters
+    ----------
+    strips : sequence of StripDesign
+    bodies : sequence of BodyDesign, default ()
+    effects : sequence of str
+        Names of the effects.
+    parameters : mapping, SI units, default None
+        Parameters of each named effect, by effect, or a sequence of them for an effect that acts several
+        times.
+    elements : int, default 20
+        Finite elements per strip.
+    element : str
+        "corotational" (default) or "reissner" (with shear).
 
-    Raises:
-        InvalidParameter: a value outside its domain, an end on a body that is not there, effects that are
-            not known or do not go together.
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain, an end on an unknown body, or effects that contradict each other.
+
+    References
+    ----------
+    Crisfield (1991) and Reissner (1972), as in ``fe_reference.law``.
+
+    Examples
+    --------
+    >>> strip = StripDesign(
+    ...     name="strip", start=(0.0, 0.0), end=(0.1, 0.0), root="ground", tip="tip",
+    ...     width=0.01, thickness=1e-3,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0,
+    ... )
+    >>> tip = BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5)
+    >>> compliant_mechanism(strips=[strip], bodies=[tip], elements=8).elements
+    8
     """
     return Model(
         strips=tuple(strips),
@@ -64,19 +93,53 @@ def cross_axis_pivot(
 
         A1 = (0, 0),  A2 = (2 r L cos a, 0),  B1 = A1 + L (cos a, sin a),  B2 = A2 + L (-cos a, sin a)
 
-    and the body's centre at (B1 + B2)/2 + centre_offset; then the orientation turns all of it about A1.
+    and the body's centre at (B1 + B2)/2 + centre_offset; then the orientation rotates all of it about A1.
 
-    Args:
-        length: L [m]. inclination: a [rad], between 0 and pi/2. crossing_ratio: r, between 0 and 1.
-        body_mass [kg], body_moment_of_inertia about its centre [kg m^2]; zero is legal.
-        centre_offset: (2,) [m]. orientation: of the whole, counter-clockwise [rad].
-        effects: names of the effects of the scene. parameters: of those that have any, by name.
-        elements: number of elements a strip. element: "corotational" or "reissner".
-        section: of both strips, as of `StripDesign`: youngs_modulus [Pa], poisson_ratio [1], density
-            [kg/m^3], and area [m^2] with second_moment_of_area [m^4], or width with thickness [m].
+    Parameters
+    ----------
+    length : float, m
+        L.
+    inclination : float, rad
+        a, between 0 and pi/2.
+    crossing_ratio : float, 1
+        r, between 0 and 1.
+    body_mass, body_moment_of_inertia : float, kg and kg m^2
+        The moment is about the centre of mass; zero is legal.
+    centre_offset : (2,) m, default (0, 0)
+    orientation : float, rad, default 0
+        Counter-clockwise.
+    effects, parameters : sequence of str, mapping
+        Names of the effects, and the parameters of each effect by name.
+    elements : int, default 20
+        Finite elements per strip.
+    element : str
+        "corotational" (default) or "reissner" (with shear).
+    section
+        Of both strips, as of `StripDesign`: youngs_modulus [Pa], poisson_ratio [1], density [kg/m^3], and
+        area [m^2] with second_moment_of_area [m^4], or width with thickness [m].
 
-    Raises:
-        InvalidParameter: a value outside its domain; one line with name, value, expectation and unit.
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain; one line with name, value, expectation and unit.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Fig 2 and Table 1.
+
+    Examples
+    --------
+    >>> pivot = cross_axis_pivot(
+    ...     length=0.08, inclination=0.785, crossing_ratio=0.5, width=0.01, thickness=5e-4,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0, body_mass=0.1,
+    ...     body_moment_of_inertia=2e-5, elements=8,
+    ... )
+    >>> len(pivot.strips), pivot.elements
+    (2, 8)
     """
     ground, ends = _clamps(
         positive("length", length, "m"),

@@ -44,20 +44,48 @@ ROUNDING = 1e-3
 class StripDesign(Checked):
     """A strip: its axis at rest, what its ends are on, and a linear elastic, homogeneous beam section.
 
-    Symbols: A [m^2], I [m^4], E [Pa], nu [1], rho [kg/m^3], shear factor k [1].
-    Rigidities: EA [N], EI [N m^2], k G A [N] with G = E / (2 (1 + nu)); linear density mu = rho A [kg/m].
-    k = 5/6 is the value for a rectangle in energy equivalence (Reissner), without the dependence on nu.
+    Parameters
+    ----------
+    name : str
+    start, end : (2,) m
+        Of the axis at rest.
+    root, tip : str
+        "ground" or the name of the body that start and end are on; None for a free end.
+    rise : float, m, default 0
+        Sagitta of the circular arc at rest, to the left of start to end; 0: straight.
+    area, second_moment_of_area : float, m^2 and m^4
+        A and I; not needed with the sides.
+    youngs_modulus, poisson_ratio, density : float, Pa, 1, kg/m^3
+        E, nu and rho.
+    shear_factor : float, 1, default 5/6
+        k, the value for a rectangle in energy equivalence (Reissner), without the dependence on nu.
+    width, thickness : float, m, default None
+        Sides b and t of a rectangle, t in the plane of bending, which effects of the curl across the width
+        need: then A = b t and I = b t^3 / 12, unless they are given and agree with the sides to ROUNDING.
 
-    A rectangle may be told by its sides, the width b [m] and the thickness t in the plane of bending [m],
-    which effects of the curl across the width need: then A = b t and I = b t^3 / 12 where they are left out;
-    where they are given they hold, and must be those of the sides to ROUNDING. The sides of a tapered strip
-    change linearly over its length to width_end and thickness_end [m]; all else is told at its start.
+    width_end, thickness_end : float, m, default None
+        Sides at the end of a taper, between which they change linearly along the strip. Width, thickness,
+        area and second moment are those at the start.
+    root_joint, tip_joint : str, default "clamp"
+        "clamp", or "hinge" about which the end turns freely on ground or body.
 
-    Attributes:
-        name: what it is called. start, end: of its axis at rest [m].
-        root, tip: "ground" or the name of the body that its start and its end are on; None if it is free.
-        root_joint, tip_joint: "clamp", or "hinge" about which the end turns freely on ground or body.
-        rise: sagitta of the circular arc it is at rest [m], to the left of start to end; 0: straight.
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain, half a section, or sections that do not agree.
+
+    Notes
+    -----
+    Rigidities: EA [N], EI [N m^2], k G A [N] with G = E / (2 (1 + nu)); linear density rho A [kg/m].
+
+    Examples
+    --------
+    >>> strip = StripDesign(
+    ...     name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip=None, width=0.01, thickness=1e-3,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0,
+    ... )
+    >>> print(f"{strip.second_moment_of_area:.3e} m^4")
+    8.333e-13 m^4
     """
 
     name: str
@@ -172,9 +200,26 @@ class StripDesign(Checked):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BodyDesign:
-    """A rigid body: centre of mass at rest (2,) [m], mass [kg], inertia about the centre [kg m^2], name.
+    """A rigid body; without mass and inertia it is the common end node of its strips.
 
-    A body without mass and inertia is legal: it is then the common end node of the strips.
+    Parameters
+    ----------
+    centre : (2,) m
+        Centre of mass at rest.
+    mass : float, kg, default 0
+    moment_of_inertia : float, kg m^2, default 0
+        About the centre of mass.
+    name : str, default "body"
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain.
+
+    Examples
+    --------
+    >>> BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5).mass
+    0.05
     """
 
     centre: Array

@@ -66,29 +66,58 @@ def natural_frequencies(
     body: str | None = None,
     accuracy: float | None = None,
 ) -> Modes:
-    """Return the modes about a static state: free vibrations of what a release from it lets go of.
+    """Return the natural modes about a static state.
 
     The state is in equilibrium with the rotation driven, and with the driven displacement, gravity, natural
-    strains and all loads in full. Free are then the rotation, unless it is held, and a driven displacement
-    without a history: what drove them acts on as it is. Where nothing holds the model against its loads in
-    full, the state is the one in which its motion starts.
+    strains and all loads in full. The modes are free vibrations of the coordinates that a release frees: the
+    rotation, unless it is held, and a driven displacement without a history. Their driving forces act on
+    unchanged. If nothing holds the model against its loads in full, the state is the start of its motion.
 
-    Args:
-        pivot: the model.
-        rotation: of the static state [rad]; None: no rotation is driven. count: number of modes, fewer where
-            the mesh has no more.
-        held: whether the rotation of the body stays held; if not the torque of the drive stays on unchanged.
-        mass: "consistent" (default) or "lumped", the one of the explicit integrator.
-        increments: of the static path to the state.
-        body: name of the driven body; None: the only one.
-        accuracy: wanted error of every frequency in parts of it; the mesh is doubled until the estimate is
-            below it, and the frequencies are the limits.
+    Parameters
+    ----------
+    pivot : Model
+    rotation : float, rad, default 0
+        Of the static state; None: no rotation is driven.
+    count : int, default 10
+        Number of modes C; fewer where the mesh has no more.
+    held : bool, default False
+        Keep the rotation of the body prescribed; otherwise the torque of the drive stays on unchanged.
+    mass : str
+        "consistent" (default), or "lumped" as in the explicit integrator.
+    increments : int, default 20
+        Of the static path to the state.
+    body : str, default None
+        Driven body; None: the only one.
+    accuracy : float, 1, default None
+        Wanted relative error of every frequency. The mesh is doubled until the estimate is below it, and the
+        frequencies are the limits.
 
-    Exact for small motion; leaves out damping. Strips without inertia follow the bodies statically.
+    Returns
+    -------
+    Modes
+        frequency (C,) in Hz, ascending; shapes (C, G, P, 2) of G strips with P nodes, and more.
 
-    Raises:
-        InvalidParameter: an unknown kind of mass, no inertia at all, a rotation that is held but not driven.
-        ConvergenceError: the static state cannot be reached, or the accuracy is not.
+    Raises
+    ------
+    InvalidParameter
+        An unknown kind of mass, no inertia at all, a rotation that is held but not driven.
+    ConvergenceError
+        The static state cannot be reached, or the accuracy is not.
+
+    Notes
+    -----
+    Exact for small motion; neglects damping. Strips without inertia follow the bodies statically.
+
+    References
+    ----------
+    Bathe, Finite Element Procedures (1996), ch. 10 (generalised eigenvalue problem).
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> print(f"{natural_frequencies(pivot, count=1).frequency[0]:.2f} Hz")
+    11.55 Hz
     """
     require_model(pivot)
     kind = choice("mass", mass, MASSES)

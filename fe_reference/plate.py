@@ -87,19 +87,39 @@ class PlateFactors:
 
 
 def plate_factors(width_ratio: float, poisson_ratio: float, *, halvings: int = 0) -> PlateFactors:
-    """Return the factors of a strip of width over length ``width_ratio`` b/L [1] between built-in ends.
+    """Return the factors of a strip between built-in ends on the stiffness of a beam.
 
-    For small deflections of a thin strip; halvings: of all elements, to see what the mesh leaves.
-    The stiffness of a cross-axis pivot at rest is sum EI/L (f_b + 12 (lambda - 1/2)^2 f_s), that of a
-    parallel guide is f_s times the beam's.
+    For small deflections of a thin strip. The stiffness of a cross-axis pivot at rest is
+    sum EI/L (f_b + 12 (lambda - 1/2)^2 f_s), that of a parallel guide is f_s times that of the beam.
 
-    Raises:
-        InvalidParameter: a ratio that is not positive, a Poisson ratio outside [0, 0.5].
+    Parameters
+    ----------
+    width_ratio : float, 1
+        Width over length b/L.
+    poisson_ratio : float, 1
+        In [0, 0.5].
+    halvings : int, default 0
+        Of all elements, to measure the error of the mesh.
 
-    Example:
-        >>> factors = plate_factors(0.25, 0.3)
-        >>> print(f"{factors.constant:.4f} {factors.linear:.4f}")
-        1.0188 1.0445
+    Returns
+    -------
+    PlateFactors
+        f_b of a constant moment and f_s of a linear one [1].
+
+    Raises
+    ------
+    InvalidParameter
+        A ratio that is not positive, a Poisson ratio outside [0, 0.5].
+
+    References
+    ----------
+    Of the element: ``fe_reference.plate``.
+
+    Examples
+    --------
+    >>> factors = plate_factors(0.25, 0.3)
+    >>> print(f"{factors.constant:.4f} {factors.linear:.4f}")
+    1.0188 1.0445
     """
     if not (np.isfinite(width_ratio) and width_ratio > 0.0):
         raise InvalidParameter("width_ratio", width_ratio, "a number above 0")

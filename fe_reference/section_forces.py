@@ -70,18 +70,43 @@ class StripFields:
 
 
 def strip_fields(model: Model, states: Array, ends: Array | None = None) -> StripFields:
-    """Return the fields of states (S, size) in the reduced coordinates, natural strains in full.
+    """Return the fields of states along the strips, natural strains in full.
 
     Section forces are those that hold the elements: they obey the balance of the mesh, with weight and
     inertia lumped at the nodes, to the residual of the state. Those at a node are the means of the end values
     of the adjacent elements, which agree to the residual. Exact at the nodes without distributed load; with
     it, and for strains, of second order in the element length. Reactions are the section forces at the ends.
 
-    Args:
-        model: with the structure that the states belong to. ends (S, E, 5): of the elements, if known.
+    Parameters
+    ----------
+    model : Model
+        With the structure that the states belong to.
+    states : (S, size) m and rad
+        Reduced coordinates.
+    ends : (S, E, 5), default None
+        Of the E elements, if known.
 
-    Raises:
-        InvalidParameter: states of another structure, such as another number of elements.
+    Returns
+    -------
+    StripFields
+        Arrays (S, G, P) of G strips with P nodes: axial force, shear force, moment and more.
+
+    Raises
+    ------
+    InvalidParameter
+        States of another structure, such as another number of elements.
+
+    References
+    ----------
+    Reissner (1972), as in ``fe_reference.law``.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, increments=1)
+    >>> strip_fields(pivot, path.states).bending_moment.shape
+    (2, 2, 9)
     """
     require_model(model)
     structure, y = structure_of(model), np.asarray(states)

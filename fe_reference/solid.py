@@ -71,6 +71,17 @@ class SolidStrip:
     ------
     InvalidParameter
         An unknown law or element, sides that are not positive, or an empty mesh.
+
+    References
+    ----------
+    Bonet and Wood (2008), as in ``fe_reference.solid``.
+
+    Examples
+    --------
+    >>> SolidStrip(
+    ...     length=0.03, width=8e-3, thickness=1e-3, youngs_modulus=114e9, poisson_ratio=0.34, mesh=(6, 1, 1)
+    ... ).mesh
+    (6, 1, 1)
     """
 
     length: float

@@ -82,6 +82,10 @@ def solve_solids(
     InvalidParameter
         A rotation that is not finite, or strips that do not have the length of the mesh.
 
+    References
+    ----------
+    Bonet and Wood (2008), as in ``fe_reference.solid``.
+
     Examples
     --------
     >>> strip = SolidStrip(

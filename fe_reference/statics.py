@@ -27,7 +27,40 @@ JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
 
 
 def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
-    """Drive the rotation of the one body there is from 0 to `rotation` [rad]: `solve_mechanism` of it."""
+    """Rotate the only body from 0 to `rotation`.
+
+    Parameters
+    ----------
+    pivot : Model
+    rotation : float or sequence of float, rad
+        End of the path, or ends of several legs.
+    options
+        Keywords of `solve_mechanism`.
+
+    Returns
+    -------
+    StaticSolution
+        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
+
+    Raises
+    ------
+    InvalidParameter, ConvergenceError
+        As in `solve_mechanism`.
+
+    References
+    ----------
+    Crisfield (1991), as in ``fe_reference.law``.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
+    >>> path.torque.shape
+    (6,)
+    >>> print(f"{path.torque[-1]:.4f} N m")
+    0.1634 N m
+    """
     require_model(pivot)
     pivot.body_index(None)
     return solve_mechanism(pivot, rotation=several("rotation", rotation, "rad"), **options)
@@ -46,34 +79,62 @@ def solve_mechanism(
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
-    """Lead a mechanism of any bodies from load factor 0 to 1 and return every state in between.
+    """Solve a mechanism from load factor 0 to 1 and return every state in between.
 
     Each increment is one extrapolation and Newton with the consistent tangent on all other coordinates; an
     increment that fails, or whose state is not believed, is halved. The torque is the generalised force on
     the driven rotation, the stiffness the Schur complement of the tangent. Gravity and natural strains act in
-    full from the first state on, loads and the driven displacement of the scene as `order` says.
+    full from the first state on, loads and the driven displacement of the scene as given by `order`.
 
-    Args:
-        mechanism: strips, bodies and effects.
-        body: name of the driven body; None: the only one.
-        rotation: that it is led to [rad], or the ends of several legs, one after another; None: it is free.
-        displacement: that its centre is led to (2,) [m]; None: the one of the effect driven_displacement, or
-            free if that is not named.
-        increments: equal increments of each leg, and of the loads before it.
-        order: "loads first": they grow with the body held, and stay as it turns; "together": both grow with
-            the load factor.
-        accuracy: wanted error of path, torque, stiffness, strain energy and largest stress, in parts of the
-            largest of each; the mesh is doubled until the estimate is below it, and the answer is the limit.
-        check: whether critical points and an early end are compared with those of twice the elements; what
-            is not confirmed is not resolved, see `refined.confirmed`.
-        raise_on_failure: whether a path that ends early raises, or is returned with its status.
-        progress: called as progress(done, total) after every increment.
+    Parameters
+    ----------
+    mechanism : Model
+    body : str, default None
+        Driven body; None: the only one.
+    rotation : float or sequence of float, rad, default None
+        End of the path, or ends of several legs, one after the other; None: free.
+    displacement : (2,) m, default None
+        Prescribed displacement of the body's centre; None: that of the effect driven_displacement, or free if
+        this is not named.
+    increments : int, default 20
+        Equal increments of each leg, and of the loads before it.
+    order : str
+        "loads first" (default): loads grow with the body held, and then are constant. "together": loads and
+        rotation grow with the load factor.
+    accuracy : float, 1, default None
+        Wanted error of path, torque, stiffness, strain energy and largest stress, relative to the largest of
+        each. The mesh is doubled until the estimate is below it, and the answer is the limit.
+    check : bool, default True
+        Confirm critical points and an early end by twice the elements, see ``fe_reference.refined``.
+    raise_on_failure : bool, default True
+        Raise an error for a path that ends early, or return it with its status.
+    progress : callable, default None
+        Called as progress(done, total) after every increment.
 
-    Raises:
-        InvalidParameter: a rotation that is not finite, fewer than one increment, an unknown body, a drive
-            without a body, a displacement given twice.
-        ConvergenceError: the path ended early; carries the converged part. The accuracy was not reached;
-            carries the best answer.
+    Returns
+    -------
+    StaticSolution
+        S states; arrays as in `solve_statics`.
+
+    Raises
+    ------
+    InvalidParameter
+        A rotation that is not finite, fewer than one increment, an unknown body, a drive without a body, a
+        displacement given twice.
+    ConvergenceError
+        The path ended early; it carries the converged part. Or the accuracy was not reached; it carries the
+        best answer.
+
+    References
+    ----------
+    Crisfield (1991) and Reissner (1972), as in ``fe_reference.law``.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+
+    >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
+    [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)
     ends = None if rotation is None else several("rotation", rotation, "rad")

@@ -35,20 +35,61 @@ def solve_many(
     section_depth: ArrayLike | None = None,
     **described: Unpack[Described],
 ) -> Batch:
-    """Static paths of many designs to one rotation, or each to its own [rad], a number or (D,).
+    """Return the static paths of many designs.
 
-    designs: keywords of ``cross_axis_pivot`` as columns, each a number or an array (D,), or
-    one mapping a design, and ``described`` as there, the same for all. Or a mechanism, with the
-    ``values`` (D,) of its numbers that vary, by the names of ``spline_model.parameters``:
-    "thickness" of all strips, "crank.centre_x" of a body, "ground_crank.end_y" of a strip; a strip's end
-    does not go with the body that it is clamped to. body: the one that is turned and reported, or the
-    only one. order: "loads first", in which the first state has all loads, or "together", in which they grow
-    with the rotation, as in ``solve_statics``; weight and pre-strain come on first. accuracy: as there, of
-    each design by itself: each gets the control points that it takes, and has its estimated ``errors``.
-    section_depth: in the
-    plane of bending [m], a number or (D,), by which strains are asked for. The compiled paths run without
-    the interpreter's lock on ``threads`` threads, default all cores; the answers do not depend on their
-    number. Raises InvalidParameter with the number of a bad design.
+    Parameters
+    ----------
+    designs : mapping, sequence of mappings, or Mechanism
+        Keywords of ``spline_model.pivot.cross_axis_pivot`` in SI units as columns, each a number or an array
+        (D,), or one mapping per design. Or a mechanism, with `values`.
+    values : mapping of arrays (D,), SI units, default None
+        Numbers of the mechanism that vary, by the names of ``spline_model.parameters``: "thickness" of all
+        strips, "crank.centre_x" of a body, "ground_crank.end_y" of a strip. The end of a strip does not
+        move with its body.
+    rotation : float or (D,), rad
+        End of all paths, or of each path.
+    body : str, default None
+        Rotated and reported body; None is the only one.
+    increments : int, default 20
+    order : str
+        "loads first" (default) or "together", as in ``spline_model.statics.solve_statics``. Weight and
+        pre-strain act first.
+    accuracy : float, 1, default None
+        As in ``spline_model.statics.solve_statics``, for each design: each gets its own number of control
+        points, and its estimated `errors`.
+    threads : int, default None
+        Number of threads; None is one per core. Results do not depend on it.
+    section_depth : float or (D,), m, default None
+        Depth of the sections in the plane of bending, for strains.
+    described
+        Discretisation of all designs, as in ``spline_model.pivot.cross_axis_pivot``.
+
+    Returns
+    -------
+    Batch
+        D designs at S states: torque (D, S), stiffness (D, S), centre (D, S, 2) and more; NaN behind a path
+        that stopped.
+
+    Raises
+    ------
+    InvalidParameter
+        A bad value, with the number of the design.
+
+    Notes
+    -----
+    The compiled paths run without the interpreter's lock. A batch gives the numbers of single solves.
+
+    References
+    ----------
+    Guyan, AIAA Journal 3 (1965), for the condensation of the strips.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> batch = solve_many(pivot, {"thickness": [4e-4, 5e-4]}, rotation=0.3, increments=5)
+    >>> batch.torque.shape
+    (2, 6)
     """
     require_count("increments", increments, 1)
     require_choice("order", order, ORDERS)

@@ -36,17 +36,45 @@ ROUNDED = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class StripDesign:
-    """A strip between two points, from ``root`` to ``tip``: the ground, a body, or None (free tip).
+    """A strip between two points, from ``root`` to ``tip``.
 
-    start, end [m]; area [m^2], second_moment_of_area [m^4], youngs_modulus [Pa], density
-    [kg/m^3]; width b and thickness t in the plane of bending [m], both or neither: of a rectangular
-    section, whose area b t and second moment b t^3 / 12 then need not be given, and where they are must
-    agree to ROUNDED (and count as given); poisson_ratio is for the section's curl (``clamped_width``,
-    ``anticlastic``); rise: sagitta of the circular arc at rest [m], positive to the left of
-    start -> end, 0 for a straight strip; half the chord of a half circle, more of longer arcs.
-    width_end, thickness_end: sides at the end of a taper [m], between which they change linearly along the
-    strip, None where they are constant; width, thickness, area and second moment are those at the start.
-    root_joint, tip_joint: "clamp", or "hinge" of an end that turns freely.
+    Parameters
+    ----------
+    name : str
+    start, end : (2,) m
+        Clamped points at rest.
+    area, second_moment_of_area : float, m^2 and m^4
+        Section; not needed with `width` and `thickness`.
+    youngs_modulus, density : float, Pa and kg/m^3
+    poisson_ratio : float, 1, default 0.3
+        Used by `clamped_width` and `anticlastic` only.
+    root, tip : str
+        "ground" (default of the root), the name of a body, or None for a free tip (default).
+    rise : float, m, default 0
+        Sagitta of the circular arc at rest, positive to the left of start -> end; 0 for a straight strip,
+        half the chord for a half circle, more for longer arcs.
+    width, thickness : float, m, default None
+        Rectangular section b and t, both or neither; t is in the plane of bending. Area b t and second moment
+        b t^3 / 12 must agree to ROUNDED if they are given too, and then count as given.
+    width_end, thickness_end : float, m, default None
+        Sides at the end of a taper, between which they change linearly along the strip. Width, thickness,
+        area and second moment are those at the start.
+    root_joint, tip_joint : str, default "clamp"
+        "clamp", or "hinge" about which the end turns freely on ground or body.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, half a section, or sections that do not agree.
+
+    Examples
+    --------
+    >>> strip = StripDesign(
+    ...     name="strip", start=(0.0, 0.0), end=(0.1, 0.0), width=0.01, thickness=1e-3,
+    ...     youngs_modulus=206e9, density=7850.0,
+    ... )
+    >>> print(f"{strip.second_moment_of_area:.3e} m^4")
+    8.333e-13 m^4
     """
 
     name: str
@@ -226,7 +254,27 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BodyDesign:
-    """A rigid body: centre at rest [m], mass [kg], moment of inertia about the centre [kg m^2]."""
+    """A rigid body.
+
+    Parameters
+    ----------
+    name : str
+    centre : (2,) m
+        Centre of mass at rest.
+    mass : float, kg, default 0
+    moment_of_inertia : float, kg m^2, default 0
+        About the centre of mass.
+
+    Raises
+    ------
+    InvalidParameter
+        A negative mass or moment.
+
+    Examples
+    --------
+    >>> BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5).mass
+    0.05
+    """
 
     name: str
     centre: tuple[float, float]

@@ -24,11 +24,30 @@ for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip
 
 
 def swinging_slide_stiffness(control_points: int) -> float:
-    """The default slide stiffness of a motion, in EI/L^2: 100 ((n - 2) / 6)^3.
+    """Return the default slide stiffness of a motion: 100 ((n - 2) / 6)^3.
 
-    In a motion the sliding has inertia and must be fast against the strips' bending, or it
-    takes part in the swing; how stiff it may be before it locks grows with n. The rule goes
-    through the best values for n = 4, 6 and 8 (results of convergence/slide_stiffness).
+    Parameters
+    ----------
+    control_points : int
+        Number n of one segment.
+
+    Returns
+    -------
+    float, EI/L^2
+
+    Notes
+    -----
+    In a motion the sliding has inertia and must be fast against the bending of the strips, or it takes
+    part in the vibration. A stiffness that is too large locks; the limit grows with n.
+
+    References
+    ----------
+    Fitted to the best values for n = 4, 6 and 8; study convergence/slide_stiffness of version 0.1.0.
+
+    Examples
+    --------
+    >>> swinging_slide_stiffness(8)
+    100.0
     """
     return 100.0 * ((control_points - 2) / 6.0) ** 3
 

@@ -48,7 +48,38 @@ STEP = 5e-5
 
 
 def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
-    """Let the pivot go at rest from the static state at rotation ``start`` [rad]: see ``solve_motion``."""
+    """Release a pivot at rest from the static state at a rotation.
+
+    Parameters
+    ----------
+    pivot : Pivot
+    start : float, rad, default pi/2
+        Rotation at the release.
+    options
+        Keywords of `solve_motion`: `duration` and `step` in s, and more.
+
+    Returns
+    -------
+    Trajectory
+        T records, the start first: time (T,), rotation (T,), centre (T, 2), energies (T,) and more.
+
+    Raises
+    ------
+    InvalidParameter, ConvergenceError
+        As in `solve_motion`.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Fig 6.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> motion = solve_release(pivot, start=0.1, duration=1e-3, step=1e-4, check=False)
+    >>> bool(motion.rotation[-1] < 0.1)
+    True
+    """
     return solve_motion(pivot, start=start, **options)
 
 
@@ -66,7 +97,7 @@ def solve_motion(
     after: Trajectory | None = None,
     check: bool = True,
 ) -> Trajectory:
-    """Motion of a mechanism that is released at rest.
+    """Compute the motion of a mechanism that is released at rest.
 
     The start is in static equilibrium: with the rotation ``start`` [rad] of a body driven, weight and
     pre-strain in full, every load at its value times its history at t = 0 (without a history: in full),
@@ -78,26 +109,61 @@ def solve_motion(
 
     Parameters
     ----------
-    body : that ``start`` rotates and that the trajectory reports; default the only one.
-    drive : a rotation that is held or driven in a part of the run, if any.
-    duration, step : [s]; the step defaults to STEP, or to a stable one of the leapfrog; it is
-        shortened so that a whole number of steps fits between the records.
-    integrator : "energy" (default, cannot create energy; with massless strips, only the bodies
-        are dynamic), or for free scenes of which no strip is damped or massless "leapfrog", the
-        fastest.
-    accuracy : wanted error over the run, of rotations [rad] and of places over the longest strip [1],
-        instead of a step: steps and control points are chosen, and the trajectory has its ``estimate``.
-    records : largest number of records; default every step, or with an accuracy 128 a swing or more.
-    check : whether companions with two control points more and with a quarter of the step say how far the
-        motion is uncertain: ``rotation_error``, ``displacement_error``, and in ``resolution`` where that is
-        much. They cost about five other motions, or one by the leapfrog where it can be used; none is made
-        with an accuracy, which has its own estimate, or with ``after``.
-    after : a motion of this mechanism to go on with from its last record, instead of ``start``;
-        time, work, losses and the clock of loads and drives run on.
+    mechanism : Mechanism
+    start : float, rad, default None
+        Rotation of the body at the start.
+    body : str, default None
+        Body that `start` rotates and that the trajectory reports; None is the only one.
+    drive : DrivenRotation, default None
+        A rotation that is held or driven in a part of the run.
+    duration : float, s
+    step : float, s, default None
+        Default STEP, or a stable one of the leapfrog. It is shortened so that a whole number of steps fits
+        between the records.
+    integrator : str
+        "energy" (default, cannot create energy; with massless strips, only the bodies are dynamic), or
+        "leapfrog", the fastest, for free scenes of which no strip is damped or massless.
+    accuracy : float, rad and 1, default None
+        Wanted error over the run, of rotations and of places over the longest strip, instead of a step: steps
+        and control points are chosen, and the trajectory has its `estimate`.
+    records : int, default None
+        Largest number of records; default every step, or with an accuracy 128 per period or more.
+    after : Trajectory, default None
+        A motion of this mechanism to continue from its last record, instead of `start`; time, work, losses
+        and the clock of loads and drives run on.
+    check : bool, default True
+        Compute companion motions with two control points more and with a quarter of the step. They estimate
+        `rotation_error` and `displacement_error`, and set `resolution` where these are large. They cost about
+        five other motions, or one by the leapfrog where it can be used. None is made with an accuracy, which
+        has its own estimate, or with `after`.
 
+    Returns
+    -------
+    Trajectory
+        T records, the start first: time (T,), rotation (T,), centre (T, 2), energies (T,) and more.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range.
+    ConvergenceError
+        Statics does not reach `start`.
+
+    Notes
+    -----
     Where the control points are left open and the start is not reached or the motion stops, more are tried.
 
-    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
+    References
+    ----------
+    Gonzalez, Journal of Nonlinear Science 6 (1996) 449, for the conservation of energy.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> motion = solve_motion(pivot, start=0.1, duration=1e-3, step=1e-4, records=5, check=False)
+    >>> motion.time.shape, motion.centre.shape
+    ((6,), (6, 2))
     """
     require_mechanism(mechanism)
     require_kind("check", check, bool, "True or False")

@@ -51,11 +51,37 @@ class HeldState:
 class HeldPivot:
     """Static states of a mechanism in which one body is held, each found from the one before.
 
-    ``hold`` prescribes x, y and theta (a body in the hand: Eq 7 and the driven displacements),
-    ``turn`` theta alone. Exact for the discretised equations to TOLERANCE, as the path with the same
-    drives is; leaves out gravity and loads. A call that finds no equilibrium in a bounded number of
-    iterations, or held strips that buckle, leaves the state as it was and says so. The other bodies
-    of a mechanism are free; ``body`` names the held one, by default that of the case.
+    ``hold`` prescribes x, y and theta (a body in the hand), ``turn`` theta alone. A call that finds no
+    equilibrium in a bounded number of iterations, or held strips that buckle, leaves the state as it was and
+    reports this in the state that it returns.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Bodies on strips; those beside the held one are free.
+    body : str, default None
+        The held body; None for that of the case.
+
+    Raises
+    ------
+    InvalidParameter
+        A mechanism that the elements of the strips do not support.
+
+    Notes
+    -----
+    Exact for the discretised equations to TOLERANCE, as the path with the same drives is; neglects gravity
+    and loads.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7 and section 4.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> print(f"{HeldPivot(pivot).turn(0.1).force[2]:.4f} N m")
+    0.0537 N m
     """
 
     def __init__(self, mechanism: Mechanism, body: str | None = None) -> None:

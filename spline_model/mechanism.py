@@ -130,12 +130,46 @@ def compliant_mechanism(
     parameters: Parameters | None = None,
     **described: Unpack[Described],
 ) -> Mechanism:
-    """A mechanism whose scene holds the named effects and nothing else.
+    """Return a mechanism of strips and rigid bodies whose scene contains the named effects only.
 
-    effects: names of ``spline_model.effects.registry``; parameters: of each named effect, by effect, or a
-    sequence of them for an effect that acts several times; described: keywords of ``Discretisation``; strips
-    are cut into more segments than these say where one of a segment alone would be an arc of more than
-    LARGEST_OPENING. ``stretch="inextensible"`` and the effect "inextensible" are the same thing.
+    Parameters
+    ----------
+    strips : sequence of StripDesign
+        Strips between ground and bodies; a strip may end free.
+    bodies : sequence of BodyDesign, default ()
+        Rigid bodies.
+    effects : sequence of str
+        Names of ``spline_model.effects.registry``. `stretch="inextensible"` and the effect "inextensible"
+        are the same.
+    parameters : mapping, SI units, default None
+        Parameters of each named effect, by effect, or a sequence of them for an effect that acts several
+        times.
+    described
+        Keywords of ``spline_model.discretisation.Discretisation``. Strips are cut into more segments than
+        these say where a segment would be an arc of more than LARGEST_OPENING.
+
+    Returns
+    -------
+    Mechanism
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, an unknown body, or effects that contradict each other.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eqs 2 to 10, for one strip.
+
+    Examples
+    --------
+    >>> strip = StripDesign(
+    ...     name="strip", start=(0.0, 0.0), end=(0.1, 0.0), root="ground", tip="tip",
+    ...     width=0.01, thickness=1e-3,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0,
+    ... )
+    >>> tip = BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5)
+    >>> mechanism = compliant_mechanism(strips=[strip], bodies=[tip], control_points=6)
     """
     grid = Discretisation(**described)
     fewest = max((math.ceil(2.0 * abs(strip.opening) / LARGEST_OPENING) for strip in strips), default=1)

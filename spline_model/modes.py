@@ -83,17 +83,53 @@ def natural_frequencies(
     increments: int = 20,
     accuracy: float | None = None,
 ) -> Modes:
-    """Modes about a static state: free vibrations of the coordinates that a release from it frees.
+    """Return the natural modes about a static state.
 
-    The state is in equilibrium with the rotation [rad] of a body, the only one by default, driven there;
-    with driven displacements, weight, pre-strain and all loads in full. rotation None: 0 of a pivot; of a
-    mechanism nothing is driven, its loads settle it. Free are then the driven rotation, whose torque acts
-    on as a dead moment (``held=True`` fixes it), and the driven displacements without a history, whose
-    forces act on. accuracy: wanted relative error of all frequencies [1], for which the control points are
-    raised and the modes have their ``estimate``; default 1e-4 without a number of control points, else just
-    that number. Where nothing holds the mechanism against its loads in full, the state is that in which its
-    motion starts, with loads and drives as their histories begin.
-    Raises ConvergenceError if statics does not reach the state, or if none reaches the accuracy.
+    The state is in equilibrium with the rotation of a body, and with driven displacements, weight,
+    pre-strain and all loads in full. The modes are free vibrations of the coordinates that a release
+    frees: the driven rotation, whose torque acts on as a dead moment, and the driven displacements
+    without a history, whose forces act on. If nothing holds the mechanism against its loads in full, the
+    state is the start of its motion, with loads and drives as their histories begin.
+
+    Parameters
+    ----------
+    pivot : Mechanism
+    rotation : float, rad, default None
+        Of the static state; None is 0 for a pivot, and no driven rotation for a mechanism.
+    body : str, default None
+        Driven body; None is the only one.
+    count : int, default 10
+        Number F of modes.
+    held : bool, default False
+        Keep the rotation of the body prescribed.
+    increments : int, default 20
+        Of the static path to the state.
+    accuracy : float, 1, default None
+        Wanted relative error of all frequencies; control points are raised, and the modes have their
+        `estimate`. Default 1e-4 without a number of control points, else no estimate.
+
+    Returns
+    -------
+    Modes
+        frequency (F,) in Hz, ascending; shapes (F, G, P, 2) of G strips at P stations, and more.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range.
+    ConvergenceError
+        Statics does not reach the state, or no number of control points reaches the accuracy.
+
+    References
+    ----------
+    Bathe, Finite Element Procedures (1996), ch. 10 (generalised eigenvalue problem).
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> print(f"{natural_frequencies(pivot, count=1).frequency[0]:.2f} Hz")
+    11.55 Hz
     """
     require_mechanism(pivot)
     require_count("count", count, 1)

@@ -77,24 +77,58 @@ def cross_axis_pivot(
     parameters: Parameters | None = None,
     **described: Unpack[Described],
 ) -> Pivot:
-    """The pivot of Table 1, or any other design, in SI units and radians.
+    """Return the pivot of Table 1, or any other design.
 
     Parameters
     ----------
-    length : L of each strip [m]. inclination : of the strips to the x axis [rad].
-    crossing_ratio : distance of the crossing from the ground end over L, in (0, 1).
-    area, second_moment_of_area : of a strip's section [m^2, m^4].
-    width, thickness : of a rectangular section [m], in place of area and second moment or beside them.
-    width_end, thickness_end : of a taper [m], at the body.
-    poisson_ratio : of effects that know the section's curl; a shear-rigid strip is without it otherwise.
-    centre_offset : of the body's centre of mass from the midpoint of B1 B2 [m].
-    orientation : turns the whole pivot about A1 [rad].
-    effects, parameters : names of the effects of the scene, and the parameters of each: see
-        ``compliant_mechanism``.
-    described : control_points ... slide_stiffness, see ``design.Discretisation``; without control_points
-        answers take as many as an accuracy of 1e-4 needs.
+    length : float, m
+        Length L of each strip.
+    inclination : float, rad
+        Angle between the strips and the x axis.
+    crossing_ratio : float, 1
+        Distance of the crossing from the ground end over L, in (0, 1).
+    area, second_moment_of_area : float, m^2 and m^4
+        Section of a strip; not needed with `width` and `thickness`.
+    youngs_modulus, poisson_ratio, density : float, Pa, 1, kg/m^3
+        Material. The Poisson ratio is used by `clamped_width` and `anticlastic` only.
+    body_mass, body_moment_of_inertia : float, kg and kg m^2
+        Inertia of the body; the moment is about its centre of mass.
+    centre_offset : (2,) m, default (0, 0)
+        Centre of mass relative to the midpoint of B1 and B2.
+    orientation : float, rad, default 0
+        Rotation of the whole pivot about A1.
+    width, thickness : float, m, default None
+        Rectangular section; the thickness is in the plane of bending.
+    width_end, thickness_end : float, m, default None
+        Sides at the body, of a taper.
+    effects, parameters : sequence of str, mapping
+        Names of the effects, and the parameters of each effect by name.
+    described
+        `control_points` ... `slide_stiffness`, as in ``spline_model.discretisation.Discretisation``. Without
+        `control_points`, solvers choose the number for an accuracy of 1e-4.
 
-    Source: paper, section 2 and Table 1.
+    Returns
+    -------
+    Pivot
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range; the message has one line.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), section 2 and Table 1.
+
+    Examples
+    --------
+    >>> pivot = cross_axis_pivot(
+    ...     length=0.08, inclination=0.785, crossing_ratio=0.5, width=0.01, thickness=5e-4,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0, body_mass=0.1,
+    ...     body_moment_of_inertia=2e-5, control_points=6,
+    ... )
+    >>> pivot.clamp_points.shape
+    (2, 2, 2)
     """
     _check_shape(length, inclination, crossing_ratio, orientation)
     ends = ends_at_rest(length, inclination, crossing_ratio, orientation)

@@ -49,10 +49,40 @@ class StripFields:
 
 
 def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Fields of static states (S, N), as solutions hold them; a drive's multiplier at the end is ignored.
+    """Return the fields of static states along the strips.
 
-    Shear force and reactions are those of balance with the clamps: exact but for the solver's
-    residual. N and M follow from the strains and show the error of too few control points.
+    Parameters
+    ----------
+    mechanism : Mechanism
+    states : (S, N) m, rad and N
+        Unknowns of S states, as solutions hold them; the multiplier of a drive at the end is ignored.
+
+    Returns
+    -------
+    StripFields
+        Arrays (S, G, P) of G strips at P stations: axial force, shear force, moment and more.
+
+    Raises
+    ------
+    InvalidParameter
+        States of another size than the mechanism's.
+
+    Notes
+    -----
+    Shear force and reactions follow from balance with the clamps: exact but for the residual of the solver.
+    N and M follow from the strains; they have the error of too few control points.
+
+    References
+    ----------
+    Reissner, Zeitschrift fuer angewandte Mathematik und Physik 23 (1972), for the balance of a strip.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, increments=1)
+    >>> static_fields(pivot, path.states).bending_moment.shape[:2]
+    (2, 2)
     """
     require_mechanism(mechanism)
     return _fields(mechanism, mechanism.scene, states, moving=False)
@@ -64,13 +94,43 @@ def mode_fields(mechanism: Mechanism, states: Array) -> StripFields:
 
 
 def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Fields of the states (T, N) of a motion.
+    """Return the fields of the states of a motion along the strips.
 
+    Parameters
+    ----------
+    mechanism : Mechanism
+    states : (T, N) m, rad and N
+        Unknowns of T records.
+
+    Returns
+    -------
+    StripFields
+        Arrays (T, G, P) of G strips at P stations: axial force, shear force, moment and more.
+
+    Raises
+    ------
+    InvalidParameter
+        States of another size than the mechanism's.
+
+    Notes
+    -----
     Inertia is not among the states: the shear force is that of the moments' balance in a
     shear-rigid strip without rotary inertia of its sections, V = -M' / stretch (' = d/ds0),
     one order less accurate than M, and the reactions are the section forces at the ends, zero
     at a free one but for that error. Axial forces are those of the shape, as some integrators
     keep none; of inextensible strips those that the states hold.
+
+    References
+    ----------
+    Reissner, Zeitschrift fuer angewandte Mathematik und Physik 23 (1972), for the balance of a strip.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> motion = solve_release(pivot, start=0.1, duration=1e-3, step=1e-4, records=2, check=False)
+    >>> moving_fields(pivot, motion.states).shear_force.shape[:2]
+    (3, 2)
     """
     require_mechanism(mechanism)
     return _fields(mechanism, mechanism.released(), states, moving=True)

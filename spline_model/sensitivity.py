@@ -37,25 +37,56 @@ def sensitivities(
     stations: Array = STATIONS,
     body: str | None = None,
 ) -> Sensitivities:
-    """Derivatives of a solved path by the design, at constant rotations, loads and driven displacements.
-
-    parameters: names as of ``spline_model.parameters``; for area and second
-    moment the section's depth follows as sqrt(12 I / A), for thickness and width it is the
-    thickness. stations: where stresses are taken, reference arc length over L. body: of a mechanism, the
-    one that was driven and is reported, or the only one.
+    """Return derivatives of a solved path by the design, at constant rotations, loads and displacements.
 
     With the residual R(y; p) of the strips' elements and its tangent K at a converged state
 
         dy/dp = -K^-1 dR/dp,    dT/dp = dR_driven/dp,    dk/dp = y_t^T (dK/dp) y_t,    y_t = dy/d(theta)
 
     where dT/dp and dK/dp count the change of the state too: one factorisation a state, one
-    back-substitution a parameter and one for the rate y_t. The parameters enter through the arrays of the
-    strips, by a complex step with which the kernels of the path are evaluated again: exact to round-off for
-    the discrete answer, in either measure, under loads and pre-strain, with clamps over the whole width (by
-    the plate's own solution), sections that flatten and roots that turn. The slide stiffness goes
-    with the design. Bodies keep their mass. Refuses what the elements do not know: printed
-    forces. Source: implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization (1992),
-    ch. 7.
+    back-substitution a parameter and one for the rate y_t.
+
+    Parameters
+    ----------
+    asked : Mechanism
+    solution : StaticSolution
+        Of this mechanism.
+    parameters : sequence of str
+        Names of ``spline_model.parameters``, P of them. For area and second moment the depth of the section
+        follows as sqrt(12 I / A); for thickness and width it is the thickness.
+    stations : (Q,) 1
+        Reference arc length over L where stresses are taken.
+    body : str, default None
+        Driven and reported body; None is the only one.
+
+    Returns
+    -------
+    Sensitivities
+        Values and derivatives (..., P) per SI unit: torque (S, P), stiffness (S, P), centre (S, 2, P), ...
+
+    Raises
+    ------
+    InvalidParameter
+        Published forces (measure "printed"), which the elements do not have, or a path of another design.
+
+    Notes
+    -----
+    The parameters enter through the arrays of the strips, by a complex step with which the kernels of the
+    path are evaluated again: exact to round-off for the discrete answer, in either measure, under loads and
+    pre-strain, with lateral clamping, anticlastic stiffening and support compliance. The slide stiffness
+    changes with the design. Bodies keep their mass.
+
+    References
+    ----------
+    Implicit function theorem; Haftka and Guerdal, Elements of Structural Optimization (1992), ch. 7.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, increments=1)
+    >>> sensitivities(pivot, path, parameters=("thickness",)).torque.derivative.shape
+    (2, 1)
     """
     require_mechanism(asked)
     if asked.design.discretisation.control_points is None:

@@ -163,16 +163,41 @@ def impulse_solver(
     sweeps: int | None = None,
     tolerance: float = TOLERANCE,
 ) -> ImpulseSolver:
-    """A solver for steps one at a time, of which the named body, or the only one, can be given a pose.
+    """Return a solver for single steps, in which one body can be given a pose.
 
     Parameters
     ----------
-    form : "printed" or "stable", see above.
-    sweeps : the most sweeps over single constraints for one linear system of the printed form; None solves
-        it at once. Sweeps converge slowly where strips cannot stretch.
-    tolerance : residual of a stable step and gap that ends the sweeps, in EI/L^2, EI/L, L, rad.
+    pivot : Mechanism
+    body : str, default None
+        Body that can be given a pose; None is the only one.
+    form : str
+        "printed" (as published) or "stable" (default); see ``spline_model.sequential_impulse``.
+    sweeps : int, default None
+        Largest number of sweeps over single constraints for one linear system of the published form; None
+        solves it directly. Sweeps converge slowly where strips cannot stretch.
+    tolerance : float, EI/L^2, EI/L, m over L, rad, default 1e-9
+        Residual of a stable step, and gap that ends the sweeps.
 
-    Raises InvalidParameter.
+    Returns
+    -------
+    ImpulseSolver
+        It has its own work space: one thread at a time may use it.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, or an effect that impulses do not support.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), section 4.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> impulse_solver(pivot).form
+    'stable'
     """
     require_mechanism(pivot)
     mechanism = pivot.in_motion()
@@ -210,15 +235,47 @@ def solve_impulses(
     tolerance: float = TOLERANCE,
     records: int | None = None,
 ) -> Trajectory:
-    """Motion from the static state at the rotation ``start`` [rad] of a body, at rest, as ``solve_motion``.
+    """Return the motion by sequential impulses from the static state at a rotation, at rest.
 
-    body, drive, duration, records: as there; form, sweeps, tolerance: as of
-    ``impulse_solver``; step [s] is shortened so that a whole number of steps fits between the
-    records. A body that a drive
-    catches loses the velocity that the drive does not have, and with it energy, which counts as
-    dissipated; what the stable form's steps damp does not.
+    Parameters
+    ----------
+    pivot : Mechanism
+    start : float, rad, default None
+        Rotation at the start.
+    body, drive, duration, records
+        As in ``spline_model.dynamics.solve_motion``; the duration in s.
+    step : float, s, default 0.01
+        Shortened so that a whole number of steps fits between the records.
+    form, sweeps, tolerance
+        As in `impulse_solver`.
 
-    Raises InvalidParameter, and ConvergenceError if statics does not reach ``start``.
+    Returns
+    -------
+    Trajectory
+        T records; arrays as in ``spline_model.dynamics.solve_motion``.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range.
+    ConvergenceError
+        Statics does not reach `start`.
+
+    Notes
+    -----
+    A body that a drive re-clamps loses the velocity that the drive does not have. This energy counts as
+    dissipated; the numerical damping of the stable form does not.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), section 4.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> solve_impulses(pivot, start=0.1, duration=0.02, step=0.01).time.tolist()
+    [0.0, 0.01, 0.02]
     """
     require_mechanism(pivot)
     mechanism = pivot.in_motion()

@@ -50,23 +50,60 @@ def solve_statics(
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
-    """Drive the pivot's body from 0 to ``rotation`` [rad] in equal increments.
+    """Rotate the body of a pivot from 0 to `rotation` in equal increments.
 
-    A sequence of rotations is a path from one to the next (there and back), each leg in
-    ``increments``. order: "loads first" raises loads in ``increments`` with the body held, and then they
-    stay; "together", and so always with driven displacements, lets them grow with |rotation| over the
-    largest one of the path. With rotation 0 the body is held and they grow from 0
-    to 1; without any all states are that at rest.
-    method: "condensed" runs compiled with the clamps solved and the strips
-    condensed, where the scene allows it; "multipliers" is the paper's bordered system. Both
-    agree to 1e-10. accuracy: wanted error over the whole path of all that ``ErrorEstimate`` has,
-    relative [1]; the control points are raised from the pivot's until the estimated one is
-    below, axial modes and quadrature with them, and the solution has its ``estimate``. Default: 1e-4
-    of a pivot without a number of control points, else just its number.
-    branch: "primary" or "follow" at a bifurcation. check: whether critical points and an early end of a given
-    number of control points are compared with those of more, and what is not confirmed is not resolved (see
-    ``spline_model.confirmed``). Raises ConvergenceError with the converged part of the path, or with the
-    best one where the accuracy is not reached; returns it as a status with ``raise_on_failure=False``.
+    Parameters
+    ----------
+    pivot : Pivot
+    rotation : float or sequence of float, rad
+        End of the path, or ends of several legs, one after the other.
+    increments : int, default 20
+        Increments of each leg.
+    order : str
+        "loads first" (default) raises loads with the body held, then they are constant. "together", and
+        always with driven displacements, raises them with abs(rotation) over the largest one of the path.
+        With rotation 0 the body is held and the loads grow from 0 to 1.
+    method : str
+        "condensed" (default) is compiled; clamps are solved and strips condensed, where the scene allows it.
+        "multipliers" is the bordered system of the paper. Both agree to 1e-10.
+    accuracy : float, 1, default None
+        Wanted relative error over the path of all quantities of ``spline_model.solution.ErrorEstimate``.
+        Control points, axial modes and quadrature are raised until the estimate is below it. Default: 1e-4
+        for a pivot without a number of control points, else no estimate.
+    branch : str
+        "primary" (default), or "follow" the other path at a bifurcation.
+    check : bool, default True
+        Confirm critical points and an early end by more control points (``spline_model.confirmed``).
+    raise_on_failure : bool, default True
+        Raise an error for a path that ends early, or return it with its status.
+    progress : callable, default None
+        Called as progress(done, total).
+
+    Returns
+    -------
+    StaticSolution
+        S states, the unloaded state first: rotation (S,), torque (S,), stiffness (S,), centre (S, 2), ...
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range.
+    ConvergenceError
+        The path ended early, or the accuracy was not reached; the error has the converged part.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 11, the bordered system.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.3, increments=5)
+    >>> path.torque.shape
+    (6,)
+    >>> print(f"{path.torque[-1]:.4f} N m")
+    0.1633 N m
     """
     finite_numbers("rotation", rotation, "rad")  # a pivot is always driven
     return solve_mechanism(
@@ -100,15 +137,50 @@ def solve_mechanism(
     raise_on_failure: bool = True,
     progress: Progress | None = None,
 ) -> StaticSolution:
-    """Any mechanism from rest to load factor 1: its loads and drives grow in proportion.
+    """Solve a mechanism from rest to load factor 1: its loads and drives grow in proportion.
 
-    rotation [rad] drives the named body, or the only one; None leaves all bodies to the loads. rotation,
-    order, method and branch as in ``solve_statics``; with control "arc-length" or another ``end``, the last
-    load factor, loads and the last rotation grow together. control: "load" prescribes the load factors;
-    "arc-length" follows the path through its limit points, with ``increments`` for the first step only.
-    accuracy and check as in ``solve_statics``, with control "arc-length" of the state at the end. starts:
-    whether a motion starts at the end, until which rigid motions that nothing holds are held, whatever that
-    takes; else a load along one raises InvalidParameter.
+    Parameters
+    ----------
+    mechanism : Mechanism
+    body : str, default None
+        Rotated and reported body; None is the only one.
+    rotation : float or sequence of float, rad, default None
+        Prescribed rotation; None leaves all bodies to the loads.
+    increments, order, method, branch, raise_on_failure, progress
+        As in `solve_statics`.
+    control : str
+        "load" (default) prescribes the load factors. "arc-length" follows the path through limit points;
+        then `increments` is for the first step only.
+    end : float, 1, default 1
+        Last load factor. With another one, or with "arc-length", loads and the last rotation grow together.
+    accuracy, check
+        As in `solve_statics`; with "arc-length" the accuracy is that of the last state.
+    starts : bool, default False
+        A motion starts at the end: rigid motions that nothing holds are held until then. Otherwise a load
+        along one raises InvalidParameter.
+
+    Returns
+    -------
+    StaticSolution
+        S states; arrays as in `solve_statics`.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, or a load along a free rigid motion.
+    ConvergenceError
+        As in `solve_statics`.
+
+    References
+    ----------
+    Riks, Journal of Applied Mechanics 39 (1972) 1060, for the arc length.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
+    [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_mechanism(mechanism)
     require_count("increments", increments, 1)

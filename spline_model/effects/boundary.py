@@ -84,14 +84,28 @@ class Carried(Constraint):
 class Driven(Constraint):
     """Coordinates of a body that are prescribed, each from where it is at rest by a part x load factor.
 
-    A ``steady`` one is there in full at any load factor. Without a history it holds the start of a motion and
-    lets go; with one it goes on through the motion, in which it acts in ``held``, from - to [s], and changes
-    by its part x the change of history(t) from where the body is when it begins; a body that is caught loses
-    the velocity that the drive does not have. The multipliers are the force [N] or the torque [N m],
-    counter-clockwise positive, that has to be applied to the body.
+    Without a history it holds the start of a motion and then is released; with one it acts in the motion, and
+    changes by its part x the change of history(t) from where the body is when it begins. A body that is
+    re-clamped loses the velocity that the drive does not have. The multipliers are the force [N] or the
+    torque [N m], counter-clockwise positive, on the body.
 
-    beside: whether another rotation than this is what a path is driven by; prop: whether it only keeps a free
-    rigid motion from being indeterminate (``spline_model.rigid``).
+    Parameters
+    ----------
+    body : str
+    history : pairs of s and 1
+        Times and factors in a motion.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive in a motion.
+    steady : bool, default False
+        In full at any load factor.
+    beside : bool
+        Whether another rotation than this is what a path is driven by.
+    prop : bool, default False
+        The drive only keeps a free rigid motion from being indeterminate (``spline_model.rigid``).
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7 and section 4.
     """
 
     body: str
@@ -132,7 +146,20 @@ class Driven(Constraint):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DrivenRotation(Driven):
-    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad."""
+    """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
+
+    Parameters are those of ``Driven``, and the angle [rad].
+
+    Raises
+    ------
+    InvalidParameter
+        An angle or history that is not finite, or an interval that ends before it begins.
+
+    Examples
+    --------
+    >>> DrivenRotation(body="body", angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
+    """
 
     angle: float
     history: History | None = STEADY
@@ -156,8 +183,18 @@ class DrivenRotation(Driven):
 class DrivenDisplacement(Driven):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    None in place of dx or dy leaves that way free, and its row out. The paper's "two other driving
-    constraints" (section 4).
+    Parameters are those of ``Driven``, and the displacement (2,) [m]; None in place of dx or dy leaves this
+    direction free, without a row.
+
+    Raises
+    ------
+    InvalidParameter
+        No direction, or a value that is not finite.
+
+    Examples
+    --------
+    >>> DrivenDisplacement(body="body", displacement=(1e-3, None)).displacement
+    (0.001, None)
     """
 
     displacement: tuple[float | None, float | None]

@@ -258,30 +258,74 @@ def plot(
 ) -> Picture:
     """Return the picture of a static solution, of a motion or of natural modes, of either model.
 
-    Of a path: the shapes, torque and stiffness, path and shift of the centre, largest stress and energy; of a
-    motion rotation and energies in place of torque and stiffness; of modes their shapes.
+    A path: the shapes, torque and stiffness, trajectory and centre shift, largest stress and energy. A
+    motion: rotation and energies in place of torque and stiffness. Modes: their shapes.
 
-    Args:
-        solution: what `solve_statics`, `solve_mechanism`, `solve_release`, `solve_motion` or
-            `natural_frequencies` of `spline_model` or `fe_reference` returned, or an answer of
-            `studies.answers.adapters`.
-        design: the pivot or mechanism of the model that was solved; None of an answer, which knows its own.
-            Sections of a model's own have stress where they have width and thickness.
-        name: heading; the model's name where none is given.
-        yield_strength: drawn across the stress [Pa]; None for that of the case, if it has one.
+    Parameters
+    ----------
+    solution
+        Result of `solve_statics`, `solve_mechanism`, `solve_release`, `solve_motion` or
+        `natural_frequencies` of `spline_model` or `fe_reference`, or an answer of
+        ``studies.answers.adapters``.
+    design : default None
+        The pivot or mechanism of the model that was solved; None for an answer, which has its own.
+        Sections have a stress where their width and thickness are known.
+    name : str
+        Heading; default the name of the model.
+    yield_strength : float, Pa, default None
+        Drawn across the stress; None for that of the case, if it has one.
 
-    Raises:
-        BadInput: a solution and a design that do not go together, or a path of one state; one line.
+    Returns
+    -------
+    Picture
+        160 mm wide; `save` writes it to a file.
+
+    Raises
+    ------
+    BadInput
+        A solution and a design that do not belong together, or a path of one state; one line.
+
+    Examples
+    --------
+    >>> from spline_model import cross_axis_pivot, solve_statics
+    >>> pivot = cross_axis_pivot(
+    ...     length=0.08, inclination=0.785, crossing_ratio=0.5, width=0.01, thickness=5e-4,
+    ...     youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0, body_mass=0.1,
+    ...     body_moment_of_inertia=2e-5, control_points=6,
+    ... )
+    >>> picture = plot(solve_statics(pivot, rotation=0.2, increments=4), pivot)
+    >>> print(f"{picture.figure.get_figwidth():.1f} inches")
+    6.3 inches
     """
     return overlay({name: (solution, design)}, yield_strength=yield_strength)
 
 
 def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -> Picture:
-    """Return the picture of up to five paths, motions or modes over one another; arguments as of `plot`.
+    """Return the picture of up to five paths, motions or modes in common axes.
 
-    Args:
-        solved: solution and design, or an answer, by their name.
-        yield_strength: drawn across the stress [Pa].
+    Parameters
+    ----------
+    solved : mapping
+        Solution and design, or an answer, by name, as for `plot`.
+    yield_strength : float, Pa, default None
+        Drawn across the stress.
+
+    Returns
+    -------
+    Picture
+
+    Raises
+    ------
+    BadInput
+        As in `plot`.
+
+    Examples
+    --------
+    With ``pivot`` and ``solve_statics`` of the example of `plot`:
+
+    >>> paths = {f"{end} rad": solve_statics(pivot, rotation=end, increments=4) for end in (0.1, 0.2)}
+    >>> type(overlay({name: (path, pivot) for name, path in paths.items()})).__name__
+    'Picture'
     """
     shown = []
     for name, each in solved.items():

@@ -50,3 +50,13 @@ def test_arrays_in_signatures_are_short():
     given = "(a: ~numpy.ndarray[tuple[~typing.Any, ...], ~numpy.dtype[~numpy.float64]] = <factory>)"
     made = PROSE.process_signature(None, "", "", None, None, given, None)
     assert made == ("(a: ~numpy.typing.NDArray[~numpy.float64] = ...)", None)
+
+
+def test_sections_of_numpydoc():
+    """Names without a type are entries too, with their text after a full stop; examples are literal."""
+    text = "Parameters\n----------\na : float, m\n    One.\nrest\n    Others.\n\n"
+    text += "Examples\n--------\n>>> 1 + 1\n2"
+    document = docutils.core.publish_doctree(PROSE.as_rst(text))
+    entries = [node.astext() for node in document.findall(docutils.nodes.list_item)]
+    assert entries == ["a: float, m. One.", "rest. Others."]
+    assert [node.astext() for node in document.findall(docutils.nodes.literal_block)] == [">>> 1 + 1\n2"]
