@@ -112,13 +112,3 @@ def test_loads_first_by_both_methods_and_for_any_mechanism():
     for same in (other, body):
         assert np.allclose(same.torque, path.torque, rtol=0, atol=1e-9 * np.abs(path.torque).max())
         assert np.array_equal(same.load_factor, path.load_factor)
-
-
-def test_a_limit_under_steady_loads_is_told_in_degrees_and_newtons():
-    """Requirement: on the rotation a critical point is told by it and the loads, not by a load factor."""
-    made = loaded(LOADS["force"], inclination=0.96, crossing_ratio=0.22, control_points=14)
-    path = solve_statics(made, rotation=math.radians(-184.0), increments=20)
-    assert path.critical_points
-    assert all(point.load_factor == 1.0 for point in path.critical_points)
-    assert "limit point at rotation" in path.message
-    assert "force 5831 N" in path.message

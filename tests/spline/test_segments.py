@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import spline_model
 from spline_model import (
     DEFAULT_EFFECTS,
     BodyDesign,
@@ -20,6 +21,7 @@ from spline_model import (
     static_fields,
 )
 from tests import gates
+from tests.frames import one_strip
 from tests.table_one import TABLE_ONE
 
 SIDES = {"width": 0.03, "thickness": 0.002}
@@ -90,20 +92,6 @@ def test_arcs_and_free_tips_in_segments():
     assert apart(*fields, ("shape", "arc_length", "bodies")) < 1e-3
 
 
-def cantilever(**pull):
-    """A straight strip of length and EI 1 with a body at its tip, that a moment and a force act on."""
-    strip = StripDesign(
-        name="strip", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", area=12e6, second_moment_of_area=1.0,
-        youngs_modulus=1.0, density=1.0,
-    )  # fmt: skip
-    return compliant_mechanism(
-        strips=[strip],
-        bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
-        effects=("bending", "stretching", *pull),
-        parameters=pull,
-    )
-
-
 def test_a_strip_in_tension_is_resolved_by_default():
     """Under a pull of 1e4 EI/L^2 a tip turns in a layer a hundredth of the strip long.
 
@@ -111,7 +99,10 @@ def test_a_strip_in_tension_is_resolved_by_default():
     M^2 / 2 EI + F cos(turn) + (F cos(turn))^2 / 2 EA.
     """
     pull, turn = 1e4, 0.5
-    path = solve_mechanism(cantilever(applied_force={"force": (pull, 0.0)}), rotation=turn, increments=4)
+    section = {"area": 12e6, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
+    pulled = {"applied_force": {"force": (pull, 0.0)}}
+    strip = one_strip(spline_model, pulled, pulled, end=(1.0, 0.0), section=section)
+    path = solve_mechanism(strip, rotation=turn, increments=4)
     stored = pull * (1.0 - math.cos(turn)) + (pull * math.sin(turn)) ** 2 / (2.0 * 12e6)
     assert path.segments > 1
     assert path.torque[-1] == pytest.approx(math.sqrt(2.0 * stored), rel=1e-4)

@@ -103,22 +103,6 @@ def test_names_at_the_ends_of_curves_are_apart(count):
     assert apart(np.array([0.8, 0.1, 0.4])) == pytest.approx([0.8, 0.1, 0.4])
 
 
-@pytest.mark.slow
-def test_a_models_own_solution_is_drawn_as_the_answer():
-    """`studies.plot` takes what either model returned: the fields are those of the answer."""
-    path = spline_model.solve_statics(spline_model.cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=3)
-    fine = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=path.control_points)
-    for pivot in (spline_model.cross_axis_pivot(**TABLE_ONE), fine):
-        assert answer_of(path, pivot).along.bodies[:, 0, 2] == pytest.approx(path.rotation)
-    pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3, element="reissner")
-    rough = fe_reference.solve_statics(pivot, rotation=0.3, increments=3, accuracy=1e-2)
-    answer = answer_of(rough, pivot)
-    assert answer.model == "fe-shear"
-    assert answer.along.shape.shape[2] == rough.estimate.elements + 1
-    assert [strip.tip for strip in answer.design.strips] == ["body", "body"]
-    assert b"svg" in style.printed(studies.overlay({"a": (path, fine), "b": (rough, pivot)}).figure, "svg")
-
-
 def test_an_answer_is_drawn_without_its_design():
     """An answer knows what was asked: it is drawn alone, and over another, as by model and design."""
     answer = shown("path")[1]
