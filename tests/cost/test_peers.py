@@ -53,6 +53,7 @@ def test_path_tends_to_the_spline(gate, model, count):
 
 
 @exudyn
+@pytest.mark.slow
 def test_exact_beam_tends_to_the_reissner_elements():
     """Requirement: Exudyn's rod with shear comes to the limit of this repository's elements with shear."""
     limit = reference(CASE, "reissner")

@@ -144,17 +144,10 @@ def test_swings_keep_their_energy(model):
         gates.check("surrogate_energy", energy_drift(model, usual))
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda m: m.swing(CASE, 0.01, step=0.02), "step: got 0.02"),
-        (
-            lambda m: m.path(replace(CASE, effects=Effects(names=("bending", "gravity")))),
-            "effects: got bending, gravity",
-        ),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(call, message):
+def test_bad_input_is_refused_in_one_line():
     """Requirement: what cannot be asked is refused with what was got and expected."""
-    with pytest.raises(BadInput, match=f"^{message}[^\n]*expected[^\n]*$"):
-        call(four_bar)
+    loaded = replace(CASE, effects=Effects(names=("bending", "gravity")))
+    with pytest.raises(BadInput, match=r"^step: got 0.02[^\n]*expected[^\n]*$"):
+        four_bar.swing(CASE, 0.01, step=0.02)
+    with pytest.raises(BadInput, match=r"^effects: got bending, gravity[^\n]*expected[^\n]*$"):
+        four_bar.path(loaded)

@@ -37,6 +37,7 @@ def test_answer(tmp_path, capsys):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_no_design_meets_the_constraints(capsys):
     """A stress that nothing meets ends with code 3, the starts, and how far they missed."""
     assert main(["size", CASE, *QUICK, "--max-stress-MPa", "1"]) == 3

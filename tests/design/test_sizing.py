@@ -124,6 +124,7 @@ def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
     assert set(numbered(found)) == {1} and max(each.solved for each in found) < 60
 
 
+@pytest.mark.slow
 def test_optimum_holds_in_the_finite_elements(own, narrow):
     """Objectives and constraints of the quick optimum are those of the elements; splines of fewer control
     points miss the least variation, which is small."""

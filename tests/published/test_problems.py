@@ -23,15 +23,9 @@ from studies.stability.questions import load_ratio
 from tests import gates
 
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
-#: Problems that the splines answer in milliseconds.
-QUICK = (
-    "tip_force",
-    "princeton_edgewise",
-    "williams_toggle",
-    "williams_shallow_toggle",
-    "lees_frame",
-    "catalogue_pivot",
-)
+#: Problems that the splines answer in milliseconds, and in seconds.
+QUICK = ("tip_force", "princeton_edgewise", "williams_shallow_toggle", "catalogue_pivot")
+SLOWER = ("williams_toggle", "lees_frame")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -93,7 +87,7 @@ def test_when_a_value_is_met(bound, found, within):
     assert value.met(found, 0.02) is within
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(each, marks=pytest.mark.slow) for each in SLOWER)])
 def test_splines_meet_what_is_in_print(name):
     """Requirement: the spline's answers to quick problems are those in print."""
     for value in published(name).values:

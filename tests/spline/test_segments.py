@@ -9,14 +9,8 @@ import pytest
 import spline_model
 from spline_model import (
     DEFAULT_EFFECTS,
-    BodyDesign,
-    StripDesign,
-    compliant_mechanism,
     cross_axis_pivot,
-    moving_fields,
-    natural_frequencies,
     solve_mechanism,
-    solve_motion,
     solve_statics,
     static_fields,
 )
@@ -61,37 +55,7 @@ def test_a_pivot_in_segments_answers_as_a_whole_one():
     gates.hold("spline_segments", error)
 
 
-def arch(**grid):
-    """A curved strip to a heavy body, and a curved cantilever with a free tip that a force pulls."""
-    section = {"width": 0.01, "thickness": 0.001, "youngs_modulus": 2e11, "density": 7800.0}
-    strips = [
-        StripDesign(name="arch", start=(0.0, 0.0), end=(0.2, 0.0), rise=0.05, tip="stage", **section),
-        StripDesign(name="free", start=(0.0, 0.1), end=(0.1, 0.1), rise=-0.02, **section),
-    ]
-    return compliant_mechanism(
-        strips=strips,
-        bodies=[BodyDesign(name="stage", centre=(0.21, 0.0), mass=0.2, moment_of_inertia=1e-4)],
-        effects=(*DEFAULT_EFFECTS, "tip_force", "gravity"),
-        parameters={"tip_force": {"strip": "free", "force": (0.5, -1.0)}},
-        **grid,
-    )
-
-
-def test_arcs_and_free_tips_in_segments():
-    """Static states, modes and motions of curved strips and of a free tip are those of whole ones."""
-    pair = arch(segments=2, control_points=9), arch(control_points=14)
-    paths = [solve_mechanism(each, rotation=-0.6, increments=4) for each in pair]
-    assert apart(*paths, ("shape", "torque", "clamp_reactions")) < 1e-5
-    modes = [natural_frequencies(each, rotation=-0.6, count=4) for each in pair]
-    assert apart(*modes, ("frequency",)) < 1e-5
-    assert np.abs(modes[0].shapes).max() == pytest.approx(np.abs(modes[1].shapes).max(), rel=1e-4)
-    runs = [solve_motion(each, start=-0.6, duration=0.02, step=1e-4, check=False) for each in pair]
-    assert apart(*runs, ("rotation", "strain_energy")) < 1e-3
-    assert list(runs[0].bodies) == ["stage"]
-    fields = [moving_fields(each.in_motion(), run.states[-1:]) for each, run in zip(pair, runs, strict=True)]
-    assert apart(*fields, ("shape", "arc_length", "bodies")) < 1e-3
-
-
+@pytest.mark.slow
 def test_a_strip_in_tension_is_resolved_by_default():
     """Under a pull of 1e4 EI/L^2 a tip turns in a layer a hundredth of the strip long.
 

@@ -17,7 +17,7 @@ from studies.answers.adapters import answer_modes, answer_of, answer_release, an
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
-from studies.pictures.page import picture, turning
+from studies.pictures.page import picture
 from studies.pictures.shown import APART, WITHIN, Shown, apart
 from studies.record import style
 from tests.table_one import SIX, TABLE_ONE
@@ -111,15 +111,6 @@ def test_an_answer_is_drawn_without_its_design():
     assert answer_of(answer.solution, answer.asked.modelled).max_stress == pytest.approx(answer.max_stress)
 
 
-def test_a_motion_has_the_fields_of_what_swings():
-    """Fields of a motion are those of the control points that were chosen, as stiff as they are in motion."""
-    design = replace(named_design(PIVOT), increments=4)
-    given = {"duration": 1e-3, "records": 10, "step": 5e-5}
-    free, fixed = (answer_release(design, SplineSettings(control_points=n), **given) for n in (None, 6))
-    assert free.settings == fixed.settings
-    assert free.along.reactions == pytest.approx(fixed.along.reactions, rel=1e-12)
-
-
 def test_states_of_another_design_are_refused():
     """A solution and a design that do not go together are one line, in both models and between them."""
     pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3)
@@ -155,11 +146,3 @@ def test_command_writes_a_picture_beside_its_answer(kind, begin, tmp_path, capsy
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "converged"
     assert f"{path}: the picture" in said.err
-
-
-def test_curves_over_rotation_begin_under_the_loads():
-    """States at which loads come on before the body turns are no part of a curve over its rotation."""
-    assert turning(np.array([0.0, 0.0, 0.0, 0.1, 0.2])) == pytest.approx(
-        [np.nan, np.nan, 0.0, 0.1, 0.2], nan_ok=True
-    )
-    assert turning(np.array([0.0, 0.1, 0.2])) == pytest.approx([0.0, 0.1, 0.2])
