@@ -61,35 +61,9 @@ def heavy(models, weight, offset=1e-3, **settings):
     return one_strip(models, given, given, **more, **settings)
 
 
-def strained(models, compression, **settings):
-    """The strip clamped at both ends and pushed together by a natural strain, in EI/L^2 of axial force."""
-    strain = compression * RIGIDITY / (STEEL["youngs_modulus"] * STEEL["area"] * LENGTH**2)
-    given = {"driven_displacement": {"displacement": (0.0, 0.0)}, "pre_strain": {"strain": strain}}
-    return one_strip(models, given, given, **settings)
-
-
 def tip(answer, state=-1):
     """Rotation of the tip's body [deg]."""
     return math.degrees(answer.bodies["tip"][state, 2])
-
-
-def toggle(models=spline_model, *, rise=0.386, load=60.0, **discretisation):
-    """Williams' toggle (1964): two members of 12.943 in, built in, EI = 9.27e3 lb in^2, EA = 1.885e6 lb.
-
-    ``load`` [lb] downwards at the apex at load factor 1.
-    """
-    half = math.sqrt(12.943**2 - rise**2)
-    section = UNITS | {"area": 1.885e6, "second_moment_of_area": 9.27e3}
-    return models.compliant_mechanism(
-        strips=[
-            models.StripDesign(name=name, start=(x, 0.0), end=(0.0, rise), tip="apex", **section)
-            for name, x in (("left", -half), ("right", half))
-        ],
-        bodies=[models.BodyDesign(name="apex", centre=(0.0, rise))],
-        effects=(*STATIC, "applied_force"),
-        parameters={"applied_force": {"body": "apex", "force": (0.0, -load)}},
-        **discretisation,
-    )
 
 
 def column(models=spline_model, *, load, slenderness=1e3, side=0.0, effects=STATIC, **discretisation):

@@ -95,13 +95,3 @@ def test_work_of_one_increment_is_none():
         return abs(loaded.state(asked, FeSettings(elements=10)).books) / loaded.MOMENT_UNIT
 
     gates.refuse("loads_books", error)
-
-
-@MODELS
-@pytest.mark.parametrize("rotation", HELD, ids=angle)
-def test_a_led_body_goes_where_it_is_led_whatever_the_sign_of_the_rotation(rotation, settings):
-    """Requirement: a driven displacement grows from 0 to its own value, with its own sign."""
-    path = loaded.state(loaded.design(STIFF, rotation), settings).path
-    share = np.linspace(0.0, 1.0, loaded.INCREMENTS + 1)[:, None]
-    assert path[:, :2] - path[0, :2] == pytest.approx(share * LOADS[STIFF]["displacement"], abs=1e-12)
-    assert path[:, 2] == pytest.approx(share[:, 0] * rotation, abs=1e-12)

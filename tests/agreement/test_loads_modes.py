@@ -31,22 +31,11 @@ def apart(asked: Design, control_points: int = 8, meshes: tuple[int, int] = (5, 
     )
 
 
-#: What the quick set asks; the slow one asks all.
-QUICK = {-ROTATION: tuple(LOADS), 0.0: ("gravity", "pre_strain"), None: ("applied_force",)}
-
-
+@pytest.mark.parametrize("effect", LOADS)
 @pytest.mark.parametrize(
-    "effect, rotation",
-    [
-        pytest.param(
-            effect,
-            rotation,
-            id=f"{effect} {angle(rotation)}",
-            marks=[] if effect in QUICK.get(rotation, ()) else pytest.mark.slow,
-        )
-        for effect in LOADS
-        for rotation in (ROTATION, -ROTATION, 0.0, None)
-    ],
+    "rotation",
+    [-ROTATION, *(pytest.param(each, marks=pytest.mark.slow) for each in (ROTATION, 0.0, None))],
+    ids=angle,
 )
 def test_modes_about_loaded_states_agree(effect, rotation):
     """Requirement: the first three modes of what a release lets go of agree under every load."""

@@ -3,10 +3,9 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_release, answer_static
+from studies.answers.adapters import answer_static
 from studies.answers.reference import largest_errors, reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
@@ -54,6 +53,7 @@ def test_path_tends_to_the_spline(gate, model, count):
 
 
 @exudyn
+@pytest.mark.slow
 def test_exact_beam_tends_to_the_reissner_elements():
     """Requirement: Exudyn's rod with shear comes to the limit of this repository's elements with shear."""
     limit = reference(CASE, "reissner")
@@ -68,28 +68,6 @@ def test_other_designs_come_through_alike(gate, model, count):
     uneven = replace(CASE, crossing_ratio=0.3, inclination=0.6, centre_offset=(0.01, 0.02))
     uneven = replace(uneven, rotation=1.2, increments=16)
     gates.check(gate, against_spline(model, uneven, elements=count))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("gate", "model", "count"),
-    [
-        pytest.param("exudyn_ancf_swing", exudyn_ancf, 8, marks=exudyn),
-        pytest.param("openseespy_swing", openseespy_frame, 40, marks=opensees),
-    ],
-)
-def test_swings_as_the_spline(gate, model, count):
-    """Requirement: released, the other codes follow the spline."""
-    limit = answer_release(
-        CASE, SplineSettings(control_points=8), duration=5e-3, step=1e-6, integrator="leapfrog"
-    )
-
-    def error(elements=count):
-        """Largest difference of the rotation over 5 ms after the release [rad]."""
-        motion = model.swing(CASE, 5e-3, step=1e-5, elements=elements)
-        return np.abs(np.interp(limit.time, motion.time, motion.rotation) - limit.rotation).max()
-
-    gates.hold(gate, error)
 
 
 @exudyn

@@ -26,11 +26,10 @@ def task(name, texts, **given):
     return MechanismQuestion.of(name, parsed(FOLDER / f"{name}.toml"), texts, **given)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "texts", "objective"),
     [
-        ("four_bar_of_flexures", FREE, VARIATION),
+        pytest.param("four_bar_of_flexures", FREE, VARIATION, marks=pytest.mark.slow),
         ("parallel_strip_guide", ("section.width_m", SHARED), STRESS),
         ("living_hinge", ("section.thickness_m", "material.youngs_modulus_Pa"), STRESS),
     ],

@@ -6,9 +6,6 @@ from pathlib import Path
 import pytest
 
 from studies.__main__ import main
-from studies.answers.adapters import answer_static
-from studies.answers.settings import SplineSettings
-from studies.cases.design import read_design
 from studies.cases.problem import FOLDER, named_case
 from studies.design.evaluate import answers
 from tests import gates
@@ -40,6 +37,7 @@ def test_answer(tmp_path, capsys):
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_no_design_meets_the_constraints(capsys):
     """A stress that nothing meets ends with code 3, the starts, and how far they missed."""
     assert main(["size", CASE, *QUICK, "--max-stress-MPa", "1"]) == 3
@@ -118,34 +116,6 @@ def test_bad_input_in_one_line(words, refused):
     """Every bad input ends with code 2 and one line: numbers that a mechanism has not or has no gradients
     for, and what only the other kind of design has, among them."""
     refused("size", *words.split(), says=WORDS[words])
-
-
-@pytest.mark.slow
-def test_a_mechanism_is_sized_by_numbers_of_its_file(tmp_path, capsys):
-    """The least stress of a four-bar linkage is in wide, thin strips; the file of the optimum solves so."""
-    path = tmp_path / "best.toml"
-    free = ("--free", "section.thickness_m=1e-4:5e-4", "--free", "section.width_m")
-    words = ("size", "four_bar_of_flexures", "--objective", "stress", *free, "--starts", "2")
-    assert main([*words, "--out", str(path), "--json", "-"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    optimum, case = found["optimum"], found["case"]
-    assert optimum["numbers"]["section.width_m"] == pytest.approx(0.02, rel=1e-6)
-    assert {each["constraint"] for each in optimum["active"]} == {"section.width_m at its most", "stiffness"}
-    # K goes with b h^3, stress with h: twice as wide, it is less by the cube root of two
-    stress = optimum["spline"]["max_stress_Pa"]
-    assert stress / case["max_stress_Pa"] == pytest.approx(0.5 ** (1 / 3), rel=1e-3)
-    gates.check("sizing_finite_elements", abs(optimum["finite_elements"]["max_stress_Pa"] / stress - 1.0))
-    assert set(described("## JSON of `size`")) >= {
-        *found,
-        *case,
-        *optimum,
-        *found["starts"][0],
-        *optimum["spline"],
-    }
-    best = read_design(path)
-    answer = answer_static(best, SplineSettings(control_points=10))
-    assert answer.max_stress[-1] == pytest.approx(stress)
-    assert answer.stiffness[-best.increments - 1] == pytest.approx(case["stiffness_Nm_per_rad"], rel=1e-6)
 
 
 SIDES = "width_m = 0.01000320153681966\nthickness_m = 0.0049983997439180475"

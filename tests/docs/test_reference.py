@@ -49,14 +49,6 @@ def test_every_module_of_a_model_is_on_one_page(package):
     assert set(names) == set(modules(package))
 
 
-def test_modules_of_the_studies_on_pages_exist():
-    """What the pages of the studies show is there, once; which modules they show is a choice."""
-    names = listed("studies")
-    assert names
-    assert len(set(names)) == len(names)
-    assert set(names) <= set(modules("studies"))
-
-
 @pytest.mark.parametrize("package", MODELS)
 def test_everything_public_of_a_model_has_a_docstring(package):
     """Every public module, class, function and method says what it is."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, named_design
 from tests import gates
@@ -127,19 +127,3 @@ def test_motion_keeps_the_bodies_and_strips_together(settings):
     turned = np.stack((offset.real, offset.imag), axis=-1)
     assert fields.shape[:, 0, -1] == pytest.approx(centre + turned, abs=1e-8)
     assert fields.rotation[:, 0, -1] == pytest.approx(turn, abs=1e-8)
-
-
-def test_modes_move_strips_with_their_bodies():
-    """A mode moves the tip of a strip as its body carries it, in both models alike."""
-    found = []
-    for settings in (SPLINE, ELEMENTS):
-        linkage = design_of("four_bar_of_flexures")
-        answer = answer_modes(linkage, settings, rotation=linkage.rotation, count=2)
-        fields = answer.along
-        x, y = fields.shape[0, 0, -1] - fields.bodies[0, 0, :2]
-        body = answer.mode_bodies[:, 0]
-        carried = body[:, :2] + body[:, 2:] * np.array([-y, x])
-        assert answer.mode_shape[:, 0, -1] == pytest.approx(carried, abs=1e-8 * np.abs(carried).max())
-        found.append((answer.frequency, np.abs(answer.mode_bodies)))
-    assert found[0][0] == pytest.approx(found[1][0], rel=1e-4)
-    assert found[0][1] == pytest.approx(found[1][1], abs=1e-3 * found[1][1].max())

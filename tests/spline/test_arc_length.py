@@ -1,7 +1,5 @@
 """Paths through limit points of the load: frames with published limit loads."""
 
-import numpy as np
-
 from spline_model import solve_mechanism
 from studies.answers.models import put
 from studies.answers.settings import SplineSettings
@@ -33,13 +31,3 @@ def work_balance(late=0):
 def test_work_is_booked_through_limit_points():
     """Requirement: along a path whose load goes up, down and up again the work is the energy stored."""
     gates.hold("spline_arc_length_work", work_balance)
-
-
-def test_inertia_goes_with_the_limit_points():
-    """Requirement: between its two limit points the frame is unstable, before and after it is not."""
-    path = solve_mechanism(lees_frame(control_points=8), control="arc-length")
-    slope = np.gradient(path.load_factor)
-    turns = np.flatnonzero(np.diff(np.sign(slope))).tolist()
-    assert set(path.inertia[: turns[0] - 1]) == {0}
-    assert set(path.inertia[turns[0] + 3 : turns[1] - 2]) == {1}
-    assert set(path.inertia[turns[1] + 3 :]) == {0}

@@ -43,21 +43,6 @@ def pose_of(solver, state):
 # ---- release and catch ----
 
 
-@pytest.mark.parametrize("design, step", [(TABLE_ONE, 1e-4), (POLYMER, 1e-3)], ids=["Table 1", "polymer"])
-def test_release_does_not_jump(design, step):
-    """Requirement: the first step after a release moves the body by its square, and creates no energy."""
-    solver = impulse_solver(pivot(design))
-    held = solver.start(1.0)
-    energy = solver.step(held, 1e-9).strain_energy
-    moved = []
-    for h in (step, step / 2):
-        outcome = solver.step(held, h)
-        moved.append(np.abs(pose_of(solver, outcome.state) - pose_of(solver, held)).max())
-        assert outcome.kinetic_energy + outcome.strain_energy <= energy * (1 + 1e-12)
-    assert moved[0] / moved[1] == pytest.approx(4.0, rel=0.02)
-    assert moved[0] < 0.05
-
-
 @pytest.mark.parametrize("design", [TABLE_ONE, POLYMER], ids=["Table 1", "polymer"])
 @pytest.mark.parametrize("turn", [-20.0, 20.0])
 def test_catch_reaches_a_pose_that_is_20_degrees_away(design, turn):

@@ -61,14 +61,6 @@ def test_wrong_estimates_are_seen():
     gates.refuse("spline_motion_accuracy_pessimism", lambda step: 1e-1 / true_error(released(10, step=step)))
 
 
-def test_work_follows_the_accuracy():
-    """Requirement: a tight accuracy takes more control points of a swing, whose steps resolve all anyway."""
-    loose, tight = (released(accuracy=accuracy) for accuracy in (1e-2, 1e-4))
-    assert loose.settings["integrator"] == tight.settings["integrator"] == "leapfrog"
-    assert loose.estimate.control_points < tight.estimate.control_points
-    assert loose.estimate.runs < tight.estimate.runs
-
-
 def test_accuracy_without_explicit_steps_takes_steps_that_keep_energy():
     """Requirement: where there is no leapfrog, long energy-consistent steps do for a loose accuracy."""
     trajectory = released(accuracy=3e-2, effects=("bending", "stretching", "body_inertia"))

@@ -13,7 +13,6 @@ from spline_model import (
 from spline_model.compile import compile_scene
 from spline_model.path import follow
 from tests.frames import STEEL
-from tests.spline.test_sensitivity_mechanism import BODIES, STRIPS
 from tests.table_one import TABLE_ONE
 
 FORMS = {
@@ -52,10 +51,17 @@ def arc(form):
 def chain(form):
     """Three strips in a row: from the ground to a body, between two bodies, and back to the ground."""
     return compliant_mechanism(
-        strips=STRIPS[:3],
-        bodies=BODIES,
+        strips=[
+            strip("a", (0.0, 0.0), (0.1, 0.01), tip="b"),
+            strip("c", (0.12, 0.01), (0.2, 0.05), root="b", tip="d"),
+            strip("e", (0.22, 0.06), (0.25, 0.0), root="d", tip="ground"),
+        ],
+        bodies=[
+            BodyDesign(name="b", centre=(0.11, 0.0), mass=0.01),
+            BodyDesign(name="d", centre=(0.21, 0.05), mass=0.01),
+        ],
         effects=("bending", stretching(form), "applied_moment", "gravity"),
-        parameters={"applied_moment": {"body": "b", "moment": 0.1}},
+        parameters={"applied_moment": {"body": "b", "moment": 0.01}},
         **form,
     ).driven(0.1, "d")
 

@@ -6,20 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import spline_model
 from spline_model import (
     DEFAULT_EFFECTS,
-    BodyDesign,
-    StripDesign,
-    compliant_mechanism,
     cross_axis_pivot,
-    moving_fields,
-    natural_frequencies,
     solve_mechanism,
-    solve_motion,
     solve_statics,
     static_fields,
 )
 from tests import gates
+from tests.frames import one_strip
 from tests.table_one import TABLE_ONE
 
 SIDES = {"width": 0.03, "thickness": 0.002}
@@ -59,51 +55,7 @@ def test_a_pivot_in_segments_answers_as_a_whole_one():
     gates.hold("spline_segments", error)
 
 
-def arch(**grid):
-    """A curved strip to a heavy body, and a curved cantilever with a free tip that a force pulls."""
-    section = {"width": 0.01, "thickness": 0.001, "youngs_modulus": 2e11, "density": 7800.0}
-    strips = [
-        StripDesign(name="arch", start=(0.0, 0.0), end=(0.2, 0.0), rise=0.05, tip="stage", **section),
-        StripDesign(name="free", start=(0.0, 0.1), end=(0.1, 0.1), rise=-0.02, **section),
-    ]
-    return compliant_mechanism(
-        strips=strips,
-        bodies=[BodyDesign(name="stage", centre=(0.21, 0.0), mass=0.2, moment_of_inertia=1e-4)],
-        effects=(*DEFAULT_EFFECTS, "tip_force", "gravity"),
-        parameters={"tip_force": {"strip": "free", "force": (0.5, -1.0)}},
-        **grid,
-    )
-
-
-def test_arcs_and_free_tips_in_segments():
-    """Static states, modes and motions of curved strips and of a free tip are those of whole ones."""
-    pair = arch(segments=2, control_points=9), arch(control_points=14)
-    paths = [solve_mechanism(each, rotation=-0.6, increments=4) for each in pair]
-    assert apart(*paths, ("shape", "torque", "clamp_reactions")) < 1e-5
-    modes = [natural_frequencies(each, rotation=-0.6, count=4) for each in pair]
-    assert apart(*modes, ("frequency",)) < 1e-5
-    assert np.abs(modes[0].shapes).max() == pytest.approx(np.abs(modes[1].shapes).max(), rel=1e-4)
-    runs = [solve_motion(each, start=-0.6, duration=0.02, step=1e-4, check=False) for each in pair]
-    assert apart(*runs, ("rotation", "strain_energy")) < 1e-3
-    assert list(runs[0].bodies) == ["stage"]
-    fields = [moving_fields(each.in_motion(), run.states[-1:]) for each, run in zip(pair, runs, strict=True)]
-    assert apart(*fields, ("shape", "arc_length", "bodies")) < 1e-3
-
-
-def cantilever(**pull):
-    """A straight strip of length and EI 1 with a body at its tip, that a moment and a force act on."""
-    strip = StripDesign(
-        name="strip", start=(0.0, 0.0), end=(1.0, 0.0), tip="tip", area=12e6, second_moment_of_area=1.0,
-        youngs_modulus=1.0, density=1.0,
-    )  # fmt: skip
-    return compliant_mechanism(
-        strips=[strip],
-        bodies=[BodyDesign(name="tip", centre=(1.0, 0.0))],
-        effects=("bending", "stretching", *pull),
-        parameters=pull,
-    )
-
-
+@pytest.mark.slow
 def test_a_strip_in_tension_is_resolved_by_default():
     """Under a pull of 1e4 EI/L^2 a tip turns in a layer a hundredth of the strip long.
 
@@ -111,7 +63,10 @@ def test_a_strip_in_tension_is_resolved_by_default():
     M^2 / 2 EI + F cos(turn) + (F cos(turn))^2 / 2 EA.
     """
     pull, turn = 1e4, 0.5
-    path = solve_mechanism(cantilever(applied_force={"force": (pull, 0.0)}), rotation=turn, increments=4)
+    section = {"area": 12e6, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
+    pulled = {"applied_force": {"force": (pull, 0.0)}}
+    strip = one_strip(spline_model, pulled, pulled, end=(1.0, 0.0), section=section)
+    path = solve_mechanism(strip, rotation=turn, increments=4)
     stored = pull * (1.0 - math.cos(turn)) + (pull * math.sin(turn)) ** 2 / (2.0 * 12e6)
     assert path.segments > 1
     assert path.torque[-1] == pytest.approx(math.sqrt(2.0 * stored), rel=1e-4)

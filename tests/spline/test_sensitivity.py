@@ -140,19 +140,6 @@ def test_what_does_not_move():
             assert moved < 1e-9 * np.abs(quantity.value).max()
 
 
-def test_largest_stress_has_the_derivative_of_its_point():
-    """The derivative of the largest stress is that of the station where it is, by differences."""
-    name, design = "thickness", random_design(np.random.default_rng(4))
-    found = exact(design, (name,), 1.0, {})
-    by = by_differences(design, name, 1.0, {})["fibre_stress"][-1].ravel()
-    stress = found.fibre_stress.value[-1].ravel()
-    most = int(np.abs(stress).argmax())
-    largest = found.largest_stress()
-    assert largest.value[-1] == abs(stress[most])
-    error = largest.derivative[-1, 0] * value_of(design, name) / (math.copysign(1.0, stress[most]) * by[most])
-    gates.check("sensitivities", abs(error - 1.0))
-
-
 def test_one_factorisation_a_state_and_one_back_substitution_a_parameter():
     """Work is counted: a factorisation a state, a back-substitution a parameter and one for the rate."""
     pivot = cross_axis_pivot(**SIX)

@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
+import spline_model
 from spline_model import (
-    StripDesign,
-    compliant_mechanism,
     cross_axis_pivot,
     solve_mechanism,
     solve_statics,
 )
+from tests.frames import one_strip
 from tests.table_one import SECTION, SIX
 
 METHODS = ("condensed", "multipliers")
@@ -59,13 +59,8 @@ def test_what_few_gauss_points_make_up_is_no_critical_point(gauss_points, false_
 
 def weighed(control_points):
     """Moment defect of a cantilever that hangs far down under its own weight."""
-    strip = StripDesign(name="s", start=(0.0, 0.0), end=(0.1, 0.0), **SECTION)
-    made = compliant_mechanism(
-        strips=[strip],
-        effects=("bending", "stretching", "gravity"),
-        parameters={"gravity": {"acceleration": (0.0, -3e5)}},
-        control_points=control_points,
-    )
+    weight = {"gravity": {"acceleration": (0.0, -3e5)}}
+    made = one_strip(spline_model, weight, weight, section=SECTION, control_points=control_points)
     return solve_mechanism(made, increments=1).moment_defect[0]
 
 

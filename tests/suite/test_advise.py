@@ -7,10 +7,8 @@ import pandas as pd
 import pytest
 
 from studies.cases.problem import FOLDER
-from studies.cost import settings, tried
-from studies.cost.model import Model
+from studies.cost import settings
 from studies.cost.tried import cheapest, kept
-from studies.errors import Unanswered
 
 CASE = str(FOLDER / "cross_axis_pivot.toml")
 
@@ -76,25 +74,3 @@ def test_no_model_meets_an_impossible_error(case, command):
     *lines, last = outcome.out.splitlines()
     assert len([line for line in lines if line.endswith("does not meet it: its best")]) == 4
     assert last.endswith("not certain")
-
-
-@pytest.mark.slow
-def test_dynamic_advice_as_a_table(command, monkeypatch):
-    """The command with --dynamic prints each model's setting, errors of rotation and frequency, and times."""
-    monkeypatch.setattr(tried, "REFERENCE", (6, 5))
-    monkeypatch.setattr(tried, "PERIODS", 1.0)
-    genuine = settings.swings
-
-    class Failing(Model):
-        def swing(self, *_, **__):
-            raise Unanswered("it blew up")
-
-    def small(frequency):
-        own = [each for each in genuine(frequency) if each.settings.get("integrator") == "energy"]
-        return [*own[6:9], *settings.grid(Failing(name="failing"), "failing")]
-
-    monkeypatch.setattr(settings, "swings", small)
-    lines = command("advise", CASE, "--accuracy", "0.1", "--dynamic").out.splitlines()
-    assert lines[2].split()[:4] == ["model", "setting", "rotation", "frequency"]
-    assert any(line.startswith("spline") and " ms" in line for line in lines)
-    assert any(line.startswith("failing") and line.endswith("it blew up") for line in lines)

@@ -40,6 +40,8 @@ def test_audit_of_a_mechanism_without_a_drive(command):
     assert rows["gravity"]["trajectory"] > 1e-2
     assert all(row["torque"] is None and row["swing_frequency"] is None for row in found["rows"])
     assert "applied_force" in found["cheapest"]["effects"]
+    for name in ("cantilever_with_body", "polymer_pivot"):  # which have no golden, as they hang on round-off
+        assert "cheape" in command("audit", FOLDER / f"{name}.toml").out
 
 
 def test_audit_of_what_is_not_stable(command, tmp_path):
@@ -79,15 +81,6 @@ def test_what_planar_beams_leave_out_is_priced():
         row["first_mode"] == pytest.approx(0.5 * row["stiffness"], rel=0.1, abs=3e-5)
         for row in found.values()
     )
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("brief")
-@pytest.mark.parametrize("name", ["cantilever_with_body", "polymer_pivot"])
-def test_cases_without_a_golden_are_audited(name, command):
-    """The audits that hang on round-off, of which no golden is stored, come to their end."""
-    outcome = command("audit", FOLDER / f"{name}.toml")
-    assert outcome.code == 0 and "cheape" in outcome.out
 
 
 def test_what_has_no_price_says_why():

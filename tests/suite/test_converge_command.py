@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.answers.reference import QUANTITIES
-from studies.convergence.sweep import reaching, with_orders
+from studies.convergence.sweep import reaching
 
 
 def test_table_folder_orders_and_counts(command, case, tmp_path):
@@ -50,13 +49,3 @@ def test_count_that_reaches_an_accuracy_holds_from_there_on():
     assert reaching(table, "n", 1e-4) == 7
     assert reaching(table, "n", 1e-9) is None
     assert reaching(table.replace(1e-6, np.nan), "n", 1e-3) == 8
-
-
-def test_orders_compare_a_row_with_the_one_before():
-    """The observed order belongs to the pair of this count and the one before, whatever their ratio."""
-    table = pd.DataFrame({"n": [30, 10, 20]})
-    for name in QUANTITIES:
-        table[f"error_{name}"] = 5.0 / table["n"] ** 3
-    orders = with_orders(table, "n")["order_torque"].to_numpy()
-    assert np.isnan(orders[0])
-    assert orders[1:] == pytest.approx([3.0, 3.0], rel=1e-12)

@@ -125,9 +125,7 @@ HELD = {"agreement": 7, "fe": 7, "cost": 5, "design": 5, "interactive": 5}
 SAME = {"test_loads_release.py": 2}
 #: What theory leaves: the next order of a closed form, a difference for a derivative, the digits of a table.
 THEORY = {
-    "test_surrogates.py": 1,
     "test_readout.py": 3,
-    "test_size_command.py": 1,
     "test_shell.py": 1,
     "test_solid.py": 1,
 }

@@ -21,7 +21,7 @@ def test_a_release_keeps_the_pace_of_its_design(length, case, command):
     assert (answer["status"], answer["resolution"]) == ("converged", "")
 
 
-@pytest.mark.parametrize("model", ["spline", "fe"])
+@pytest.mark.parametrize("model", ["spline", pytest.param("fe", marks=pytest.mark.slow)])
 def test_an_unstable_design_is_seen_to_fall(model, command):
     """Without --duration a pivot that its weight tips over is followed until it has fallen to its side."""
     words = ["release", FINDS / "heavy_pivot.toml", "--model", model, "--no-check", "--json", "-"]

@@ -17,7 +17,7 @@ from studies.answers.adapters import answer_modes, answer_of, answer_release, an
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
-from studies.pictures.page import picture, turning
+from studies.pictures.page import picture
 from studies.pictures.shown import APART, WITHIN, Shown, apart
 from studies.record import style
 from tests.table_one import SIX, TABLE_ONE
@@ -103,37 +103,12 @@ def test_names_at_the_ends_of_curves_are_apart(count):
     assert apart(np.array([0.8, 0.1, 0.4])) == pytest.approx([0.8, 0.1, 0.4])
 
 
-@pytest.mark.slow
-def test_a_models_own_solution_is_drawn_as_the_answer():
-    """`studies.plot` takes what either model returned: the fields are those of the answer."""
-    path = spline_model.solve_statics(spline_model.cross_axis_pivot(**TABLE_ONE), rotation=0.3, increments=3)
-    fine = spline_model.cross_axis_pivot(**TABLE_ONE, control_points=path.control_points)
-    for pivot in (spline_model.cross_axis_pivot(**TABLE_ONE), fine):
-        assert answer_of(path, pivot).along.bodies[:, 0, 2] == pytest.approx(path.rotation)
-    pivot = fe_reference.cross_axis_pivot(**TABLE_ONE, elements=3, element="reissner")
-    rough = fe_reference.solve_statics(pivot, rotation=0.3, increments=3, accuracy=1e-2)
-    answer = answer_of(rough, pivot)
-    assert answer.model == "fe-shear"
-    assert answer.along.shape.shape[2] == rough.estimate.elements + 1
-    assert [strip.tip for strip in answer.design.strips] == ["body", "body"]
-    assert b"svg" in style.printed(studies.overlay({"a": (path, fine), "b": (rough, pivot)}).figure, "svg")
-
-
 def test_an_answer_is_drawn_without_its_design():
     """An answer knows what was asked: it is drawn alone, and over another, as by model and design."""
     answer = shown("path")[1]
     assert b"svg" in style.printed(studies.plot(answer, name="alone").figure, "svg")
     assert b"svg" in style.printed(studies.overlay({"a": answer, "b": answer}).figure, "svg")
     assert answer_of(answer.solution, answer.asked.modelled).max_stress == pytest.approx(answer.max_stress)
-
-
-def test_a_motion_has_the_fields_of_what_swings():
-    """Fields of a motion are those of the control points that were chosen, as stiff as they are in motion."""
-    design = replace(named_design(PIVOT), increments=4)
-    given = {"duration": 1e-3, "records": 10, "step": 5e-5}
-    free, fixed = (answer_release(design, SplineSettings(control_points=n), **given) for n in (None, 6))
-    assert free.settings == fixed.settings
-    assert free.along.reactions == pytest.approx(fixed.along.reactions, rel=1e-12)
 
 
 def test_states_of_another_design_are_refused():
@@ -171,11 +146,3 @@ def test_command_writes_a_picture_beside_its_answer(kind, begin, tmp_path, capsy
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "converged"
     assert f"{path}: the picture" in said.err
-
-
-def test_curves_over_rotation_begin_under_the_loads():
-    """States at which loads come on before the body turns are no part of a curve over its rotation."""
-    assert turning(np.array([0.0, 0.0, 0.0, 0.1, 0.2])) == pytest.approx(
-        [np.nan, np.nan, 0.0, 0.1, 0.2], nan_ok=True
-    )
-    assert turning(np.array([0.0, 0.1, 0.2])) == pytest.approx([0.0, 0.1, 0.2])

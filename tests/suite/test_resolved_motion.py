@@ -43,25 +43,6 @@ def test_resolved_motion_has_an_error_and_no_remark():
     assert motion.rotation_error == pytest.approx(exact, rel=0.05)
 
 
-@pytest.mark.parametrize(
-    "effects",
-    [
-        ("bending", "stretching", "strip_inertia", "body_inertia", "gravity"),
-        ("bending", "stretching", "body_inertia"),
-        ("bending", "stretching", "strip_inertia", "body_inertia", "body_damping"),
-    ],
-    ids=["weight", "massless strips", "damping"],
-)
-def test_every_motion_has_a_companion(effects):
-    """Loaded or not, a scene has a companion from its own start, where the leapfrog does not take it by its
-    own integrator and step."""
-    parameters = {"body_damping": {"rotation": 1e-3}} if "body_damping" in effects else {}
-    pivot = cross_axis_pivot(**TABLE_ONE, effects=effects, parameters=parameters)
-    motion = solve_release(pivot, start=0.5, duration=0.005)
-    assert motion.resolution == ""
-    assert 0.0 < motion.rotation_error < 0.01
-
-
 def test_explicit_run_of_too_many_steps_is_refused_before_it_starts():
     """A stiffly damped release that needs 5e9 explicit steps names the scheme that needs twenty thousand."""
     damped = {

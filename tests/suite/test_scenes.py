@@ -3,7 +3,7 @@
 import pytest
 
 from spline_model import DEFAULT_EFFECTS, REGISTRY
-from studies.cases.effects import DEFAULT, MOTION_ONLY
+from studies.cases.effects import DEFAULT
 from studies.cases.keys import EFFECT_KEYS as KEYS
 from studies.cases.problem import FOLDER
 
@@ -25,27 +25,6 @@ def test_shipped_cases_take_the_effects_of_their_sides(name, answered):
         answered(*words, "--model", model, *coarse)["strain_energy_J"][-1] for model, coarse in COARSE.items()
     )
     assert fe == pytest.approx(spline, rel=5e-3)  # eight elements leave 2e-3 of Table 1's at 90 degrees
-
-
-@pytest.mark.parametrize(
-    ("change", "names"),
-    [
-        ("+gravity", [*DEFAULT, "gravity"]),
-        ("+gravity,-strip_inertia", ["bending", "stretching", "body_inertia", "gravity"]),
-        ("-stretching,+inextensible", ["bending", "strip_inertia", "body_inertia", "inextensible"]),
-        ("bending,stretching,body_inertia", ["bending", "stretching", "body_inertia"]),
-    ],
-)
-def test_effects_are_changed_on_the_command_line(change, names, case, answered):
-    """Signed names change the scene's list, names alone are all; what was assembled is reported."""
-    words = ["--model", "spline", f"--effects={change}"]
-    if "strip_inertia" in names:
-        moving = answered("release", case(), *words, "--rotation-deg", 20, "--duration", 1e-4)
-        assert moving["effects"] == names
-        assert ("gravity_J" in moving) == ("gravity" in names)
-    assert answered("modes", case(), *words, "--count", 1)["effects"] == names
-    driven = answered("solve", case(), *words, "--rotation-deg", 10, "--increments", 2)
-    assert driven["effects"] == [name for name in names if name not in MOTION_ONLY]
 
 
 @pytest.mark.parametrize("model", ["spline", "fe"])

@@ -105,14 +105,3 @@ def test_a_byte_order_mark_is_no_fault(tmp_path, command):
     path = tmp_path / "rod.toml"
     path.write_text(rod(), encoding="utf-8-sig")
     assert command("solve", path).code == 0
-
-
-@pytest.mark.parametrize("model", ["spline", "fe"])
-def test_roots_have_the_default_that_is_documented(model, command):
-    """Without parameters root_compliance is that of roots cut from the same block."""
-    case = ("titanium_pivot", "--rotation-deg", "5", "--model", model, "--json", "-")
-    named, bare = (
-        json.loads(command("solve", *case, f"--effects=+{effect}").out)["torque_Nm"][-1]
-        for effect in ("root_compliance", "gravity")
-    )
-    assert 0.9 < named / bare < 1.0

@@ -125,12 +125,6 @@ def test_interrupted_folder_leaves_the_former_one(tmp_path):
     assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"a.csv": b"former"}
 
 
-def test_figures_are_as_wide_as_the_page():
-    """No figure is wider than the text of a page, so that its letters are printed as large as drawn."""
-    assert style.page(9.5, 4.0).get_figwidth() == pytest.approx(style.PAGE_WIDTH)
-    assert style.page(4.0, 2.0).get_figwidth() == 4.0
-
-
 def test_figures_write_units_and_the_pivot_in_one_way():
     """Degrees are written by their sign, a pure number without a unit and the pivot of the paper's Table 1 as
     the benchmark pivot, whatever a figure calls them."""

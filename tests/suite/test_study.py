@@ -2,10 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-import pandas as pd
-import pytest
-
-from studies.asking import processes, whole
+from studies.asking import whole
 from studies.engine import Claim, Part, Study, finding
 from studies.record.progress import silent
 
@@ -45,15 +42,6 @@ def test_tables_follow_from_rows_and_from_tables():
     assert tables["sum"]["sum"].item() == 5
 
 
-def test_tuples_are_taken_apart_and_tables_are_taken_whole():
-    """A point of several values is asked by its values; a table may be given in place of rows."""
-    part = Part(
-        at=lambda: [(1, "a"), (2, "b")], ask=lambda n, name: {"t": pd.DataFrame({"n": n, "s": [name, name]})}
-    )
-    tables = answered(Study(cases=(), parts=(part,), figures={}))
-    assert tables["t"]["s"].tolist() == ["a", "a", "b", "b"]
-
-
 def test_claims_are_held_against_rows():
     """A claim is a finding a row, with columns in its words; what the parts found stands beside them."""
     own = finding(claim="c", formulation="f", quantity="q", value=1.0, holds=True)
@@ -78,13 +66,6 @@ def test_claims_are_held_against_rows():
     assert "findings" not in answered(study())
 
 
-def test_progress_is_told_of_every_point():
-    """The number of points that are done grows to that of all."""
-    told = []
-    answered(study(), lambda *done: told.append(done))
-    assert told == [(0, 2), (1, 2), (2, 2)]
-
-
 def test_what_must_be_alone_comes_after_all_others():
     """A study is whole as soon as its points are answered; those that must be alone are asked last."""
     place = f"{__name__}:TWO_PARTS"
@@ -94,12 +75,3 @@ def test_what_must_be_alone_comes_after_all_others():
     assert [name for name, _, _ in found] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
     assert all(seconds > 0.0 for _, _, seconds in found)
-
-
-@pytest.mark.slow
-def test_processes_give_the_same_tables():
-    """Points answered beside each other stand where they do one after the other."""
-    with processes(2) as pool:
-        ((_, beside, _),) = whole({__name__: STUDY}, silent, pool)
-    for name, table in answered(STUDY).items():
-        pd.testing.assert_frame_equal(beside[name], table)

@@ -5,7 +5,6 @@ import sys
 
 import pytest
 
-from studies.answers import adapters
 from studies.record import progress
 from studies.record.progress import Bar, measure
 
@@ -21,17 +20,6 @@ def test_timing_warms_up_and_counts_repeats():
     assert min(timing.seconds) <= timing.median <= max(timing.seconds)
     with pytest.raises(ValueError, match="got 0, expected at least 1"):
         measure(lambda: None, repeat=0)
-
-
-@pytest.mark.parametrize(
-    "more", [["solve", "--increments", 1], ["release", "--duration", 1e-4, "--step", 1e-5, "--no-check"]]
-)
-def test_repeat_reaches_the_timer(more, case, command, monkeypatch):
-    """With --repeat 3 a command times three calls, beside one that is not timed."""
-    told = []
-    monkeypatch.setattr(adapters, "measure", lambda work, **how: told.append(how) or measure(work, **how))
-    assert command(*more, case(), "--control-points", 4, "--repeat", 3).code == 0
-    assert [(how["repeat"], how["warm_up"]) for how in told] == [(3, 1)]
 
 
 def test_bar_shows_long_work_on_a_terminal_only(capsys, monkeypatch):

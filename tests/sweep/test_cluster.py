@@ -57,26 +57,6 @@ def test_without_the_package_one_line_says_what_to_install(tmp_path, refused, mo
 
 @with_dask
 @pytest.mark.slow
-@pytest.mark.parametrize("address", ["nonsense", "http://127.0.0.1:80", "tcp://127.0.0.1:0"])
-def test_an_address_that_is_none_is_one_line(address, tmp_path, refused):
-    """Requirement: an address where no scheduler can be is refused before anything is written."""
-    turned_away(address, tmp_path, refused, says="where no scheduler answers within 5 s")
-
-
-@with_dask
-@pytest.mark.slow
-def test_a_scheduler_without_workers_is_one_line():
-    """Requirement: a cluster that nobody works in is refused, with how to start a worker."""
-    with (
-        loopback(0) as alone,
-        pytest.raises(BadInput, match="lacks workers after 1 s"),
-        cluster(alone.scheduler_address, workers_within=1.0),
-    ):
-        pass
-
-
-@with_dask
-@pytest.mark.slow
 def test_workers_of_another_version_are_refused(monkeypatch):
     """Requirement: workers that would solve by other code than this are refused before they start."""
     with loopback(1) as other:

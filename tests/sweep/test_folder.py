@@ -199,13 +199,6 @@ def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
     assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
-def test_a_place_that_cannot_be_written_to(tmp_path):
-    """Requirement: a folder that cannot be made is one line."""
-    (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot be written"):
-        sweep(plan(GRID), tmp_path / "file" / "out")
-
-
 def test_chunks_that_no_worker_can_solve_are_named(tmp_path, monkeypatch):
     """Requirement: a fault of the workers themselves names the points, and what was solved is kept."""
 

@@ -193,17 +193,14 @@ def test_values_are_those_of_the_answer(settings):
     assert stress.max() > 1.2 * stress[-1] and torque.max() > 1.2 * torque[-1]  # the path does relax
     shift = np.hypot(*answer.centre_shift.T)
     expected = {
-        "torque_Nm": answer.torque[-1],
         "torque_max_Nm": torque.max(),
         "stress_end_Pa": stress[-1],
         "stress_max_Pa": stress.max(),
         "strain_max": stress.max() / UNBENT.youngs_modulus,
-        "energy_J": answer.strain_energy[-1],
         "stiffness_rest_Nm_per_rad": answer.stiffness[0],
         "stiffness_end_Nm_per_rad": answer.stiffness[-1],
         "stiffness_variation": np.ptp(answer.stiffness) / answer.stiffness[0],
         "centre_shift_end_m": shift[-1],
         "centre_shift_max_m": shift.max(),
-        "iterations": answer.counters["newton_iterations"],
     }
     assert {name: found[name] for name in expected} == pytest.approx(expected, rel=1e-9)
