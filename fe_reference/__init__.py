@@ -16,10 +16,10 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
+from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
-from .loads import DrivenRotation
 from .mechanism import compliant_mechanism, cross_axis_pivot
 from .model import ELEMENTS, BodyDesign, Model, StripDesign
 from .modes import Modes, natural_frequencies
