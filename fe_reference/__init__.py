@@ -2,9 +2,10 @@
 
 Data flow one way, and so do the imports:
 
-    effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
+    loading -> effects, places -> model (mechanism) -> mesh -> structure (law, bending, matrix, links)
+    structure -> loads -> control
     control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, loads -> actions -> motion -> schemes -> dynamics
+    structure -> mass, drives, loads -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 

@@ -125,7 +125,7 @@ class Actions:
         s.add_springs(whole, relaxation[0] if len(relaxation) else 0.0)
         if len(grip):
             body_blocks(s, y, grip[:, :2], whole)
-        add_links(s, y, s.links[3], whole)
+        add_links(s.links, y[s.turns], s.links[3], whole)
         return whole
 
     def fastest_decay(self, material: float, mass: Array, inertia: Array) -> float:

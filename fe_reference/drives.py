@@ -17,7 +17,7 @@ from .errors import Checked, History, InvalidParameter, finite, read_history
 from .loading import ALWAYS_FULL, factor_of
 from .mass import RigidBodies
 from .model import Model
-from .places import prescribed, twice
+from .places import twice
 from .structure import Structure
 
 #: Instants nearer than this part of the motion are the same.
@@ -125,10 +125,10 @@ def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> 
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2
         drives.append((turn, drive.angle, drive.history, drive.held))
-    for at, (end, history) in prescribed(model, None).items():
+    for at, (end, history) in model.prescribed(None).items():
         if history is not None:
             if drives and at == drives[0][0]:
-                raise twice(model, at)
+                raise twice(model.body_names, at)
             drives.append((at, end, history, ALWAYS))
     times = {duration}
     for _, _, history, held in drives:

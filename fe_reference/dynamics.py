@@ -17,7 +17,7 @@ from .mass import about_mass_centre, carried_over, couplings
 from .model import Model, require_model
 from .modes import natural_frequencies
 from .motion import ENERGIES, Progress, Samples, Scheme, Trajectory, course, trajectory
-from .places import GROUND, prescribed
+from .places import GROUND
 from .refined import limit_of
 from .rigid import loose_coordinates
 from .schemes import Explicit, Implicit, critical_step
@@ -237,7 +237,7 @@ def _first_frequency(model: Model) -> float:
     kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
     bare = replace(model, effects=Effects(named=kept))
     structure = structure_of(bare)
-    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in prescribed(bare, None)]))
+    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
     clamped = (model.ends == GROUND).any()
     found = np.zeros(0)  # of free strips without bodies
     if clamped or model.bodies:

@@ -10,7 +10,6 @@ from fe_reference.structure import Structure, structure_of
 from tests.fe.cases import LENGTH, pivot
 from tests.gates import hold
 
-
 #: Displacements that a centre is led to: both ways, or one.
 WAYS = pytest.mark.parametrize("way", [(2e-4, -1e-4), (2e-4, None), (None, -1e-4)])
 
