@@ -199,8 +199,9 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     time_of = relaxation[0] if len(relaxation) else 0.0
     slip, lost = spring_forces(springs, time_of, (bodies, bodies_v), (u, v), force, resultants)
     loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
-    stored, lost = link_forces(links, bodies, bodies_v, resultants)
-    slip, loss = slip + stored, loss + lost
+    if len(links[0]) > 0:
+        stored, lost = link_forces(links, bodies, bodies_v, resultants)
+        slip, loss = slip + stored, loss + lost
     load_forces(histories, time, u, bodies, pulls)
     put_loads(targets, pulls, force, resultants)
     return strain[0] + strain[1] + strain[2] + slip, load_power(targets, pulls, v, bodies_v), loss
@@ -239,7 +240,8 @@ def advance(
         if viscous:
             carry_velocity(bodies, bodies_v, carried, v)
         _, power, loss = _act(acting, state, time + n * step)
-        couple(coupled, bodies, bodies_v, resultants)
+        if len(coupled) > 0:
+            couple(coupled, bodies, bodies_v, resultants)
         for b in range(len(bodies)):
             for k in range(3):
                 if compliance[1][b, k] == 0.0:

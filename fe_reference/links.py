@@ -24,16 +24,15 @@ Links = tuple[Indices, Array, Array, Array]
 def links_of(model: Model, points: Array) -> Links:
     """Return the springs of a model whose bodies are reduced about `points` (B, 2) [m]."""
     springs = model.effects.every(Spring)
-    ends = [
-        [model.body_index(each.body), -1 if each.other is None else model.body_index(each.other)]
-        for each in springs
-    ]
-    ends_of = np.array(ends, dtype=np.int64).reshape(-1, 2)
+    if not springs:
+        return np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2, 2)), np.zeros((0, 3)), np.zeros((0, 3))
+    others = [-1 if each.other is None else model.body_index(each.other) for each in springs]
+    ends = np.column_stack([[model.body_index(each.body) for each in springs], others])
     return (
-        ends_of,
-        np.vstack([model.centres - points, np.zeros((1, 2))])[ends_of],
-        np.array([(*each.stiffness, each.rotational_stiffness) for each in springs]).reshape(-1, 3),
-        np.array([(*each.damping, each.rotational_damping) for each in springs]).reshape(-1, 3),
+        ends,
+        np.vstack([model.centres - points, np.zeros((1, 2))])[ends],
+        np.array([(*each.stiffness, each.rotational_stiffness) for each in springs]),
+        np.array([(*each.damping, each.rotational_damping) for each in springs]),
     )
 
 
