@@ -2,9 +2,10 @@
 
 Data flow one way, and so do the imports:
 
-    effects -> model (mechanism) -> mesh -> structure (law, bending, matrix) -> control
+    loading -> effects, places -> model (mechanism) -> mesh -> structure (law, bending, matrix, links)
+    structure -> loads -> control
     control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, loads -> actions -> motion -> schemes -> dynamics
+    structure -> mass, drives, loads -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 
@@ -16,10 +17,10 @@ forms, integrated and assembled by scikit-fem, give the same energy, forces and 
 rest; a test holds both elements to that.
 """
 
+from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
-from .loads import DrivenRotation
 from .mechanism import compliant_mechanism, cross_axis_pivot
 from .model import ELEMENTS, BodyDesign, Model, StripDesign
 from .modes import Modes, natural_frequencies

@@ -7,7 +7,6 @@ Every effect has its own table, of length zero where the scene does not name it:
     grip (B, 4)          dampers of the bodies: translation, rotation, and the offset of the centre
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,8 +15,8 @@ from .arrays import Array, Indices, inlined, kernel
 from .effects import BodyDamping, StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
 from .links import Links, add_links, fastest, link_forces
-from .loads import Pull, applied
-from .mass import body_blocks
+from .loads import Histories, applied, load_forces, load_power, load_tables, put_loads
+from .mass import body_blocks, couple
 from .matrix import Symmetric
 from .mesh import (
     RESULTANTS,
@@ -32,8 +31,6 @@ from .mesh import (
 )
 from .structure import Structure
 
-#: Loads while time passes, as `_load_tables` makes them.
-Histories = tuple[Indices, Array, Indices, Array, Array]
 #: What acts in a motion, and the displacements and velocities of nodes and of bodies that it acts at.
 Acting = tuple[Tables, tuple[Array, Array, Array], Links, Histories, Written, Pair]
 State = tuple[Array, Array, Array, Array]
@@ -66,7 +63,7 @@ class Actions:
     Attributes:
         dissipative: relaxation (E,), drag (nodes,), grip (B, 4). histories: tables of the loads.
         written: as of `law.elements`. resultants: of the bodies (B, 5), and the forces (K, 3) of the loads.
-        acting: all of it, for `_act`.
+        acting: all of it, for `_act`. coupled: bodies that are led one way, as in `mass`.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -80,11 +77,12 @@ class Actions:
         self.damped = any(len(table) for table in self.dissipative) or bool(structure.links[3].any())
         pulls = [pull for pull in applied(structure) if pull.row[:3].any()]
         self.named = self.damped or bool(pulls)
-        self.histories, (force, scratch) = _load_tables(pulls), structure.work
+        self.histories, (force, scratch) = load_tables(pulls), structure.work
         self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
         self.resultants = (np.zeros((len(structure.points), RESULTANTS)), np.zeros((len(pulls), 3)))
         tables = (structure.tables, self.dissipative, structure.links, self.histories)
         self.acting: Acting = (*tables, self.written, self.resultants)
+        self.coupled = np.zeros((0, 7))
 
     def _grip(self) -> Array:
         model, points = self.structure.model, self.structure.points
@@ -100,6 +98,7 @@ class Actions:
         s, u = self.structure, self.structure.displacement(y)
         bodies, rates = s.bodies(y), s.bodies(v)
         strain, power, loss = _act(self.acting, (u, s.velocity(y, v), bodies, rates), time)
+        couple(self.coupled, bodies, rates, self.resultants[0])
         force = s.gathered(self.written[0], self.resultants[0][:, :3])
         gravity = float(gravity_energy(s.tables[2], bodies, u))
         return Instant(
@@ -126,7 +125,7 @@ class Actions:
         s.add_springs(whole, relaxation[0] if len(relaxation) else 0.0)
         if len(grip):
             body_blocks(s, y, grip[:, :2], whole)
-        add_links(s, y, s.links[3], whole)
+        add_links(s.links, y[s.turns], s.links[3], whole)
         return whole
 
     def fastest_decay(self, material: float, mass: Array, inertia: Array) -> float:
@@ -143,61 +142,6 @@ class Actions:
             rate += float(np.max(grip[:, 0] / mass + turning / inertia))
         links = self.structure.links
         return rate + fastest(links, links[3], mass, inertia)
-
-
-def _load_tables(pulls: Sequence[Pull]) -> Histories:
-    """Return targets (K,), rows and whether they follow (K, 6), begins (K + 1,) in instants, factors (H,)."""
-    points = np.array([point for pull in pulls for point in pull.history]).reshape(-1, 2)
-    instants, factors = np.ascontiguousarray(points.T)
-    begins = np.cumsum([0, *(len(pull.history) for pull in pulls)])
-    rows = np.array([(*pull.row, pull.follows) for pull in pulls]).reshape(-1, 6)
-    return np.array([pull.target for pull in pulls], dtype=np.int64), rows, begins, instants, factors
-
-
-@kernel()
-def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: float) -> float:
-    """Return the factor of a piecewise linear history at an instant; constant before and after it."""
-    factor: float = factors[begin]
-    for k in range(begin + 1, end):
-        part = (time - instants[k - 1]) / (instants[k] - instants[k - 1])
-        factor += min(max(part, 0.0), 1.0) * (factors[k] - factors[k - 1])
-    return factor
-
-
-@kernel()
-def _load_forces(histories: Histories, time: float, u: Array, bodies: Array, pulls: Array) -> None:
-    """Write the generalised forces (K, 3) of the loads at an instant."""
-    targets, rows, begins, instants, factors = histories
-    for k in range(len(targets)):
-        factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
-        turn = bodies[targets[k], 2] if targets[k] >= 0 else u[-1 - targets[k], 2]
-        force_x, force_y = rows[k, 0], rows[k, 1]
-        if rows[k, 5] > 0.0:
-            force_x, force_y = turned(turn, force_x, force_y)
-        x, y = turned(turn, rows[k, 3], rows[k, 4])
-        moment += x * force_y - y * force_x
-        pulls[k, 0], pulls[k, 1], pulls[k, 2] = factor * force_x, factor * force_y, factor * moment
-
-
-@kernel()
-def _load_power(targets: Indices, pulls: Array, v: Array, bodies_v: Array) -> float:
-    """Return the power of the loads [W]."""
-    power = 0.0
-    for k in range(len(targets)):
-        rate = bodies_v[targets[k]] if targets[k] >= 0 else v[-1 - targets[k]]
-        power += pulls[k, 0] * rate[0] + pulls[k, 1] * rate[1] + pulls[k, 2] * rate[2]
-    return power
-
-
-@kernel()
-def _put_loads(targets: Indices, pulls: Array, force: Array, resultants: Array) -> None:
-    """Take the loads from the forces that resist."""
-    for k in range(len(targets)):
-        for i in range(3):
-            if targets[k] >= 0:
-                resultants[targets[k], i] -= pulls[k, i]
-            else:
-                force[-1 - targets[k], i] -= pulls[k, i]
 
 
 @kernel()
@@ -255,11 +199,12 @@ def _act(acting: Acting, state: State, time: float) -> tuple[float, float, float
     time_of = relaxation[0] if len(relaxation) else 0.0
     slip, lost = spring_forces(springs, time_of, (bodies, bodies_v), (u, v), force, resultants)
     loss += lost + _grip_forces(grip, bodies, bodies_v, resultants)
-    stored, lost = link_forces(links, bodies, bodies_v, resultants)
-    slip, loss = slip + stored, loss + lost
-    _load_forces(histories, time, u, bodies, pulls)
-    _put_loads(targets, pulls, force, resultants)
-    return strain[0] + strain[1] + strain[2] + slip, _load_power(targets, pulls, v, bodies_v), loss
+    if len(links[0]) > 0:
+        stored, lost = link_forces(links, bodies, bodies_v, resultants)
+        slip, loss = slip + stored, loss + lost
+    load_forces(histories, time, u, bodies, pulls)
+    put_loads(targets, pulls, force, resultants)
+    return strain[0] + strain[1] + strain[2] + slip, load_power(targets, pulls, v, bodies_v), loss
 
 
 @kernel()
@@ -273,7 +218,14 @@ def _move(compliance: Array, force: Array, step: float, v: Array, u: Array) -> N
 
 @kernel()
 def advance(
-    acting: Acting, compliance: Pair, state: State, totals: Array, time: float, step: float, steps: int
+    acting: Acting,
+    coupled: Array,
+    compliance: Pair,
+    state: State,
+    totals: Array,
+    time: float,
+    step: float,
+    steps: int,
 ) -> None:
     """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
 
@@ -288,12 +240,14 @@ def advance(
         if viscous:
             carry_velocity(bodies, bodies_v, carried, v)
         _, power, loss = _act(acting, state, time + n * step)
+        if len(coupled) > 0:
+            couple(coupled, bodies, bodies_v, resultants)
         for b in range(len(bodies)):
             for k in range(3):
                 if compliance[1][b, k] == 0.0:
                     totals[0] += step * resultants[b, k] * bodies_v[b, k]
         _move(compliance[0], written[0], step, v, u)
         _move(compliance[1], resultants, step, bodies_v, bodies)
-        totals[0] += 0.5 * step * (power + _load_power(histories[0], pulls, v, bodies_v))
+        totals[0] += 0.5 * step * (power + load_power(histories[0], pulls, v, bodies_v))
         totals[1] += step * loss
         carry(bodies, carried, u)

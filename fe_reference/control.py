@@ -17,7 +17,7 @@ from .arrays import Array, Flags, Indices
 from .loading import ALWAYS_FULL, factor_of
 from .loads import Load
 from .matrix import Factors, Singular
-from .places import prescribed, twice
+from .places import twice
 from .rigid import loose_coordinates
 from .structure import Evaluation, Structure
 
@@ -191,11 +191,11 @@ def spans(
         structure.first_body + at: np.multiply(
             shares, end * factor_of((starts and history) or ALWAYS_FULL, 0.0)
         )
-        for at, (end, history) in prescribed(structure.model, body).items()
+        for at, (end, history) in structure.model.prescribed(body).items()
     }
     if rotations is not None:
         if turn in ways:
-            raise twice(structure.model, turn - structure.first_body)
+            raise twice(structure.model.body_names, turn - structure.first_body)
         ways[turn] = np.array([0.0] * (1 + first) + [*rotations])
     props = loose_coordinates(structure, ways)
     ways |= {int(k): np.zeros(legs + 1) for k in props}

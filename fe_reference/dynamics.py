@@ -8,22 +8,22 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, Flags
 from .companions import with_companions
+from .drives import DrivenRotation, Span, drive_spans
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
-from .loads import DrivenRotation, drive_spans
-from .mass import about_mass_centre, carried_over
+from .mass import about_mass_centre, carried_over, couplings
 from .model import Model, require_model
 from .modes import natural_frequencies
-from .motion import ENERGIES, Progress, Samples, Trajectory, course, trajectory
-from .places import GROUND, prescribed
+from .motion import ENERGIES, Progress, Samples, Scheme, Trajectory, course, trajectory
+from .places import GROUND
 from .refined import limit_of
 from .rigid import loose_coordinates
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
 from .statics import settled_state
-from .structure import structure_of
+from .structure import Structure, structure_of
 
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
@@ -256,10 +256,11 @@ def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samp
     choices: dict[str, float] = {"spectral_radius": run.spectral_radius}
     longest = run.duration
     if run.explicit:
-        schemes = [scheme_of(span.led) for span in drive_spans(model, run.drive, run.duration)]
+        rest = Span(begin=0.0, end=0.0, rates={}, begins=False)
+        parts = {tuple(each.rates): each for each in (rest, *drive_spans(model, run.drive, run.duration))}
         limit = min(
-            critical_step(scheme.structure, scheme.bodies, carried_over(own, state, scheme.structure))
-            for scheme in {scheme_of(()), *schemes}
+            _critical(scheme_of(span.led), span.held(scheme_of(span.led).structure), own, state)
+            for span in parts.values()
             for state in (y, np.zeros_like(y))
         )
         choices, longest = {"critical_step_s": limit, "safety": run.safety}, run.safety * limit
@@ -276,6 +277,12 @@ def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samp
     return samples, settings | choices
 
 
+def _critical(scheme: Scheme, held: Flags, own: Structure, y: Array) -> float:
+    """Return the critical step [s] at coordinates y of a model's `own` structure, with what is held."""
+    at, bodies = scheme.structure, scheme.bodies
+    return critical_step(at, bodies, carried_over(own, y, at), couplings(at, bodies, held))
+
+
 def _sampling(steps: int, samples: int) -> list[int]:
     """Return the numbers of steps between samples: equal ones, the last perhaps shorter."""
     every = -(-steps // samples)
@@ -288,7 +295,7 @@ def _first_frequency(model: Model) -> float:
     kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
     bare = replace(model, effects=Effects(named=kept))
     structure = structure_of(bare)
-    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in prescribed(bare, None)]))
+    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
     clamped = (model.ends == GROUND).any()
     found = np.zeros(0)  # of free strips without bodies
     if clamped or model.bodies:

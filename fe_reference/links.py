@@ -8,8 +8,6 @@ in axes of the ground, where d is the displacement of the point that a structure
 offset of the centre from it. It resists with f = diag(k) e + diag(c) e'. The energy is e.diag(k) e / 2.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from .arrays import Array, Indices, kernel
@@ -17,9 +15,6 @@ from .loading import Spring
 from .matrix import Symmetric
 from .mesh import swept, turned
 from .model import Model
-
-if TYPE_CHECKING:
-    from .structure import Structure
 
 #: Bodies at both ends (K, 2), -1 for ground, offsets of their centres from their points (K, 2, 2) [m],
 #: stiffness and damping (K, 3) for x, y and the turn.
@@ -29,16 +24,15 @@ Links = tuple[Indices, Array, Array, Array]
 def links_of(model: Model, points: Array) -> Links:
     """Return the springs of a model whose bodies are reduced about `points` (B, 2) [m]."""
     springs = model.effects.every(Spring)
-    ends = [
-        [model.body_index(each.body), -1 if each.other is None else model.body_index(each.other)]
-        for each in springs
-    ]
-    ends_of = np.array(ends, dtype=np.int64).reshape(-1, 2)
+    if not springs:
+        return np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2, 2)), np.zeros((0, 3)), np.zeros((0, 3))
+    others = [-1 if each.other is None else model.body_index(each.other) for each in springs]
+    ends = np.column_stack([[model.body_index(each.body) for each in springs], others])
     return (
-        ends_of,
-        np.vstack([model.centres - points, np.zeros((1, 2))])[ends_of],
-        np.array([(*each.stiffness, each.rotational_stiffness) for each in springs]).reshape(-1, 3),
-        np.array([(*each.damping, each.rotational_damping) for each in springs]).reshape(-1, 3),
+        ends,
+        np.vstack([model.centres - points, np.zeros((1, 2))])[ends],
+        np.array([(*each.stiffness, each.rotational_stiffness) for each in springs]),
+        np.array([(*each.damping, each.rotational_damping) for each in springs]),
     )
 
 
@@ -77,35 +71,35 @@ def link_forces(links: Links, bodies: Array, rates: Array, out: Array) -> tuple[
     return energy, loss
 
 
-def numbers(ends: Indices, bodies: Indices) -> Indices:
+def numbers(links: Links, bodies: Indices) -> Indices:
     """Return the coordinates of links (K, 6) from those of bodies (B, 3), -1 for those of the ground."""
-    return np.vstack([bodies, np.full((1, 3), -1)])[ends].reshape(-1, 6)
+    return np.vstack([bodies, np.full((1, 3), -1)])[links[0]].reshape(-1, 6)
 
 
-def slopes(structure: "Structure", y: Array) -> Array:
-    """Return the derivatives of the stretches of the links in the coordinates of their ends (K, 3, 6)."""
-    ends, offsets, _, _ = structure.links
-    found = np.zeros((len(ends), 3, 6))
-    for each, pair, arms in zip(found, ends, offsets, strict=True):
+def _slopes(links: Links, turns: Array) -> Array:
+    """Return the derivatives of the stretches (K, 3, 6) in the coordinates of both ends."""
+    found = np.zeros((len(links[0]), 3, 6))
+    for each, pair, arms in zip(found, *links[:2], strict=True):
         for end, sign in enumerate((1.0, -1.0)):
-            turn = y[structure.turns[pair[end]]] if pair[end] >= 0 else 0.0
-            arm = turned(turn, *arms[end])
-            each[:, 3 * end : 3 * end + 3] = sign * np.array([[1, 0, -arm[1]], [0, 1, arm[0]], [0, 0, 1]])
+            x, y = turned(np.append(turns, 0.0)[pair[end]], *arms[end])
+            each[:, 3 * end : 3 * end + 3] = sign * np.array([[1, 0, -y], [0, 1, x], [0, 0, 1]])
     return found
 
 
-def add_links(structure: "Structure", y: Array, constants: Array, whole: Symmetric) -> None:
-    """Add what stiffness or damping (K, 3) of the links makes at y to a matrix."""
-    places = structure.pattern.links
-    for at, slope, own in zip(places, slopes(structure, y), constants, strict=True):
+def add_links(links: Links, turns: Array, constants: Array, whole: Symmetric) -> None:
+    """Add what stiffness or damping (K, 3) of the links makes at the turns of bodies (B,) to a matrix."""
+    for at, slope, own in zip(whole.pattern.links, _slopes(links, turns), constants, strict=True):
         np.add.at(whole.data, at[at >= 0], (slope.T * own @ slope)[at >= 0])
 
 
-def between(structure: "Structure", y: Array, one: Array, other: Array) -> float:
-    """Return the second derivative of the energy at fixed forces along two rates (size,) [J]."""
-    at = numbers(structure.links[0], np.arange(structure.first_body, structure.size).reshape(-1, 3))
-    rates = (np.einsum("kij,kj->ki", slopes(structure, y), np.append(rate, 0.0)[at]) for rate in (one, other))
-    return float(np.sum(np.prod([*rates], axis=0) * structure.links[2]))
+def between(links: Links, turns: Array, one: Array, other: Array) -> float:
+    """Return the second derivative of the energy at fixed forces along two rates of bodies (B, 3) [J]."""
+    slopes, still = _slopes(links, turns), np.zeros((1, 3))
+    first, second = (
+        np.einsum("kij,kj->ki", slopes, np.vstack([rates, still])[links[0]].reshape(-1, 6))
+        for rates in (one, other)
+    )
+    return float(np.sum(first * second * links[2]))
 
 
 def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> float:

@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Array
+from .arrays import Array, Flags, kernel
 from .matrix import Symmetric
 from .mesh import swept, turned
 from .structure import Structure
@@ -115,6 +115,52 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
     steiner = bodies.mass * np.sum((bodies.centre - points) ** 2, axis=1)
     bodies = replace(bodies, moment_of_inertia=bodies.moment_of_inertia + steiner)
     return Structure(structure.model, points), bodies
+
+
+def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
+    """Return of each body that is led one way, its mass off the led point, what couples its other motions.
+
+    The rows (K, 7): body, free direction, mass, moment of inertia, first moment (2,) [kg m], whether the turn
+    is led as well.
+    """
+    rows = []
+    for k, mass in enumerate(bodies.mass):
+        x, y, turn = held[structure.body_slice(k)]
+        first = mass * (bodies.centre[k] - structure.points[k])
+        if x != y and first.any():
+            rows.append([k, x, mass, bodies.moment_of_inertia[k], *first, turn])
+    return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+
+@kernel()
+def couple(coupled: Array, bodies: Array, rates: Array, out: Array) -> None:
+    """Write the forces that resist the coupled motions as if the mass were diagonal.
+
+    With the first moment (X, Y) in place and y free, m y'' + X t'' - Y t'^2 = -f and X y'' + J t'' = -g. With
+    x free, -Y stands for X and X for Y.
+    """
+    for k in range(len(coupled)):
+        b, free, mass, inertia = int(coupled[k, 0]), int(coupled[k, 1]), coupled[k, 2], coupled[k, 3]
+        x, y = turned(bodies[b, 2], coupled[k, 4], coupled[k, 5])
+        cross, inward = (x, y) if free == 1 else (-y, x)
+        push, twist = inward * rates[b, 2] ** 2 - out[b, free], -out[b, 2]
+        if coupled[k, 6] > 0.0:  # a led turn bears what the free motion exerts
+            out[b, free] = -push
+            out[b, 2] += cross * push / mass
+        else:
+            rest = mass * inertia - cross * cross
+            out[b, free] = -mass * (inertia * push - cross * twist) / rest
+            out[b, 2] = -inertia * (mass * twist - cross * push) / rest
+
+
+def coupled_energy(coupled: Array, bodies: Array, rates: Array) -> float:
+    """Return the kinetic energy beside that of the diagonal mass [J]."""
+    total = 0.0
+    for row in coupled:
+        body, free = int(row[0]), int(row[1])
+        x, y = turned(bodies[body, 2], row[4], row[5])
+        total += (x if free else -y) * rates[body, free] * rates[body, 2]
+    return float(total)
 
 
 def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:

@@ -16,6 +16,7 @@ from .arrays import Array, Indices
 from .effects import CURL, SIDES, Effects, PreStrain
 from .errors import (
     Checked,
+    History,
     InvalidParameter,
     Pair,
     choice,
@@ -27,7 +28,7 @@ from .errors import (
     require_kind,
     within,
 )
-from .places import FREE, GROUND, check_places
+from .places import FREE, GROUND, check_places, index_of, prescribed
 
 ELEMENTS = ("corotational", "reissner")
 #: How an end of a strip is held on what it is on.
@@ -265,7 +266,8 @@ class Model:
             raise InvalidParameter("strips", self.strips, "one or more strips")
         if not (np.diff(self.arcs) > 0.0).all():
             raise InvalidParameter("strips", "ends that coincide", "elements of a length above 0 [m]")
-        check_places(self)
+        free = [name for name, tip in zip(self.strip_names, self.ends[:, 1], strict=True) if tip == FREE]
+        check_places(self.effects, self.body_names, self.strip_names, free)
         self._check_sides()
 
     def _check_sides(self) -> None:
@@ -335,10 +337,11 @@ class Model:
 
     def body_index(self, name: str | None) -> int:
         """Return the place of the body of this name; None means the only one there is."""
-        known = ", ".join(self.body_names) or "no bodies"
-        if len(self.bodies) != 1 if name is None else name not in self.body_names:
-            raise InvalidParameter("body", name, f"one of {known} [name]")
-        return 0 if name is None else self.body_names.index(name)
+        return index_of(self.body_names, name)
+
+    def prescribed(self, body: int | None) -> dict[int, tuple[float, History | None]]:
+        """Return what drives and supports prescribe, as `places.prescribed`."""
+        return prescribed(self.effects, self.body_names, body)
 
     def strip_index(self, name: str) -> int:
         """Return the place of the strip of this name."""

@@ -14,7 +14,6 @@ from .loads import Load, full_load
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
-from .places import prescribed
 from .refined import Quantities, missed, refine
 from .rigid import NothingHolds, loose_coordinates
 from .solution import ErrorEstimate
@@ -179,7 +178,7 @@ def _held(model: Model, body: str | None, turn: bool) -> Flags:
     held = np.zeros(structure.size, dtype=bool)
     if turn:
         held[structure.turns[model.body_index(body)]] = True
-    led = prescribed(model, None if body is None else model.body_index(body))
+    led = model.prescribed(None if body is None else model.body_index(body))
     return held | structure.flags([structure.first_body + at for at, (_, history) in led.items() if history])
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from .actions import Actions, Instant
 from .arrays import Array, Flags
-from .loads import Piece, Span
-from .mass import RigidBodies, carried_over
+from .drives import Piece, Span
+from .mass import RigidBodies, carried_over, coupled_energy, couplings
 from .solution import Answer, ErrorEstimate, Status, Stopwatch
 from .structure import Structure, structure_of
 
@@ -45,6 +45,7 @@ class Scheme:
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
         """Return an instant with its consistent acceleration, from which what is `held` is led at its v."""
         self.held, inert = held, (self.mass > 0.0) & ~held
+        self.actions.coupled = couplings(self.structure, self.bodies, held)
         self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
         now = self.actions.resist(y, v, time)
         return replace(now, a=-self.inverse * now.force)
@@ -52,6 +53,11 @@ class Scheme:
     def go(self, now: Instant, piece: Piece, samples: "Samples") -> Instant | None:
         """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
         raise NotImplementedError
+
+    def coupled(self, at: Instant) -> float:
+        """Return the kinetic energy beside that of the lumped mass, of bodies that are led one way [J]."""
+        s = self.structure
+        return coupled_energy(self.actions.coupled, s.bodies(at.y), s.bodies(at.v))
 
     def unloaded(self, at: Instant) -> Flags:
         """Return where the forces are none but round-off (size,)."""
@@ -104,7 +110,8 @@ class Samples:
         """Return the kinetic energy beside the scheme's, of bodies with a mass off the point that is led."""
         if scheme is self.home:
             return 0.0
-        return self.kinetic(scheme, at.y, at.v) - 0.5 * float(scheme.mass @ at.v**2)
+        beside = self.kinetic(scheme, at.y, at.v) - 0.5 * float(scheme.mass @ at.v**2)
+        return beside - scheme.coupled(at)
 
     def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
         """Keep an instant if its energy is sound; otherwise note when it was lost and return False.

@@ -12,7 +12,6 @@ from .loads import full_load
 from .matrix import Singular
 from .mesh import Tables, turned
 from .model import Model
-from .places import prescribed
 from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
@@ -68,7 +67,9 @@ def _stiffness_between(
     own = float(_between(structure.tables, u, v, w, rest, carried, written))
     own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (carried[1] * carried[2]))
     own += float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
-    return own + (between(structure, y, one, other) if len(structure.links[0]) else 0.0)
+    if len(structure.links[0]):
+        own += between(structure.links, carried[0], structure.bodies(one), structure.bodies(other))
+    return own
 
 
 @kernel()
@@ -143,7 +144,7 @@ def body_stiffness(
     if driven is not None:
         held[structure.turns[model.body_index(driven)]] = True
     # without a name it is of the body that is asked for
-    held[[structure.first_body + at for at in prescribed(model, model.body_index(body))]] = True
+    held[[structure.first_body + at for at in model.prescribed(model.body_index(body))]] = True
     units, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     units[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)

@@ -37,17 +37,18 @@ import numpy as np
 
 from .actions import Actions, Instant, advance
 from .arrays import Array, Flags
+from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .links import fastest
-from .loads import Piece, full_load, steepest
+from .loads import full_load, steepest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme
 from .structure import Structure
 
 
-def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
+def critical_step(structure: Structure, bodies: RigidBodies, y: Array, coupled: Array | None = None) -> float:
     """Return a step [s] below which the scheme is stable for small motion about the state y.
 
     No frequency of the assembled mesh is above the highest one of its elements taken alone with their own
@@ -57,6 +58,9 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     w^2 = max lambda + max over the bodies of max(0, -sum (R b).f) / J. Springs between bodies and
     loads off the centres add their own.
 
+    The least mass of bodies that are led one way, `coupled`, is the lumped one times 1 - |(X, Y)| / sqrt(m J)
+    with the first moment (X, Y).
+
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
     """
@@ -65,6 +69,8 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array) -> float:
     square += float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
     square += steepest(structure, bodies.moment_of_inertia)
     square += fastest(structure.links, structure.links[2], bodies.mass, bodies.moment_of_inertia)
+    for _, _, mass, inertia, *first, turn in () if coupled is None else coupled:
+        square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(mass * inertia)
     material = _highest(structure, bodies, y, MATERIAL) if len(actions.dissipative[0]) else 0.0
     decay = actions.fastest_decay(material, bodies.mass, bodies.moment_of_inertia)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
@@ -118,7 +124,7 @@ class Explicit(Scheme):
             s.bodies(late).copy(),
         )
         compliance = (self.compliance, s.bodies(self.inverse))
-        advance(actions.acting, compliance, state, totals, now.time, h, piece.steps)
+        advance(actions.acting, actions.coupled, compliance, state, totals, now.time, h, piece.steps)
         y, late = (s.gathered(*moved) for moved in (state[::2], state[1::2]))
         after = actions.resist(y, late, now.time + piece.steps * h)
         a = -self.inverse * after.force
@@ -211,7 +217,9 @@ class Implicit(Scheme):
 
     def _gains(self, now: Instant, after: Instant, h: float, samples: Samples) -> bool:
         """Return whether a step of h [s] has gained energy, by more than stops a motion."""
-        before, since = (0.5 * float(self.mass @ at.v**2) + at.strain for at in (now, after))
+        before, since = (
+            0.5 * float(self.mass @ at.v**2) + self.coupled(at) + at.strain for at in (now, after)
+        )
         work, lost = 0.5 * h * np.sum([self._powers(at) for at in (now, after)], axis=0)
         gain = since - before + after.gravity - now.gravity - work + lost
         return not gain <= GAIN * max(samples.stake, samples.floor, before, abs(work))

@@ -128,7 +128,7 @@ class Structure:
         bodies = every[first:].reshape(-1, 3)
         roots = every[first - len(self.springs[0]) : first]
         springs = np.stack([roots, np.append(self.turns, -1)[self.springs[1]]], axis=1)
-        return Envelope(self.numbers, bodies, springs, numbers(self.links[0], bodies), self.size)
+        return Envelope(self.numbers, bodies, springs, numbers(self.links, bodies), self.size)
 
     def bodies(self, y: Array) -> Array:
         """Return what coordinates or velocities (..., size) have of the bodies (..., B, 3)."""
@@ -239,7 +239,7 @@ class Structure:
             if len(self.springs[0]):
                 self.add_springs(tangent)
             if len(self.links[0]):
-                add_links(self, y, self.links[2], tangent)
+                add_links(self.links, y[self.turns], self.links[2], tangent)
         return Evaluation(
             gradient=self.gathered(force, resultants[:, :3]),
             tangent=tangent,

@@ -1,0 +1,172 @@
+"""Drives of a motion: what leads which coordinates of a body, when and how fast.
+
+Histories are linear between their instants, so that a motion falls into spans on which every led coordinate
+goes at a constant rate. Held like that they need no multiplier: the body is reduced about the point that is
+led (`mass.about_mass_centre`), the led rows have no equation of motion, and what resists them is what the
+drive exerts. At the beginning of a span velocities change at once, by impulses of the drives alone.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated
+
+from .arrays import Array, Flags, rotation_matrix
+from .errors import Checked, History, InvalidParameter, finite, read_history
+from .loading import ALWAYS_FULL, factor_of
+from .mass import RigidBodies
+from .model import Model
+from .places import twice
+from .structure import Structure
+
+#: Instants nearer than this part of the motion are the same.
+SAME = 1e-12
+ALWAYS = (0.0, math.inf)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivenRotation(Checked):
+    """The rotation of a body prescribed as an angle times the change of a history, from the current rotation.
+
+    A body that is re-clamped loses the velocity that the drive does not have.
+
+    Parameters
+    ----------
+    body : str, default None
+        None: the only one.
+    angle : float, rad
+    history : pairs of s and 1, default ((0, 1),)
+        Times and factors of the angle.
+    held : (2,) s, default (0, inf)
+        Begin and end of the drive.
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its domain.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
+
+    Examples
+    --------
+    >>> DrivenRotation(angle=0.1, history=((0.0, 1.0), (0.01, 0.0)), held=(0.0, 0.02)).angle
+    0.1
+    """
+
+    body: str | None = None
+    angle: Annotated[float, finite, "rad"]
+    history: Annotated[History, read_history] = ALWAYS_FULL
+    held: tuple[float, float] = ALWAYS
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        begin, end = self.held
+        if not begin < end:
+            raise InvalidParameter("held", self.held, "two instants, the first before the second [s]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """Equal steps [s] of a motion from an instant on [s]; `kept`: a sample is at their end."""
+
+    time: float
+    step: float
+    steps: int
+    kept: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """A part of a motion, `begin` to `end` [s], on which all drives go at constant rates.
+
+    Attributes:
+        rates: of coordinate k of body b, under 3 b + k [m/s, rad/s].
+        begins: whether a drive takes hold at its beginning.
+    """
+
+    begin: float
+    end: float
+    rates: Mapping[int, float]
+    begins: bool
+
+    @property
+    def led(self) -> tuple[int, ...]:
+        """The bodies whose centres are led."""
+        return tuple(sorted({at // 3 for at in self.rates if at % 3 < 2}))
+
+    def held(self, structure: Structure) -> Flags:
+        """Return which coordinates of a structure are led (size,)."""
+        return structure.flags([structure.first_body + at for at in self.rates])
+
+    def caught(self, structure: Structure, bodies: RigidBodies, y: Array, v: Array) -> Array:
+        """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
+
+        The mass of a body is off the point that is led: an impulse there turns it.
+        """
+        after = v.copy()
+        for at, rate in self.rates.items():
+            after[structure.first_body + at] = rate
+        for body in self.led:
+            place, inertia = structure.body_slice(body), bodies.moment_of_inertia[body]
+            if 3 * body + 2 not in self.rates and inertia > 0.0:
+                arm = rotation_matrix(y[place][2]) @ (bodies.centre[body] - structure.points[body])
+                change = (after - v)[place]
+                lever = arm[0] * change[1] - arm[1] * change[0]
+                free = [k for k in (0, 1) if 3 * body + k not in self.rates]
+                for k in free:  # what is led one way is turned, and thereby moved the other way
+                    inertia -= bodies.mass[body] * arm[1 - k] ** 2
+                turn = -bodies.mass[body] * lever / inertia
+                after[place.stop - 1] += turn
+                for k in free:
+                    after[place.start + k] += (arm[1], -arm[0])[k] * turn
+        return after
+
+    def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[Piece]:
+        """Yield the pieces of a motion whose samples are `chunks` of steps [s] apart.
+
+        Chunks within which a span begins or ends are cut there, in whole steps of their own.
+        """
+        close, done = SAME * step * sum(chunks), 0
+        for many in chunks:
+            low, high = step * done, step * (done + many)
+            done += many
+            begin, end = max(low, self.begin), min(high, self.end)
+            if end - begin >= high - low - close:
+                yield Piece(time=low, step=step, steps=many, kept=True)
+            elif end - begin > close:
+                steps = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
+                kept = end >= high - close
+                yield Piece(time=begin, step=(end - begin) / steps, steps=steps, kept=kept)
+
+
+def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
+    """Return the spans of a motion, in order: one where nothing is led."""
+    drives: list[tuple[int, float, History, tuple[float, float]]] = []
+    if drive is not None:
+        turn = 3 * model.body_index(drive.body) + 2
+        drives.append((turn, drive.angle, drive.history, drive.held))
+    for at, (end, history) in model.prescribed(None).items():
+        if history is not None:
+            if drives and at == drives[0][0]:
+                raise twice(model.body_names, at)
+            drives.append((at, end, history, ALWAYS))
+    times = {duration}
+    for _, _, history, held in drives:
+        times |= {*held, *(time for time, _ in history)}
+    instants = [0.0]
+    for time in sorted(times):
+        if instants[-1] + SAME * duration < time <= duration:
+            instants.append(time)
+    spans: list[Span] = []
+    for begin, end in pairwise([*instants[:-1], duration]):
+        rates = {
+            at: (factor_of(history, end) - factor_of(history, begin)) / (end - begin) * target
+            for at, target, history, held in drives
+            if held[0] < 0.5 * (begin + end) < held[1]
+        }
+        before = spans[-1].rates if spans else {}
+        spans.append(Span(begin=begin, end=end, rates=rates, begins=bool(rates.keys() - before.keys())))
+    return spans
