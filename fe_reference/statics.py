@@ -141,7 +141,19 @@ def settled_state(
     if starts and led is not None:
         model = replace(model, effects=model.effects.changed("driven_displacement", led.at(0.0)))
     solution = _solved(model, body, ends, increments, None, starts=starts).checked()
-    return solution.states[-1], solution.message
+    return solution.states[-1], _passed(solution)
+
+
+def _passed(solution: StaticSolution) -> str:
+    """Return the critical points that a path passes before a motion starts at its end, in words."""
+    told = []
+    for point in solution.critical_points:
+        told.append(f"{point.kind} at load factor {point.load_factor:.3g}")
+        if np.isfinite(point.rotation) and point.rotation:
+            told[-1] += f" ({np.degrees(point.rotation):.3g} deg)"
+    if solution.inertia[-1]:
+        told.append("the start is unstable while it is held")
+    return "; ".join(told)
 
 
 def _solved(
