@@ -201,7 +201,19 @@ def settled_state(
     if not rotation and load is None and not _moving(led) and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
     solution = _solved(model, body, ends, increments, None, starts=starts).checked()
-    return solution.states[-1], solution.message
+    return solution.states[-1], _passed(solution)
+
+
+def _passed(solution: StaticSolution) -> str:
+    """Return the critical points that a path passes before a motion starts at its end, in words."""
+    told = []
+    for point in solution.critical_points:
+        told.append(f"{point.kind} at load factor {point.load_factor:.3g}")
+        if np.isfinite(point.rotation) and point.rotation:
+            told[-1] += f" ({np.degrees(point.rotation):.3g} deg)"
+    if solution.inertia[-1]:
+        told.append("the start is unstable while it is held")
+    return "; ".join(told)
 
 
 def _solved(

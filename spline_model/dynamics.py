@@ -32,6 +32,7 @@ from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
 from spline_model.solution import Later, Status
+from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle
 
 Array = NDArray[np.float64]
@@ -203,8 +204,8 @@ def _followed(mechanism: Mechanism, start: float | None, asked: _Asked) -> Traje
     """The motion; where control points are left open and it stops, with more of them, or the longest one."""
     found: list[Trajectory] = []
     laps = Laps()
-    for chosen, held in _settled(mechanism, start, asked.body):
-        found.append(_moved(chosen, held, asked, laps))
+    for chosen, path in _settled(mechanism, start, asked.body):
+        found.append(_moved(chosen, path, asked, laps))
         if found[-1].status is Status.CONVERGED:
             return found[-1]
         if found[-1].control_points >= MOST_IN_MOTION:
@@ -214,14 +215,18 @@ def _followed(mechanism: Mechanism, start: float | None, asked: _Asked) -> Traje
 
 
 def _moved(
-    mechanism: Mechanism, held: Later | None, asked: _Asked, laps: Laps, after: Trajectory | None = None
+    mechanism: Mechanism,
+    path: StaticSolution | None,
+    asked: _Asked,
+    laps: Laps,
+    after: Trajectory | None = None,
 ) -> Trajectory:
-    """The motion with given control points, from where it is held or after another one."""
+    """The motion with given control points, from the end of a path or after another motion."""
     laps.lap("start")
     scene, drive, integrator = mechanism.released(), asked.drive, asked.integrator
     motion = set_in_motion(compile_scene(scene if drive is None else scene.with_effects(drive)))
     laps.lap("compile")
-    begun = _begin(motion, held, after)
+    begun = _begin(motion, path.unknowns if path else None, after)
     laps.lap("start")
     if integrator != "leapfrog":
         motion.require_material()
@@ -245,6 +250,7 @@ def _moved(
             "slide_stiffness": mechanism.design.discretisation.slide,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
+        way=_way_to_start(path) if path else "",
         still=partial(starts_still, begun, mechanism.design),
         laps=laps,
     )
@@ -284,8 +290,21 @@ def checked(
     return with_companion(task, trajectory)
 
 
-def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[tuple[Mechanism, Later]]:
-    """The mechanism as it swings, and the states of ``settle`` at whose end it starts.
+def _way_to_start(path: StaticSolution) -> str:
+    """A remark on the critical points that a path passes before a motion starts at its end."""
+    turns = [f" ({math.degrees(p.rotation):.3g} deg)" if p.rotation else "" for p in path.critical_points]
+    told = [
+        f"{point.kind} at load factor {point.load_factor:.3g}{turn if path.driven else ''}"
+        for point, turn in zip(path.critical_points, turns, strict=True)
+    ]
+    told += ["the start is unstable while it is held"] if path.inertia[-1] > 0 else []
+    return f"the way to the start: {'; '.join(told)}" if told else ""
+
+
+def _settled(
+    mechanism: Mechanism, start: float | None, body: str
+) -> Iterator[tuple[Mechanism, StaticSolution]]:
+    """The mechanism as it swings, and the path of ``settle`` at whose end it starts.
 
     Where its control points are left open more of them follow, and segments where none of them is enough.
     ConvergenceError if statics reaches the start with none of them.
@@ -300,14 +319,14 @@ def _settled(mechanism: Mechanism, start: float | None, body: str) -> Iterator[t
             return
         chosen = mechanism.on(segments, points).in_motion()
         try:
-            held = settle(chosen.at_start(), start, body=body, starts=True).unknowns
+            path = settle(chosen.at_start(), start, body=body, starts=True)
         except ConvergenceError as error:
             if not error.solution.settled:  # a property of the design
                 raise
             failed = failed or error
             continue
         reached = True
-        yield chosen, held
+        yield chosen, path
     if failed is not None and not reached:
         raise failed
 

@@ -138,7 +138,8 @@ class Trajectory(Tabulated):
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
     whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
     the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
-    found; effects: names of the scene's effects; counters: steps, halved_steps, newton_iterations, ...;
+    found; way: critical points that statics passed before the start; effects: names of the scene's effects;
+    counters: steps, halved_steps, newton_iterations, ...;
     seconds: by part (``newton.Laps``), "start" the static state that is released; estimate: of the error,
     where an accuracy was asked for;
     rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad], and of the
@@ -167,6 +168,7 @@ class Trajectory(Tabulated):
     rotation_error: float = math.nan
     displacement_error: float = math.nan
     checked: str = ""
+    way: str = ""
 
     @property
     def states(self) -> Array:
@@ -186,7 +188,7 @@ class Trajectory(Tabulated):
     @cached_property
     def resolution(self) -> str:
         """Empty, or what step and control points leave unresolved."""
-        return "; ".join(remark for remark in (self.unresolved(), self.checked) if remark)
+        return "; ".join(remark for remark in (self.unresolved(), self.way, self.checked) if remark)
 
     @cached_property
     def starts_still(self) -> bool:
@@ -256,6 +258,7 @@ class Trajectory(Tabulated):
         unresolved: Callable[[], str],
         still: Callable[[], bool],
         laps: Laps,
+        way: str = "",
     ) -> Trajectory:
         """The trajectory of a run; a run that says why it stopped has not converged."""
         rows = run.rows
@@ -276,6 +279,7 @@ class Trajectory(Tabulated):
             whole=run.whole,
             unresolved=unresolved,
             still=still,
+            way=way,
             effects=effects,
             counters=run.counters,
             settings={"segments": segments, "control_points": points} | settings,

@@ -106,7 +106,7 @@ def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
     from spline_model.strip.laws import curl_factors
 
     square = np.asarray(poisson_ratio, dtype=float) ** 2
-    return curl_factors(np.nan_to_num(ratio), square, np.sqrt(3.0 * (1.0 - square)))[1]
+    return curl_factors(np.nan_to_num(ratio), square[..., None], np.sqrt(3.0 * (1.0 - square)))[1]
 
 
 @cache

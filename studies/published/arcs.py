@@ -18,7 +18,6 @@ from fe_reference.control import Control, equilibrate
 from fe_reference.loads import full_load
 from fe_reference.model import Model
 from fe_reference.path import Path, follow
-from fe_reference.places import prescribed
 from fe_reference.response import respond
 from fe_reference.structure import Structure, structure_of
 from studies.answers.models import put
@@ -128,7 +127,7 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
 def _led(model: Model, frame: Frame) -> Control:
     """Return the control of a frame: its supports, its load or the displacement of its body growing."""
     structure, ends = structure_of(model), {}
-    for at, (end, _) in prescribed(model, model.body_index(frame.body)).items():
+    for at, (end, _) in model.prescribed(model.body_index(frame.body)).items():
         ends[structure.body_slice(at // 3).start + at % 3] = end
     held = np.array(sorted(ends), dtype=np.int64)
     values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])

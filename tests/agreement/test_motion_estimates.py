@@ -1,6 +1,7 @@
 """The estimated error of a motion is never below half of the true one, in every coordinate of both models."""
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from studies.cases.design import Design
 from studies.commands.arguments import read_design
 from studies.commands.release import _usual
 from tests.agreement.random_scenes import KINDS, scene
+from tests.agreement.test_section_laws import YOUNGS_MODULUS, strips
+from tests.models import BOTH
 
 #: Instants at which motions are compared.
 INSTANTS = 60
@@ -122,3 +125,17 @@ def test_what_only_translates_has_an_error():
     motion = spline(design, 6, 200, 0.4)
     assert motion.rotation_error < 1e-9
     assert motion.displacement_error > 1e-9
+
+
+@BOTH
+def test_critical_points_on_the_way_to_the_start_are_remarked_on(models):
+    """A column that is pressed beyond what it bears before it is turned: both models say so in a motion."""
+    rigidity = YOUNGS_MODULUS * 0.1 * 0.01**3 / 12.0
+    load = {"applied_force": {"force": (-12.0 * rigidity, 0.0)}}
+    column = strips(models, 0.1, 0.01, effects=tuple(load), parameters=load)
+    motion = models.solve_motion(column, start=math.radians(3.0), duration=1e-4, check=False)
+    euler = math.pi**2 / 12.0  # free at its tip, and held against turning
+    told = r"the way to the start: limit point at load factor (\S+); bifurcation at load factor (\S+);"
+    factors = [float(each) for each in re.search(told, motion.resolution).groups()]
+    assert factors == pytest.approx([0.25 * euler, euler], rel=3e-3)  # of three digits
+    assert "the start is unstable while it is held" in motion.resolution
