@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -20,19 +20,19 @@ from spline_model.effects import (
     Driven,
     MixedStretching,
     SectionRotaryInertia,
+    Spring,
     Stretching,
     StripDrag,
     StripInertia,
 )
 from spline_model.effects.base import Constraint
-from spline_model.effects.boundary import FOLLOWER
 from spline_model.errors import InvalidParameter
-from spline_model.followers import Followers
-from spline_model.frames import Frames
+from spline_model.followers import NO_FOLLOWERS, Followers
+from spline_model.frames import NO_FRAMES, Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, between_bodies, weight
+from spline_model.tables import NO_SPRINGS, ClampTable, DriveTable, LoadTable, Tables, between_bodies, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -73,19 +73,20 @@ class System:
         return self._table("drives", DriveTable.of)
 
     @cached_property
-    def acting(self) -> LoadTable:
-        """Loads that grow, one row a component."""
-        return self._table("acting", LoadTable.of)
-
-    @cached_property
     def loads(self) -> LoadTable:
-        """Those that have a potential."""
-        return self.acting.rows(self.acting.turns != FOLLOWER)
+        """Loads that grow and have a potential, one row a component."""
+        return self._table("loads", LoadTable.of)
 
-    @cached_property
+    @property
+    def acting(self) -> LoadTable:
+        """All loads that grow."""
+        return self._table("acting", LoadTable.of_all) if self.scene.followers else self.loads
+
+    @property
     def followers(self) -> Followers:
         """Forces that turn with bodies, growing and steady."""
-        return Followers.of(self.scene, self.acting)
+        made: Followers = self.once("followers", Followers.of) if self.scene.followers else NO_FOLLOWERS
+        return made
 
     @property
     def has_potential(self) -> bool:
@@ -99,17 +100,19 @@ class System:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
         return self._table("weight", weight)
 
-    @cached_property
+    @property
     def springs(self) -> Array:
         """Stiffness of springs over all poses (3 B, 3 B) [N/m, N, N m]; empty where there are none."""
-        return self._table("springs", partial(between_bodies, name="stiffness"))
+        made: Array = self.once("springs", _stiffness) if self.scene.of(Spring) else NO_SPRINGS
+        return made
 
-    @cached_property
+    @property
     def frames(self) -> Frames:
         """Frames that bodies carry."""
-        return self._table("frames", Frames.of)
+        made: Frames = self.once("frames", Frames.of) if self.scene.of(Carried) else NO_FRAMES
+        return made
 
-    @cached_property
+    @property
     def prescribed(self) -> NDArray[np.int64]:
         """Rows of the drives that hold coordinates of bodies, without props and frames."""
         own = self.layout.poses.start + 3 * len(self.scene.own_bodies)
@@ -216,6 +219,10 @@ class System:
         for body in self.scene.bodies:
             rest[self.layout.body(body.name)][:2] = body.centre
         return rest
+
+
+def _stiffness(system: System) -> Array:
+    return between_bodies(system.scene, "stiffness")
 
 
 def compile_scene(scene: Scene) -> System:

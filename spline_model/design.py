@@ -18,7 +18,6 @@ from spline_model.effects.elastic import Taper
 from spline_model.errors import (
     InvalidParameter,
     is_finite,
-    require_choice,
     require_finite,
     require_not_negative,
     require_positive,
@@ -96,8 +95,9 @@ class StripDesign:
     tip_joint: str = CLAMP
 
     def __post_init__(self) -> None:
-        for name in ("root_joint", "tip_joint"):
-            require_choice(f"{name} of {self.name}", getattr(self, name), JOINTS)
+        for name, joint in (("root_joint", self.root_joint), ("tip_joint", self.tip_joint)):
+            if joint not in JOINTS:
+                raise InvalidParameter(f"{name} of {self.name}", joint, " or ".join(JOINTS))
         if self.tip is None and self.tip_joint != CLAMP:
             raise InvalidParameter(f"tip_joint of {self.name}", self.tip_joint, "clamp of a free end")
         sides = (self.width, self.thickness, self.width_end, self.thickness_end)

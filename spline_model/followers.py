@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import AppliedForce
 from spline_model.effects.boundary import FOLLOWER
-from spline_model.scene import Scene
-from spline_model.tables import LoadTable
+
+if TYPE_CHECKING:
+    from spline_model.compile import System
 
 Array = NDArray[np.float64]
 
@@ -27,8 +28,9 @@ class Followers(NamedTuple):
     steady: Array
 
     @classmethod
-    def of(cls, scene: Scene, loads: LoadTable) -> Self:
-        """Those among all loads that grow and of the steady ones of a scene [N]."""
+    def of(cls, system: System) -> Self:
+        """Those of a system, among its unknowns [N]."""
+        scene, loads = system.scene, system.acting
         own = loads.rows(loads.turns == FOLLOWER)
         full = [each for each in scene.of(AppliedForce) if each.follower and each.steady]
         places = [*own.coordinate[::2], *(scene.layout.bodies[each.body] for each in full)]
@@ -55,3 +57,11 @@ class Followers(NamedTuple):
         for k, part in enumerate(self._replace(steady=0.0 * self.steady).turned(z, 1.0).T):
             np.add.at(found, self.place + k, part)
         return found
+
+    def among(self, begin: int, force: float) -> Followers:
+        """The same over a force, among coordinates that begin with the poses at ``begin``."""
+        given = self.place - begin, self.growing / force, self.steady / force
+        return Followers(*given) if self.place.size else self
+
+
+NO_FOLLOWERS = Followers(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import Carried
 from spline_model.effects.base import Constraint
-from spline_model.scene import Scene
+
+if TYPE_CHECKING:
+    from spline_model.compile import System
 
 Array = NDArray[np.float64]
 
@@ -25,9 +27,9 @@ class Frames(NamedTuple):
     lever: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> Self:
-        """Those of a scene, among its unknowns [m]."""
-        layout, places, levers = scene.layout, [], []
+    def of(cls, system: System) -> Self:
+        """Those of a system, among its unknowns [m]."""
+        scene, layout, places, levers = system.scene, system.layout, [], []
         for each, (row, _) in zip(scene.of(Constraint), layout.multipliers, strict=True):
             if isinstance(each, Carried):
                 places.append((layout.bodies[each.body], layout.bodies[each.by], row))
@@ -75,3 +77,10 @@ class Frames(NamedTuple):
     def rows(self) -> NDArray[np.int64]:
         """Places of their multipliers (2 C,)."""
         return (self.place[:, 2:] + np.arange(2)).ravel()
+
+    def among(self, begin: int, length: float) -> Frames:
+        """The same over a length, among coordinates that begin with the poses at ``begin``."""
+        return Frames(self.place - begin, self.lever / length) if self.place.size else self
+
+
+NO_FRAMES = Frames(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 2)))

@@ -230,15 +230,15 @@ def _joined(
     strip: StripDesign, whole: StripDesign, end: Literal["start", "end"], frames: dict[str, Body]
 ) -> list[Clamp]:
     """The clamp of an end of a piece of a whole strip, if it has one; a hinge's frame joins the frames."""
-    at_root: tuple[str, str | None, str, tuple[float, float]]
-    at_root = "root", strip.root, strip.root_joint, strip.start
-    word, to, joint, place = at_root if end == "start" else ("tip", strip.tip, strip.tip_joint, strip.end)
+    root = end == "start"
+    to, joint = (strip.root, strip.root_joint) if root else (strip.tip, strip.tip_joint)
+    if to is not None and joint != HINGE:
+        return [Clamp(strip=strip.name, end=end, to=to)]
+    word, place = ("root", strip.start) if root else ("tip", strip.end)
     frame = f"{word} of {whole.name}"
     if joint == HINGE:
         frames[frame] = Body(name=frame, centre=np.array(place, dtype=float), joint=True, on=to)
         return [Clamp(strip=strip.name, end=end, to=frame)]
-    if to is not None:
-        return [Clamp(strip=strip.name, end=end, to=to)]
     return [Clamp(strip=strip.name, end=end, to=frame, free=True)] if frame in frames else []
 
 

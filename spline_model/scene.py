@@ -102,14 +102,20 @@ class Scene:
         if len(set(names)) != len(names) or GROUND in names:
             raise InvalidParameter("names", names, f"different names, none of them {GROUND!r}")
         strips, bodies = names[: len(self.strips)], names[len(self.strips) :]
+        driven: list[tuple[str, int]] = []
         for effect in self.effects:
-            for name, known in (("strip", strips), ("body", bodies), ("other", bodies)):
-                named = getattr(effect, name, None)
-                if named is not None and named not in known:
-                    raise InvalidParameter(name, named, f"one of {known}")
-        driven = [(drive.body, axis) for drive in self.of(Driven) for axis in drive.parts]
-        if twice := [each for each in driven if driven.count(each) > 1]:
-            body, axis = twice[0]
+            strip, body = getattr(effect, "strip", None), getattr(effect, "body", None)
+            if strip is not None and strip not in strips:
+                raise InvalidParameter("strip", strip, f"one of {strips}")
+            if body is None:
+                continue
+            for name in (body, getattr(effect, "other", None)):
+                if name is not None and name not in bodies:
+                    raise InvalidParameter("body", name, f"one of {bodies}")
+            if isinstance(effect, Driven):
+                driven += [(body, axis) for axis in effect.parts]
+        if len(set(driven)) < len(driven):
+            body, axis = next(each for each in driven if driven.count(each) > 1)
             expected = "one drive, support or rotation of the path for each coordinate of a body"
             raise InvalidParameter(f"{AXES[axis]} of {body}", "two", expected)
 
@@ -166,10 +172,18 @@ class Scene:
         return total
 
     @property
+    def followers(self) -> bool:
+        """Whether a load turns with its body."""
+        loads = self.of(Load)
+        return bool(loads) and any(getattr(load, "follower", False) for load in loads)
+
+    @property
     def turned(self) -> DrivenRotation | None:
         """The rotation that a path drives, if there is one."""
-        turns = self.of(DrivenRotation)
-        return next((each for each in turns if not (each.prop or each.beside)), None)
+        for each in self.of(DrivenRotation):
+            if not (each.prop or each.beside):
+                return each
+        return None
 
     @property
     def driven_row(self) -> int | None:

@@ -74,7 +74,8 @@ class StaticSolution(Tabulated, Path):
         if scene.turned:
             points = (replace(point, load_factor=abs(point.load_factor)) for point in path.critical_points)
             known |= {"load_factor": np.abs(path.load_factor), "critical_points": tuple(points)}
-        known["reactions"] = path.reactions[:, system.prescribed]
+        if len(system.drives.row) != (scene.turned is not None):
+            known["reactions"] = path.reactions[:, system.prescribed]
         return cls(
             **known,
             system=system,

@@ -126,9 +126,16 @@ class LoadTable(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene) -> LoadTable:
-        """Forces and moments on bodies that grow, one row a component."""
+        """Dead forces and moments on bodies that grow, one row a component."""
         growing = [load for load in scene.of(Sized) if not load.steady]
+        if scene.followers:
+            growing = [load for load in growing if not getattr(load, "follower", False)]
         return _table_of_loads(scene, growing) if growing else NO_LOADS
+
+    @classmethod
+    def of_all(cls, scene: Scene) -> LoadTable:
+        """The same with followers."""
+        return _table_of_loads(scene, [load for load in scene.of(Sized) if not load.steady])
 
     def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
         """Some of the rows."""
@@ -194,12 +201,15 @@ def weight(scene: Scene) -> Array:
     return force
 
 
+NO_SPRINGS = np.zeros((0, 0))
+
+
 def between_bodies(scene: Scene, name: str) -> Array:
     """Matrix over the poses of all bodies (3 B, 3 B) of what springs have by that name, stiffness or damping;
     (0, 0) where none has any."""
     springs = [spring for spring in scene.of(Spring) if any(getattr(spring, name))]
     if not springs:
-        return np.zeros((0, 0))
+        return NO_SPRINGS
     matrix, begin = np.zeros((3 * len(scene.bodies), 3 * len(scene.bodies))), scene.layout.poses.start
     for spring in springs:
         ends = [scene.layout.body(each) for each in (spring.body, spring.other) if each is not None]

@@ -13,7 +13,7 @@ from spline_model.bordered import assemble, evaluate
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import factor_at
+from spline_model.effects.boundary import FOLLOWER, factor_at
 from spline_model.errors import InvalidParameter
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
@@ -194,7 +194,10 @@ class Motion:
         """The system with the loads that act at the instant 0 of the motion's clock, at load factor 1."""
         loads = self.loads
         parts = [factor_of(f, 0.0, loads) for f in range(len(loads.first))]
-        return self.system.with_tables(acting=loads._replace(value=loads.value * parts) if parts else loads)
+        if not parts:
+            return self.system
+        loads = loads._replace(value=loads.value * parts)
+        return self.system.with_tables(acting=loads, loads=loads.rows(loads.turns != FOLLOWER))
 
     def require_material(self) -> None:
         """Refuse another measure than the material one, which only the leapfrog integrates."""

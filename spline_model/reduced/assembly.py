@@ -95,13 +95,28 @@ def begin(y, load, bodies, space):
         force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
     for i in range(bodies.rest.size):
         out[DEAD] -= bodies.weight[i] * y[i]
+    if bodies.springs.size > 0:
+        _add_springs(y, bodies, space)
+
+
+@called()
+def _add_springs(y, bodies, space):
+    """Add what springs do to the bodies, and their energy."""
     for i in range(bodies.springs.shape[0]):
         pull = 0.0 * y[i]
         for j in range(bodies.springs.shape[0]):
             pull += bodies.springs[i, j] * (y[j] - bodies.rest[j])
-        out[DEAD] += 0.5 * pull * (y[i] - bodies.rest[i])
-        force[i] += pull
-        raw[i] += pull
+        space.out[DEAD] += 0.5 * pull * (y[i] - bodies.rest[i])
+        space.vectors[FORCE, i] += pull
+        space.vectors[RAW, i] += pull
+
+
+@called()
+def _stiffen(bodies, space):
+    """Begin the tangent with that of springs."""
+    for i in range(bodies.springs.shape[0]):
+        for j in range(i, bodies.springs.shape[0]):
+            space.tangent[i, j] = bodies.springs[i, j]
 
 
 @part()
@@ -132,9 +147,8 @@ def assemble(y, load, arrays):
     for i in range(bodies.load.size):
         for j in range(i, bodies.load.size):
             space.tangent[i, j] = 0.0
-    for i in range(bodies.springs.shape[0]):
-        for j in range(i, bodies.springs.shape[0]):
-            space.tangent[i, j] = bodies.springs[i, j]
+    if bodies.springs.size > 0:
+        _stiffen(bodies, space)
     norm, space.out[NEGATIVE] = 0.0, 0.0
     begin(y, load, bodies, space)
     for s in range(strips.roots.size):

@@ -92,9 +92,11 @@ class Elements(Followed):
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        size, place = model.size + len(model.bodies.held), model.frames.place.copy()
-        place[:, 2] = size + 2 * np.arange(len(place))
-        size += model.frames.lever.size
+        size, frames = model.size + len(model.bodies.held), model.frames
+        if frames.place.size:
+            place = frames.place.copy()
+            place[:, 2] = size + 2 * np.arange(len(place))
+            size, frames = size + 2 * len(place), frames._replace(place=place)
         return cls(
             system=system,
             gradient=np.empty(size),
@@ -102,7 +104,7 @@ class Elements(Followed):
             model=model,
             arrays=model.arrays(),
             out=np.zeros(5),
-            frames=model.frames._replace(place=place),
+            frames=frames,
         )
 
     @property
@@ -115,7 +117,7 @@ class Elements(Followed):
         """Forces that turn with bodies, among these unknowns."""
         return self.model.followers
 
-    @cached_property
+    @property
     def held(self) -> slice:
         """Places of the drives' reactions."""
         return slice(self.model.size, self.model.size + len(self.model.bodies.held))
@@ -261,8 +263,9 @@ class Elements(Followed):
         """The scene's unknowns at z (N,) or (S, N)."""
         states = np.atleast_2d(z)
         found = unknowns_of(self.model, self.y(states), states[:, self.held])
-        force = self.model.energy / self.model.length
-        found[:, self.system.frames.rows] = states[:, self.frames.rows] * force
+        if self.frames.place.size:
+            force = self.model.energy / self.model.length
+            found[:, self.system.frames.rows] = states[:, self.frames.rows] * force
         return found.reshape(*z.shape[:-1], -1)
 
     def moved(self, z: Array, direction: Array) -> Array:

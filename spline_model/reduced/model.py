@@ -52,19 +52,15 @@ class Reduced:
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
 
-    @cached_property
+    @property
     def frames(self) -> Frames:
         """Frames that bodies carry, among y; their multipliers are none of it."""
-        frames = self.system.frames
-        return Frames(frames.place - self.system.layout.poses.start, frames.lever / self.length)
+        return self.system.frames.among(self.system.layout.poses.start, self.length)
 
-    @cached_property
+    @property
     def followers(self) -> Followers:
         """Forces that turn with bodies, at places in y."""
-        given, unit = self.system.followers, self.length / self.energy
-        return Followers(
-            given.place - self.system.layout.poses.start, given.growing * unit, given.steady * unit
-        )
+        return self.system.followers.among(self.system.layout.poses.start, self.energy / self.length)
 
     @cached_property
     def drive_length(self) -> Array:
@@ -180,18 +176,20 @@ def _bodies_of(system: System, outer: int) -> Bodies:
             if (strip.name, end) not in scene.clamps:
                 rest += [*(strip.control_points[at] / length), 0.0]
     load, weight = np.zeros(len(rest) + outer), np.zeros(len(rest) + outer)
-    np.add.at(load, loads.coordinate - begin, loads.value)
+    if loads.value.size:
+        np.add.at(load, loads.coordinate - begin, loads.value)
     if system.weight.size:
         weight[: layout.poses.stop - begin] = system.weight[layout.poses]
     for part in (load, weight):
         part[: len(rest)] /= force
         part[2 : len(rest) : 3] /= length
     held, rows = drives.coordinate - begin, drives.row.tolist()
+    driven = set(held.tolist())
     return Bodies(
         rest=np.array(rest),
         load=load,
         weight=weight,
-        free=np.setdiff1d(np.arange(len(rest) + outer), held),
+        free=np.array([i for i in range(len(load)) if i not in driven], dtype=np.int64),
         held=held,
         driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
         springs=in_units(system, system.springs),
@@ -200,6 +198,8 @@ def _bodies_of(system: System, outer: int) -> Bodies:
 
 def in_units(system: System, matrix: Array) -> Array:
     """A matrix over the poses of all bodies, or (0, 0), over units of work."""
+    if not matrix.size:
+        return matrix
     unit = np.tile(system.scales.pose, len(matrix) // 3)
     return np.asarray(matrix * (unit[:, None] * unit / system.scales.energy))
 
