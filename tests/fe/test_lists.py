@@ -254,16 +254,27 @@ def test_follower_column_does_not_buckle() -> None:
     path = followed(19.9, across=False)
     assert path.critical_points == () and not path.inertia.any() and path.message == ""
     refused(lambda: natural_frequencies(path.model, rotation=None), "follower: got True, expected dead loads")
+    # a pin bears what turns of it: such a column does buckle, at the dead load
+    loads = [
+        solve_mechanism(column("clamp", "clamp", 2.5, guided=("y",), follower=follows), check=False)
+        .critical_points[0]
+        .load_factor
+        for follows in (False, True)
+    ]
+    assert loads[0] == pytest.approx(2.0457 / 2.5, rel=1e-2) and loads[1] == pytest.approx(loads[0], rel=1e-6)
 
 
-def column(root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation")) -> Model:
+def column(
+    root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation"), follower: bool = False
+) -> Model:
     """Return a column between joints, the upper one guided, under a load in pi^2 EI/L^2."""
     strip = StripDesign(
         name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="head", root_joint=root, tip_joint=tip, **SECTION
     )
     force = (-load * np.pi**2 * strip.flexural_rigidity / 0.1**2, 0.0)
     head = BodyDesign(name="head", centre=(0.1, 0.0), mass=0.01, moment_of_inertia=1e-6)
-    given = {"applied_force": {"force": force}, "support": {"body": "head", "fixed": guided}}
+    pull, pin = {"force": force, "follower": follower}, {"body": "head", "fixed": guided}
+    given = {"applied_force": pull, "support": pin}
     return compliant_mechanism(strips=[strip], bodies=[head], **scene(DEFAULT_EFFECTS, **given))
 
 
