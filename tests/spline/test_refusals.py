@@ -231,7 +231,7 @@ ASKED = [
     (lambda: held(math.nan, 0.0, 0.0), "pose: got"),
     (lambda: held(0.0, math.inf, 0.0), "pose: got"),
     (lambda: HeldPivot(pivot()).turn(math.nan), "rotation: got nan"),
-    (lambda: HeldPivot(pivot(stretch="consistent")), "one body on strips"),
+    (lambda: HeldPivot(pivot(stretch="consistent")), "bodies on strips"),
     (lambda: derived(("depth",)), "parameters: got 'depth', expected one of length, "),
     (lambda: derived(("length", "length")), "['length', 'length'], expected at least one name, each once"),
     (lambda: derived(()), "parameters: got [], expected at least one name, each once"),
