@@ -179,7 +179,7 @@ class Placing:
 
     Attributes:
         clamps: of the strips, both ends (S, 2, 2) [m]; ends (S, 2): the bodies there by number, -1 of the
-            ground; centres (B, 2) of the bodies [m]; body, centre: number and centre of the held one.
+            ground; centres (B, 2) of the bodies [m]; number, centre: of the held one.
         base: mean of the ground's clamps, ground: of marker 0 (2,) [m]; rest: pose (3,) of marker 1 in marker
             0's frame, as on the printed sheet or as it was taken.
     """
@@ -189,8 +189,8 @@ class Placing:
         self.names = [each.name for each in design.bodies]
         number: dict[str | None, int] = {GROUND: -1, **{name: k for k, name in enumerate(self.names)}}
         self.ends = np.array([(number[strip.root], number[strip.tip]) for strip in design.strips])
-        self.centres, self.body = np.array([each.centre for each in design.bodies]), number.get(body, 0)
-        self.centre, self.rest = self.centres[self.body], np.array(rest, dtype=float)
+        self.centres, self.number = np.array([each.centre for each in design.bodies]), number.get(body, 0)
+        self.centre, self.rest = self.centres[self.number], np.array(rest, dtype=float)
         self.base = self.clamps[self.ends < 0].mean(axis=0)
         self.ground = self.base - np.array([0.0, STANDOFF])
         self._crossing = np.array(design.crossing_point) if isinstance(design, Problem) else None
@@ -211,7 +211,7 @@ class Placing:
         """Return where a place (2,) of the body at rest is in its pose (3,)."""
         return np.asarray(body[:2] + turned(body[2], place - self.centre))
 
-    def held(self, marker: Array, near: float = 0.0) -> Array:
+    def body(self, marker: Array, near: float = 0.0) -> Array:
         """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
         from `near`."""
         angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
@@ -232,7 +232,7 @@ class Placing:
 
         def strangeness(pose: Array) -> float:
             """How far the body would be from any place that bending takes it to, over the rest distance."""
-            return math.dist(self.held(pose)[:2], self.centre) / math.hypot(*self.rest[:2])
+            return math.dist(self.body(pose)[:2], self.centre) / math.hypot(*self.rest[:2])
 
         other = np.array([*turned(-marker[2], -marker[:2]), -marker[2]])
         return strangeness(marker) > 0.8 and strangeness(other) < 0.5 * strangeness(marker)

@@ -115,7 +115,7 @@ class Session:
             self._warn(code)
         if self._tick(event) or self.paused:
             return
-        body = placing.held(marker, near=self.wanted[2])
+        body = placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - placing.centre), body[2]])
         if placing.looks_swapped(marker):
             self._warn("swapped")

@@ -191,7 +191,7 @@ def shown(session: Any) -> dict[str, Any]:
             "ends": placing.ends,
             "centres": placing.centres,
             "bodies": placing.names,
-            "body": placing.body,
+            "body": placing.number,
             "depth": mechanics.strips.depth[:, 0],
             "length": mechanics.strips.length,
         },

@@ -253,7 +253,7 @@ ASKED = [
     (lambda: stepped(pose=np.array([0.0, np.nan, 0.0])), "pose: got nan"),
     (lambda: held(math.nan, 0.0, 0.0), "pose: got"),
     (lambda: HeldPivot(pivot()).turn(math.nan), "rotation: got nan"),
-    (lambda: HeldPivot(pivot(stretch="consistent")), "one body on strips"),
+    (lambda: HeldPivot(pivot(stretch="consistent")), "bodies on strips"),
     (lambda: derived(("depth",)), "parameters: got 'depth', expected one of length, "),
     (lambda: derived(()), "parameters: got [], expected at least one name, each once"),
     (lambda: derived(given=PRINTED), f"{UNSTEADY}: printed forces are of static paths alone"),
