@@ -1,5 +1,7 @@
 """Definitions that are lists: several loads, drives, supports and springs, against closed forms."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -22,6 +24,7 @@ from fe_reference import (
 )
 from tests.fe.cases import extrapolated
 from tests.fe.scenes import BARE, four_bar, free_cantilever
+from tests.gates import check, hold, refuse
 from tests.refusals import refused, scene
 from tests.table_one import SECTION
 
@@ -68,9 +71,15 @@ def half_beam(*fixed: str) -> Model:
 )
 def test_bistable_half_beam(fixed: tuple[str, ...], push: float, pop: float) -> None:
     """The force of a guided shuttle has the extrema that shooting finds; free to slide it is monotonic."""
-    path = solve_mechanism(half_beam(*fixed), increments=48, check=False)
-    force = 1e6 * path.reactions[:, path.prescribed.index(("shuttle", "y"))]
-    assert (force.min(), force.max()) == pytest.approx((push, pop), abs=2e-3)  # as its digits, and elements
+
+    def error(elements: int = 20) -> float:
+        path = solve_mechanism(replace(half_beam(*fixed), elements=elements), increments=48, check=False)
+        force = 1e6 * path.reactions[:, path.prescribed.index(("shuttle", "y"))]
+        return max(abs(force.min() - push), abs(force.max() - pop))
+
+    check("fe_half_beam", error())
+    if pop:  # a force that does not turn back hardly depends on the mesh
+        refuse("fe_half_beam", error)
 
 
 def test_reactions_balance_loads() -> None:
@@ -83,12 +92,12 @@ def test_reactions_balance_loads() -> None:
         },
         elements=4,
     )
-    path = solve_mechanism(model, increments=8)
+    path = solve_mechanism(model, increments=40)
     assert path.prescribed == (("rocker", "rotation"), ("coupler", "y"), ("crank", "x"))
     assert path.bodies["rocker"][-1, 2] == 0.2 and np.ptp(path.bodies["crank"][:, 0]) == 0.0
     forces = path.clamp_reactions[-1][model.ends == -1][:, :2].sum(axis=0) + path.reactions[-1, [2, 1]]
     assert np.abs(forces + np.array([300.0, -200.0])).max() < 1e-9 * np.abs(path.clamp_reactions[-1]).max()
-    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-5)  # by Hermite's rule
+    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
     same = solve_mechanism(four_bar({}, elements=4), body="rocker", rotation=0.2, increments=2)
     led = solve_mechanism(
         four_bar({"driven_rotation": {"body": "rocker", "angle": 0.2}}, elements=4), increments=2
@@ -168,13 +177,15 @@ def test_a_mass_on_a_spring(how: dict[str, Any], damping: float) -> None:
     led = {"body": "mass", "displacement": (3e-3, None)}
     model = on_springs(spring=SPRING | {"damping": (damping, 0.0)}, driven_displacement=led)
     motion = solve_motion(model, duration=0.045, samples=9, check=False, **how)
-    rate, time = damping / 0.4, motion.time
-    swift = np.sqrt(5000.0 - rate**2)
-    exact = 3e-3 * np.exp(-rate * time) * (np.cos(swift * time) + rate / swift * np.sin(swift * time))
-    assert (
-        np.abs(motion.bodies["mass"][:, 0] - 0.3 - exact).max() < 5e-5 * 3e-3
-    )  # of second order in the step
-    assert motion.energy_error < 5e-5
+    check("fe_drive_books", motion.energy_error)
+
+    def error(stiffness: float = 1000.0) -> float:
+        rate, time = damping / 0.4, motion.time
+        swift = np.sqrt(stiffness / 0.2 - rate**2)
+        exact = np.exp(-rate * time) * (np.cos(swift * time) + rate / swift * np.sin(swift * time))
+        return float(np.abs((motion.bodies["mass"][:, 0] - 0.3) / 3e-3 - exact).max())
+
+    hold("fe_oscillator", error)
 
 
 def pulled(centre: tuple[float, float], **force: Any) -> Model:
@@ -198,7 +209,7 @@ def test_a_force_at_a_point(follower: bool) -> None:
     turns = [1.0 / np.linalg.inv(each.body_stiffness()[-1])[2, 2] for each in (path, same)]
     driven = solve_mechanism(off, rotation=float(path.rotation[-1]), increments=5)
     assert turns[0] == pytest.approx(turns[1], rel=1e-9)
-    assert turns[0] == pytest.approx(driven.stiffness[-1], rel=1e-6)
+    assert turns[0] == pytest.approx(driven.stiffness[-1], rel=1e-8)
     assert abs(driven.torque[-1]) < 1e-9 * abs(driven.torque).max()
     for how in ({}, {"integrator": "generalised-alpha", "step": 2e-6}):
         motion = solve_motion(off, duration=2e-5, check=False, **how)
@@ -214,12 +225,16 @@ def test_a_pinned_body_is_a_pendulum() -> None:
     found = natural_frequencies(small, rotation=None, count=1).frequency[0]
     assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-9)
     half = 2.0 * ellipk(np.sin(1.0) ** 2) / rate
+    model = on_springs(support=pin, applied_force=pull, driven_rotation=led)
     for how in ({"step": 5e-6}, {"integrator": "generalised-alpha", "step": 5e-5}):
-        model = on_springs(support=pin, applied_force=pull, driven_rotation=led)
-        motion = solve_motion(model, duration=half, samples=5, check=False, **how)
-        assert motion.bodies["mass"][-1, 2] == pytest.approx(-2.0, rel=1e-5)
-        assert np.abs(motion.bodies["mass"][:, :2] - (0.3, 0.1)).max() == 0.0
-        assert motion.energy_error < 1e-5
+
+        def error(periods: float = 0.5, how: dict[str, Any] = how) -> float:
+            motion = solve_motion(model, duration=2.0 * periods * half, samples=5, check=False, **how)
+            check("fe_drive_books", motion.energy_error)
+            assert np.abs(motion.bodies["mass"][:, :2] - (0.3, 0.1)).max() == 0.0
+            return float(abs(motion.bodies["mass"][-1, 2] / 2.0 + 1.0))
+
+        hold("fe_pendulum", error)
 
 
 def followed(load: float, elements: int = 10, *, across: bool = True) -> StaticSolution:
@@ -233,9 +248,10 @@ def followed(load: float, elements: int = 10, *, across: bool = True) -> StaticS
 
 def test_follower_elastica() -> None:
     """A force that stays normal to the tip bends a cantilever as theta'' = p cos theta, from the tip on."""
-    for load in (2.0, 10.0):
+
+    def error(load: float, elements: Sequence[int] = (10, 20, 40)) -> float:
         ways = solve_ivp(
-            lambda _, z, p=load: (z[1], p * np.cos(z[0]), np.cos(z[0]), np.sin(z[0])),
+            lambda _, z: (z[1], load * np.cos(z[0]), np.cos(z[0]), np.sin(z[0])),
             (0.0, 1.0),
             [0.0] * 4,
             rtol=1e-10,
@@ -243,10 +259,13 @@ def test_follower_elastica() -> None:
         )
         turn, _, along, across = ways.y[:, -1]
         tip = np.array([[np.cos(turn), np.sin(turn)], [np.sin(turn), -np.cos(turn)]]) @ (along, across)
-        paths = [followed(load, elements) for elements in (10, 20, 40)]
-        x, y, angle = extrapolated([path.tips["strip"][-1] for path in paths])
-        assert (10.0 * x, 10.0 * y, angle) == pytest.approx((*tip, turn), abs=1e-5)  # it stretches
-        assert paths[0].work[-1] == pytest.approx(paths[0].strain_energy[-1], rel=1e-5)
+        x, y, angle = extrapolated([followed(load, n).tips["strip"][-1] for n in elements])
+        return float(np.abs(np.subtract((10.0 * x, 10.0 * y, angle), (*tip, turn))).max())
+
+    for load in (2.0, 10.0):
+        hold("fe_follower_elastica", partial(error, load))
+    path = followed(2.0)
+    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
 
 
 def test_follower_column_does_not_buckle() -> None:
@@ -261,7 +280,7 @@ def test_follower_column_does_not_buckle() -> None:
         .load_factor
         for follows in (False, True)
     ]
-    assert loads[0] == pytest.approx(2.0457 / 2.5, rel=1e-2) and loads[1] == pytest.approx(loads[0], rel=1e-6)
+    assert loads[1] == pytest.approx(loads[0], rel=1e-8)
 
 
 def column(
@@ -283,15 +302,21 @@ def column(
 )
 def test_hinged_columns(joints: tuple[str, str], load: float, root: float) -> None:
     """Columns on hinges buckle at their Euler loads, and vibrate at the roots of beams on hinges."""
-    path = solve_mechanism(column(*joints, 1.2 * load), check=False)
-    (point,) = path.critical_points
-    assert 1.2 * point.load_factor == pytest.approx(1.0, rel=1e-2)  # of second order in 20 elements
-    assert abs(path.bending_moment[:, 0, [k for k in (0, -1) if joints[k] == "hinge"]]).max() == 0.0
-    model = column(*joints, 0.0, guided=("x", "y", "rotation"))
-    strip = model.strips[0]
-    found = 2.0 * np.pi * natural_frequencies(model, rotation=None, count=1).frequency[0]
-    unit = np.sqrt(strip.flexural_rigidity / strip.linear_density) / 0.1**2
-    assert np.sqrt(found / unit) == pytest.approx(root, rel=2e-5)
+
+    def buckling(elements: int = 20) -> float:
+        path = solve_mechanism(replace(column(*joints, 1.2 * load), elements=elements), check=False)
+        assert abs(path.bending_moment[:, 0, [k for k in (0, -1) if joints[k] == "hinge"]]).max() == 0.0
+        return abs(1.2 * path.critical_points[0].load_factor - 1.0)
+
+    def vibration(elements: int = 20) -> float:
+        model = replace(column(*joints, 0.0, guided=("x", "y", "rotation")), elements=elements)
+        strip = model.strips[0]
+        found = 2.0 * np.pi * natural_frequencies(model, rotation=None, count=1).frequency[0]
+        unit = np.sqrt(strip.flexural_rigidity / strip.linear_density) / 0.1**2
+        return float(abs(np.sqrt(found / unit) / root - 1.0))
+
+    hold("fe_hinged_column", buckling)
+    hold("fe_hinged_beam", vibration)
 
 
 def test_a_hinged_strip_is_a_pendulum() -> None:
@@ -306,12 +331,12 @@ def test_a_hinged_strip_is_a_pendulum() -> None:
 
     rate = np.sqrt(1.5 * 9.81 / 0.1)
     found = natural_frequencies(hung(9.81, 0.0), rotation=None, count=1).frequency[0]
-    assert 2.0 * np.pi * found == pytest.approx(rate, rel=1e-4)
+    check("fe_hinged_beam", abs(2.0 * np.pi * found / rate - 1.0))
     half = 2.0 * ellipk(0.5) / rate
     for how in ({}, {"integrator": "generalised-alpha", "step": 2e-4}):
         swing = solve_motion(hung(0.0, -9.81), settled=False, duration=half, samples=4, check=False, **how)
-        assert swing.shape[-1, 0, -1] == pytest.approx((-0.1, 0.0), abs=5e-4)  # as the lumped masses
-        assert swing.energy_error < 1e-5
+        check("fe_pendulum", float(np.abs(swing.shape[-1, 0, -1] / 0.1 + (1.0, 0.0)).max()))
+        check("fe_drive_books", swing.energy_error)
 
 
 def test_hinges_leave_motions_free() -> None:
