@@ -6,11 +6,12 @@ from functools import partial
 import numpy as np
 import pytest
 
+from studies.answers.settings import FeSettings
 from studies.cases.design import Design
 from tests import gates
 from tests.agreement import loaded
 from tests.agreement.loaded import ROTATION
-from tests.agreement.test_loads_release import ELEMENTS, SPLINE, apart, released
+from tests.agreement.test_loads_release import ELEMENTS, SPLINE, STEP, apart, largest, places, released
 
 #: A rotation that is held and then let go, one that is led back and let go as it moves, and the centre led
 #: on. Corners are off the grid of steps.
@@ -62,3 +63,15 @@ def test_what_is_held_stays_and_the_books_close(name, settings):
         gates.refuse("drives_books", lambda **options: coarse(**options).energy_error)
     other = released(driven(name), SPLINE if settings is ELEMENTS else ELEMENTS)
     assert motion.dissipated[-1] == pytest.approx(other.dissipated[-1], rel=0.02, abs=1e-12)
+
+
+def schemes_apart(step: float = 0.4 * STEP) -> float:
+    """Return how far the motions of the implicit and the explicit scheme of the elements are apart."""
+    design, mesh = driven("held, led centre"), FeSettings(elements=4)
+    implicit = released(design, mesh, integrator="generalised-alpha", step=step)
+    return largest(places(implicit), places(released(design, mesh)))
+
+
+def test_both_schemes_of_the_elements_follow_the_same_drives():
+    """Requirement: the implicit integrator of the elements moves as the explicit one does."""
+    gates.hold("drives_schemes", schemes_apart)
