@@ -144,7 +144,7 @@ class Scratch(NamedTuple):
     and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
     along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
     condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms: of carried
-    frames, see ``spline_model.motion.step``; follow: values of followers.
+    frames, see ``spline_model.motion.bodies``; follow: values of followers.
     """
 
     dy: Annotated[Array, "Y"]

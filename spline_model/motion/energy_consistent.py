@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 
 from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
+from spline_model.motion.bodies import cayley, turned
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
-from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, cayley, load_at, newton, turned
+from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
 from spline_model.motion.strip import SHARE, SLOPE, keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
