@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
-from spline_model.effects.plate import curl_terms, rigidity_of
+from spline_model.effects.curl import curl_terms, rigidity_of
 from spline_model.errors import (
     InvalidParameter,
     require_choice,
@@ -130,7 +130,7 @@ class Bending(StrainEnergy):
     roots : length of the root at start and end over the strip's, 0 where there is none: a strip that is cut
         from the same block as its bodies turns in its roots as if it were longer, by 0.416 t at a sharp
         corner (half-plane in plane stress). Their compliance is a peak at the clamp, which is projected
-        along the strip (``spline_model.effects.plate``). Left out: what a root gives way along and across
+        along the strip (``spline_model.effects.curl``). Left out: what a root gives way along and across
         the strip. Source: O'Donnell, J Appl Mech 27 (1960) 461.
     gauss_points : Gauss points.
 

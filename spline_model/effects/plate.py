@@ -44,7 +44,6 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import gauss_legendre
-from spline_model.strip.laws import TERMS
 
 Array = NDArray[Any]
 
@@ -58,10 +57,6 @@ TOLERANCE = 1e-13
 """Of the two compliances, 1 / f; round-off is some 1e-15."""
 NARROWEST = 0.005
 """Width over length below which the profile is the same in widths."""
-ROOT_DEGREE = 4
-"""Of the polynomial that a root's compliance is projected on: within 3.5e-4 of springs up to 45 degrees."""
-LEAST = 0.25
-"""Part of the compliance without roots below which that with roots does not fall between their peaks."""
 STEP = 1e-40
 """Of derivatives by a complex step: its square is beyond any round-off."""
 
@@ -239,14 +234,14 @@ def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
 
 def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
     """1 / f_b and 1 / f_s of a profile."""
-    s, weight = _graded(ratio, (0.0, 1.0), 16)
+    s, weight = graded(ratio, (0.0, 1.0), 16)
     size, reach = np.exp(logs)
     c = _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
     return np.array([weight @ c, 12.0 * weight @ (c * (s - 0.5) ** 2)])
 
 
 @lru_cache(maxsize=256)
-def _graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
+def graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
     """Points and weights on a reach of [0, 1] that see layers of some 0.1 of the width at its ends."""
     layers = [min(0.5, part * ratio) for part in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)]
     edges = np.array([*reach, *layers, *(1.0 - part for part in layers)])
@@ -254,104 +249,3 @@ def _graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Arra
     nodes, weights = gauss_legendre(points)
     width = np.diff(edges)[:, None]
     return (edges[:-1, None] + width * (nodes + 1.0) / 2.0).ravel(), (width * weights / 2.0).ravel()
-
-
-def rigidity_of(
-    ratio: complex,
-    poisson_ratio: float,
-    degree: int,
-    u: Array,
-    reach: tuple[float, float] = (0.0, 1.0),
-    roots: tuple[complex, complex] = (0.0, 0.0),
-) -> Array:
-    """Return R / EI of a piece of a strip, as a curve of a degree follows it.
-
-    Parameters
-    ----------
-    ratio : width over length b/L; 0 where no clamp holds the section flat.
-    poisson_ratio : of the material.
-    degree : degree of the curve.
-    u : places along the piece (P,), 0 to 1.
-    reach : where the piece begins and ends, in parts of the strip's length.
-    roots : lengths of the roots at both ends over the strip's length. Their compliance stands there as delta
-        functions.
-
-    Returns
-    -------
-    R / EI at u (P,).
-
-    Notes
-    -----
-    The compliance EI / R is projected on polynomials. Their degree is one less than that of the curvature
-    under a linear moment, so that the strip can take its own curvature M EI / R and has both factors exactly,
-    however thin the layers are. With more control points the result tends to R. Roots are projected up to
-    ROOT_DEGREE, and as far as the compliance stays above LEAST of the compliance without them.
-    """
-    if not ratio and not any(roots):
-        return np.ones(len(u))
-    return _rigidity(ratio, poisson_ratio, degree, reach, roots, u.tobytes())
-
-
-@lru_cache(maxsize=256)
-def _rigidity(
-    ratio: complex,
-    poisson_ratio: float,
-    degree: int,
-    reach: tuple[float, float],
-    roots: tuple[complex, complex],
-    at: bytes,
-) -> Array:
-    most = max(2, degree - 3)
-    count, sign = 2.0 * np.arange(most + 1) + 1.0, (-1.0) ** np.arange(most + 1)
-    plate = count * (_projected(ratio, poisson_ratio, most, reach) if ratio else np.eye(1, most + 1)[0])
-    peaks = count * (roots[0] * sign + roots[1])
-    values, fine = (
-        legendre.legvander(2.0 * u - 1.0, most) for u in (np.frombuffer(at), np.linspace(0.0, 1.0, 65))
-    )
-    compliance = plate
-    for highest in range(min(most, ROOT_DEGREE), -1, -1):
-        compliance = plate + np.where(np.arange(most + 1) <= highest, peaks, 0.0)
-        if ((fine @ compliance).real >= LEAST * (fine @ plate).real).all():
-            break
-    rigidity = 1.0 / (values @ compliance)
-    rigidity.setflags(write=False)
-    return np.asarray(rigidity)
-
-
-def curl_terms(
-    ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
-) -> Array:
-    """Return what the curl takes of a plate's rigidity at u (P,) of a piece, as a curve follows it.
-
-    Coefficients (P, TERMS) of f, f^2, ..., with f the share of the curl that curvature leaves. They take
-    1 - (1 - nu^2) R / EI of clamps of a strip of width f b/L at TERMS values of f, which are Chebyshev's.
-    """
-    if not ratio:
-        return np.eye(1, TERMS)[np.zeros(len(u), dtype=int)] * poisson_ratio**2
-    return _curl_terms(ratio, poisson_ratio, degree, reach, u.tobytes())
-
-
-@lru_cache(maxsize=256)
-def _curl_terms(
-    ratio: complex, poisson_ratio: float, degree: int, reach: tuple[float, float], at: bytes
-) -> Array:
-    most, u = max(2, degree - 3), np.frombuffer(at)
-    filled = 0.5 * (1.0 - np.cos(np.pi * np.arange(TERMS) / (TERMS - 1)))
-    values = legendre.legvander(2.0 * u - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
-    taken = [np.full(len(u), poisson_ratio**2 + 0.0 * ratio)]
-    for part in filled[1:]:
-        stiffer = 1.0 / (values @ _projected(ratio, poisson_ratio, most, reach, part))
-        taken.append((1.0 - (1.0 - poisson_ratio**2) * stiffer) / part)
-    terms = np.linalg.solve(np.vander(filled, increasing=True), taken).T
-    terms.setflags(write=False)
-    return np.asarray(terms)
-
-
-def _projected(
-    ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float], filled: float = 1.0
-) -> Array:
-    """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials; filled: part f of the width."""
-    profile, (left, right) = profile_of(filled * ratio, poisson_ratio), reach
-    s, weight = _graded(filled * ratio.real, reach, 16 + most)
-    shares = weight * profile.compliance(s, filled) / (right - left)
-    return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

@@ -56,7 +56,7 @@ def fourth_order(function, y, i, step):
     return (8 * (function(y + e) - function(y - e)) - function(y + 2 * e) + function(y - 2 * e)) / (12 * step)
 
 
-def hessian_error(step=2e-4, **settings):
+def hessian_error(step=1e-4, **settings):
     """Largest error of a column of the Hessian, over the largest entry of that column."""
     operator = Operator(settings)
     hessian = operator.evaluate(operator.y)[2]
