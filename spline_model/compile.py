@@ -85,7 +85,7 @@ class System:
     @property
     def followers(self) -> Followers:
         """Forces that turn with bodies, growing and steady."""
-        made: Followers = self.once("followers", Followers.of) if self.scene.followers else NO_FOLLOWERS
+        made: Followers = self.once("followers", _followers) if self.scene.followers else NO_FOLLOWERS
         return made
 
     @property
@@ -109,7 +109,7 @@ class System:
     @property
     def frames(self) -> Frames:
         """Frames that bodies carry."""
-        made: Frames = self.once("frames", Frames.of) if self.scene.of(Carried) else NO_FRAMES
+        made: Frames = self.once("frames", _frames) if self.scene.of(Carried) else NO_FRAMES
         return made
 
     @property
@@ -219,6 +219,14 @@ class System:
         for body in self.scene.bodies:
             rest[self.layout.body(body.name)][:2] = body.centre
         return rest
+
+
+def _frames(system: System) -> Frames:
+    return Frames.of(system.scene)
+
+
+def _followers(system: System) -> Followers:
+    return Followers.of(system.scene, system.acting)
 
 
 def _stiffness(system: System) -> Array:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import AppliedForce
 from spline_model.effects.boundary import FOLLOWER
-
-if TYPE_CHECKING:
-    from spline_model.compile import System
+from spline_model.scene import Scene
+from spline_model.tables import LoadTable
 
 Array = NDArray[np.float64]
 
@@ -28,9 +27,8 @@ class Followers(NamedTuple):
     steady: Array
 
     @classmethod
-    def of(cls, system: System) -> Self:
-        """Those of a system, among its unknowns [N]."""
-        scene, loads = system.scene, system.acting
+    def of(cls, scene: Scene, loads: LoadTable) -> Self:
+        """Those of all loads of a scene that grow, and its steady ones, among its unknowns [N]."""
         own = loads.rows(loads.turns == FOLLOWER)
         full = [each for each in scene.of(AppliedForce) if each.follower and each.steady]
         places = [*own.coordinate[::2], *(scene.layout.bodies[each.body] for each in full)]

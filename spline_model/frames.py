@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import Carried
 from spline_model.effects.base import Constraint
-
-if TYPE_CHECKING:
-    from spline_model.compile import System
+from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -27,9 +25,9 @@ class Frames(NamedTuple):
     lever: Array
 
     @classmethod
-    def of(cls, system: System) -> Self:
-        """Those of a system, among its unknowns [m]."""
-        scene, layout, places, levers = system.scene, system.layout, [], []
+    def of(cls, scene: Scene) -> Self:
+        """Those of a scene, among its unknowns [m]."""
+        layout, places, levers = scene.layout, [], []
         for each, (row, _) in zip(scene.of(Constraint), layout.multipliers, strict=True):
             if isinstance(each, Carried):
                 places.append((layout.bodies[each.body], layout.bodies[each.by], row))
