@@ -148,12 +148,20 @@ class Driven(Constraint):
 class DrivenRotation(Driven):
     """The rotation of a body prescribed as angle x load factor (Eq 7), one row in rad.
 
-    Parameters are those of ``Driven``, and the angle [rad].
+    Parameters
+    ----------
+    angle : float, rad
+    body, history, held, steady, beside, prop
+        As of ``Driven``.
 
     Raises
     ------
     InvalidParameter
         An angle or history that is not finite, or an interval that ends before it begins.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Eq 7.
 
     Examples
     --------
@@ -183,13 +191,21 @@ class DrivenRotation(Driven):
 class DrivenDisplacement(Driven):
     """The displacement of a body's centre prescribed as (dx, dy) x load factor, two rows in m.
 
-    Parameters are those of ``Driven``, and the displacement (2,) [m]; None in place of dx or dy leaves this
-    direction free, without a row.
+    Parameters
+    ----------
+    displacement : (2,) m
+        None in place of dx or dy leaves this direction free, without a row.
+    body, history, held, steady, beside, prop
+        As of ``Driven``.
 
     Raises
     ------
     InvalidParameter
         No direction, or a value that is not finite.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), section 4: "two other driving constraints".
 
     Examples
     --------

@@ -97,7 +97,13 @@ def _points(design: Design) -> Iterator[Quantity]:
 
 
 def _moved(
-    key: str, group: str, of: Moved, *, turns: bool = False, estimated: tuple[str, ...] = ()
+    key: str,
+    group: str,
+    of: Moved,
+    *,
+    turns: bool = False,
+    estimated: tuple[str, ...] = (),
+    analyses: tuple[str, ...] = (PATH, MOTION),
 ) -> Iterator[Quantity]:
     """Yield the displacement of a place, and its rotation if it is one that turns."""
     for axis, part in enumerate("xy"):
@@ -109,7 +115,7 @@ def _moved(
             meaning=f"displacement of {group} along {part}",
             of=partial(_part, of, axis),
             floor=STILL,
-            analyses=(PATH, MOTION),
+            analyses=analyses,
             estimated=estimated,
         )
     if turns:
@@ -121,7 +127,7 @@ def _moved(
             meaning=f"rotation of {group}",
             of=partial(_part, of, 2),
             floor=STILL,
-            analyses=(PATH, MOTION),
+            analyses=analyses,
         )
 
 
@@ -161,13 +167,15 @@ def _springs(design: Design) -> Iterator[Quantity]:
 def _drift(design: Design) -> Iterator[Quantity]:
     """Yield how far the instantaneous centre at rest of a mechanism's driven body moves with the body."""
     if design.rotation and design.crossing_point is None:
-        yield from _moved("centre_drift", "centre drift", _drifted)
+        yield from _moved("centre_drift", "centre drift", _drifted, analyses=(PATH,))
 
 
 def _drifted(answer: Any) -> Array:
     """Return the displacement (S, 2) [m] of the body's point about which it turns in the first state, by a
-    moment alone."""
-    flexibility = np.linalg.inv(answer.body_stiffness[0])
-    x, y, turn = flexibility[:, 2]
-    pole = answer.centre[0] + np.array([-y, x]) / turn
+    moment alone; NaN where forces do not hold the body."""
+    matrix = answer.body_stiffness[0]
+    if not np.isfinite(matrix).all() or np.linalg.matrix_rank(matrix[:2, :2]) < 2:
+        return np.full((len(answer.rotation), 2), np.nan)
+    x, y = -np.linalg.solve(matrix[:2, :2], matrix[:2, 2])  # of the centre, by a rotation
+    pole = answer.centre[0] + np.array([-y, x])
     return centre_shift(pole, answer.rotation - answer.rotation[0], answer.centre)

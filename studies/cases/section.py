@@ -192,7 +192,7 @@ def refuse_tapers(where: str, strips: Iterable[Any], what: str) -> None:
 
 
 def renamed(where: str, content: Values) -> Values:
-    """Return a table with the key of the outermost fibre in place of its older name; a warning says so."""
+    """Return a table with the key of the outermost fibre in place of its older name, with a warning."""
     depth = content.get(OLD_DEPTH)
     if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
         return content

@@ -156,8 +156,9 @@ def _off_axis(answer: Response) -> Array:
     In x and y all else is held; the rotation is free to shift.
     """
     matrix = answer.body_stiffness
-    known = ~np.isnan(matrix).any(axis=(1, 2))
     turning = np.full(len(matrix), np.nan)
+    known = np.flatnonzero(~np.isnan(matrix).any(axis=(1, 2)))
+    known = known[np.linalg.matrix_rank(matrix[known]) == 3]  # a body on a hinge turns without a moment
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
     return np.asarray(_length(answer) ** 2 * np.diagonal(matrix, axis1=1, axis2=2)[:, :2].T / turning)
 

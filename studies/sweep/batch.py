@@ -17,7 +17,7 @@ from studies.answers.settings import Settings
 from studies.answers.validity import SAME_NAME, Strip
 from studies.cases import keys as case_keys
 from studies.cases.design import design_of
-from studies.cases.document import is_mechanism
+from studies.cases.document import CaseError, is_mechanism
 from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import PIVOT_PARAMETERS, SIDES, Problem
 from studies.cases.section import of_sides
@@ -91,13 +91,17 @@ def takes(task: Task) -> bool:
 
     What it refuses in the end (other curves, or strips too slender) goes one by one.
     """
-    own, design = {*_KEYS, *_PARTS, plan.SLENDERNESS} - plan.TAPER, design_of("case", task.case)
+    own = {*_KEYS, *_PARTS, plan.SLENDERNESS} - plan.TAPER
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
     if not asked <= set(_Known().quantities()):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
     if any(f"strip.{name}" in plan.TAPER for name in task.case["strip"]):
+        return False
+    try:
+        design = design_of("case", task.case)
+    except CaseError:  # only what is varied completes it
         return False
     effects = set(design.effects.names)
     return (

@@ -20,7 +20,7 @@ from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.validity import Strip, strips_of
 from studies.cases.design import Design, design_of
-from studies.cases.document import is_mechanism
+from studies.cases.document import CaseError, is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.sweep.plan import Task
@@ -214,7 +214,12 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Column]:
         return _of_modes(count)
     if kind == "release":
         return RELEASE
-    parts = {each.name_in_sweep: _standing(each) for each in named(design_of("case", case))}
+    try:
+        design = design_of("case", case)
+    except CaseError:  # only what is varied completes it
+        parts = {}
+    else:
+        parts = {each.name_in_sweep: _standing(each) for each in named(design)}
     mechanism = is_mechanism(case)
     places = _of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT
     return PATH | places | parts

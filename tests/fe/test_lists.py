@@ -70,7 +70,7 @@ def half_beam(*fixed: str) -> Model:
     ("fixed", "push", "pop"), [(("x", "rotation"), -3.231, 0.298), (("rotation",), -2.989, 0)]
 )
 def test_bistable_half_beam(fixed: tuple[str, ...], push: float, pop: float) -> None:
-    """The force of a guided shuttle has the extrema that shooting finds; free to slide it is monotonic."""
+    """The force of a guided shuttle has the extrema that shooting finds; free to slide it has none."""
 
     def error(elements: int = 20) -> float:
         path = solve_mechanism(replace(half_beam(*fixed), elements=elements), increments=48, check=False)

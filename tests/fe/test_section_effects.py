@@ -30,7 +30,7 @@ def wide_pivot() -> dict[str, Any]:
 def test_curvature_is_the_slope_of_the_rotation(element: str) -> None:
     """With all effects of the sides the curvatures at the nodes add up to the turns between them."""
 
-    def error(elements: int = 80) -> float:
+    def error(elements: int = 320) -> float:
         model = cross_axis_pivot(**wide_pivot(), elements=elements, element=element)
         fields = strip_fields(model, solve_statics(model, rotation=1.0, increments=5).states[-1:])
         steps = np.diff(fields.arc_length)

@@ -9,7 +9,7 @@ from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
-from studies.commands.readme import _stored
+from studies.commands.findings import stored_table
 from studies.published import benchmark
 from studies.record.store import Store
 
@@ -44,7 +44,7 @@ def judged(tmp_path, capsys):
 
 def test_package_is_of_the_stored_results():
     """The files of the package are those that the stored tables give."""
-    for name, content in benchmark.package(partial(_stored, Store())).items():
+    for name, content in benchmark.package(partial(stored_table, Store())).items():
         assert (benchmark.FOLDER / name).read_bytes() == content, name
 
 
