@@ -44,6 +44,8 @@ class Followers(NamedTuple):
 
     def subtract(self, z: Array, load_factor: float, gradient: Array, hessian: Array) -> None:
         """Subtract the forces from the gradient, and their derivatives from its."""
+        if not self.place.size:
+            return
         force, at = self.turned(z, load_factor), self.place
         for k, across in enumerate((-force[:, 1], force[:, 0])):
             np.subtract.at(gradient, at + k, force[:, k])
@@ -58,8 +60,9 @@ class Followers(NamedTuple):
 
     def among(self, begin: int, force: float) -> Followers:
         """The same over a force, among coordinates that begin with the poses at ``begin``."""
-        given = self.place - begin, self.growing / force, self.steady / force
-        return Followers(*given) if self.place.size else self
+        if not self.place.size:
+            return self
+        return Followers(self.place - begin, self.growing / force, self.steady / force)
 
 
 NO_FOLLOWERS = Followers(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))

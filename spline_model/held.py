@@ -94,9 +94,11 @@ class HeldPivot:
         self._y = at_rest(model)
         self._rest, self._preload = self._y.copy(), Preload.of(model)
         turn = int(model.bodies.held[0])
-        self._own = own = np.arange(turn - 2, turn + 1)
-        others = np.setdiff1d(np.arange(len(model.bodies.rest)), own)
-        grasped = replace(model, bodies=model.bodies._replace(free=others, held=own, driven=-1))
+        self._own = own = slice(turn - 2, turn + 1)
+        every = np.arange(len(model.bodies.rest))
+        self._longest = np.where(every % 3 == 2, LONGEST_TURN, LONGEST_SHIFT)
+        others = np.delete(every, own)
+        grasped = replace(model, bodies=model.bodies._replace(free=others, held=every[own], driven=-1))
         self._grasped = grasped.arrays()
         self.pose = self._y[own] * self._unit
         self._led: Arrays | None = None  # those that the state was led with; none behind ``restore``
@@ -142,7 +144,7 @@ class HeldPivot:
         """Lead the held coordinates to ``target`` (D,) along a path of equilibria; the fraction of the way
         that was solved, of which nothing is kept but the whole, and Newton's iterations."""
         held = arrays.bodies.held
-        whole, longest = target - self._y[held], np.where(held % 3 == 2, LONGEST_TURN, LONGEST_SHIFT)
+        whole, longest = target - self._y[held], self._longest[held]
         if self._led is arrays and not whole.any():
             return 1.0, 0
         parts = max(1, math.ceil((np.abs(whole) / longest).max()))
@@ -160,11 +162,12 @@ class HeldPivot:
     def _state(self, reached: float, iterations: int) -> HeldState:
         model, space = self.model, self._arrays.space
         bear(self._y, self._arrays)
-        units, full = 1.0 / self._unit, np.triu(space.tangent) + np.triu(space.tangent, 1).T
+        units, full = 1.0 / self._unit, space.tangent + space.tangent.T  # of an upper triangle
+        full.flat[:: len(full) + 1] *= 0.5
         own, others = self._own, self._grasped.bodies.free
-        tangent = full[np.ix_(own, own)]
+        tangent = full[own, own]
         if len(others):  # which follow without a force
-            across = full[np.ix_(others, own)]
+            across = full[others, own]
             tangent = tangent - across.T @ np.linalg.solve(full[np.ix_(others, others)], across)
         return HeldState(
             solved=reached == 1.0,

@@ -172,7 +172,8 @@ def compliant_mechanism(
     >>> mechanism = compliant_mechanism(strips=[strip], bodies=[tip], control_points=6)
     """
     grid = Discretisation(**described)
-    fewest = max((math.ceil(2.0 * abs(strip.opening) / LARGEST_OPENING) for strip in strips), default=1)
+    arcs = (2.0 * abs(strip.opening) for strip in strips if strip.rise)
+    fewest = max((math.ceil(arc / LARGEST_OPENING) for arc in arcs), default=1)
     if fewest > grid.segments:
         grid = replace(grid, segments=fewest)
     given = dict(parameters or {})

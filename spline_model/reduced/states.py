@@ -104,8 +104,9 @@ def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
     for row in range(len(y) * bool(model.frames.place.size)):
         by, bend = model.frames.spread(y[row, : found.shape[1]], force[row])
         found[row] = by.T @ found[row] @ by + bend
-    for row in range(len(y)):
-        model.followers.subtract(y[row], load[row], force[row], found[row])
+    followers = model.followers
+    for row in range(len(y) * bool(followers.place.size)):
+        followers.subtract(y[row], load[row], force[row], found[row])
     return found
 
 

@@ -68,13 +68,13 @@ def _reactions(design: Design) -> Iterator[Quantity]:
     """Yield the forces and moments that prescribed coordinates need."""
     for body, part in prescribed(design):
         key, unit = EXERTED[part]
-        what = "moment" if part == "rotation" else f"force along {part}"
+        turns = part == "rotation"
         yield Quantity(
             key=f"{body}_{key}",
-            heading=part,
+            heading="moment" if turns else part,
             group=f"exerted on {body}",
             unit=unit,
-            meaning=f"{what} that is exerted on {body} from outside",
+            meaning=f"{'moment' if turns else f'force along {part}'} that is exerted on {body} from outside",
             of=methodcaller("exerted", body, part),
             floor=FORCE_FLOOR,
         )

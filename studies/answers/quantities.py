@@ -126,8 +126,8 @@ class Quantity(Scale):
     group: str = ""
 
     def named(self, unit: str) -> str:
-        """Return what an axis in that unit is called, with what it is of."""
-        return f"{self.group}, {super().named(unit)}" if self.group else super().named(unit)
+        """Return what an axis in that unit is called, below what it is of."""
+        return f"{self.group}\n{super().named(unit)}" if self.group else super().named(unit)
 
     @property
     def name_in_sweep(self) -> str:

@@ -30,7 +30,7 @@ class Response(Answer):
         stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m].
     """
 
-    parts = ("bending", "axial", "shear", "gravity")
+    parts = ("bending", "axial", "shear", "gravity", "spring")
 
     load_factor = own("load_factor")
     torque = own("torque")

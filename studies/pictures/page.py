@@ -33,6 +33,7 @@ PARTS = {
     "axial": ORANGE,
     "shear": PURPLE,
     "gravity": GREY,
+    "spring": GREEN,
     "kinetic": RED,
     "strain": BLUE,
     "dissipated": PURPLE,
@@ -71,7 +72,7 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
 
     chart = partial(_chart, _looks(shown), answers)
     if not turned:
-        yield from chart(x, ROTATION, over, lambda each: None if each.body is None else each.rotation)
+        yield from chart(x, ROTATION, over, _rotation)
     parts = {each.key: each for answer in answers for each in named(answer.design)}
     for each in (*(own for own in QUANTITIES if path), *parts.values()):
         if not each.chart or answers[0].analysis not in each.analyses:
@@ -116,6 +117,13 @@ def _chart(
 def _stress(answer: Answer) -> Array | None:
     """Return the largest stress (S,) [Pa]; None where an outermost fibre is not known."""
     return None if np.isnan(answer.max_stress).any() else answer.max_stress
+
+
+def _rotation(answer: Answer) -> Array | None:
+    """Return the rotation (S,) of a body that turns by more than round-off."""
+    if answer.body is None or float(np.ptp(answer.rotation)) < TURNED:
+        return None
+    return answer.rotation
 
 
 def _of_path(quantity: Quantity, turned: bool, answer: Answer) -> Array | None:
