@@ -210,3 +210,44 @@ KINDS = (_pivot, _guide, _column, _pivot, _four_bar, _cantilever, _pivot, _three
 def scene(seed: int) -> Design:
     """Return the random scene of a seed; its kind goes round with the seed."""
     return KINDS[seed % len(KINDS)](np.random.default_rng(seed))
+
+
+def listed(seed: int) -> Design:
+    """Return a random scene with two to four more loads, and with springs and supports.
+
+    Loads act at points beside the centres and at free ends. Scenes that lead a displacement have no support.
+    """
+    rng, design = np.random.default_rng([seed, 39]), scene(seed)
+    first, names = design.strips[0], [body.name for body in design.bodies]
+    length = first.length
+    force = first.youngs_modulus * first.second_moment_of_area / length**2
+    tables: dict[str, Any] = {name: [*design.effects.every(name)] for name in design.effects.tables}
+
+    def add(effect: str, **own: Any) -> None:
+        tables.setdefault(effect, []).append(own)
+
+    for _ in range(int(rng.integers(2, 5))):
+        body = design.bodies[int(rng.integers(len(names)))]
+        x, y = np.add(body.centre, _pair(rng, 0.5 * length))
+        if rng.random() < 0.3:
+            add("applied_moment", body=body.name, moment=float(rng.uniform(-0.3, 0.3) * force * length))
+        else:
+            add("applied_force", body=body.name, force=_pair(rng, 0.3 * force), at=(float(x), float(y)))
+    last = names[-1]
+    if rng.random() < 0.7:
+        stiff = tuple(float(each * force / length) for each in rng.uniform(0.0, 3.0, 2))
+        add(
+            "spring",
+            body=last,
+            stiffness=stiff,
+            rotational_stiffness=float(rng.uniform(0, 1) * force * length),
+        )
+    if len(names) > 1 and rng.random() < 0.7:
+        add("spring", body=names[0], other=last, stiffness=(float(force / length), 0.0))
+    if STIFF not in tables and rng.random() < 0.3:
+        add("support", body=last, fixed=(str(rng.choice(["x", "y"])),))
+    effects = Effects(
+        names=tuple(dict.fromkeys((*design.effects.names, *tables))),
+        tables={name: tuple(own) if len(own) > 1 else own[0] for name, own in tables.items()},
+    )
+    return replace(design, effects=effects)
