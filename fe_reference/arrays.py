@@ -38,7 +38,7 @@ def kernel(**options: Any) -> Callable[[F], F]:
 def _say_unkept() -> None:
     logging.getLogger("fe_reference").warning(
         "fe_reference: got no writable place for compiled kernels, expected one beside the source, in the "
-        "user's cache or as NUMBA_CACHE_DIR: they are compiled anew each time"
+        "user's cache or as NUMBA_CACHE_DIR: they are compiled again each time"
     )
 
 

@@ -56,7 +56,7 @@ def _critical_mode(tangent: Symmetric, held: Flags) -> tuple[float, Array]:
 def tipping(control: Control, before: State, after: State, counters: Counter[str]) -> list[CriticalPoint]:
     """Return where the stiffness of a driven turn at fixed loads vanishes between two states, if it does.
 
-    Without loads its torque is stationary there, which is not unstable; let go under loads the body tips
+    Without loads its torque is stationary there, which is not unstable; released under loads the body tips
     over.
     """
     stiff, soft, least = before.stiffness, after.stiffness, ROUND_OFF * control.structure.moment_unit
@@ -76,7 +76,7 @@ def tipping(control: Control, before: State, after: State, counters: Counter[str
     part = brentq(remaining, 0.0, 1.0, xtol=PLACED)
     y, parameter = _between(before, after, part)
     loaded = control.load is not None or control.structure.constant_words
-    what = "limit point: the body's own stiffness vanishes, let go it tips over" if loaded else ""
+    what = "limit point: the body's own stiffness vanishes: released, it tips over" if loaded else ""
     return [_point(control, "limit point", y, parameter, after.inertia, what)]
 
 

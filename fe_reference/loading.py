@@ -82,7 +82,7 @@ class TipForce(Several):
 class Prescribed(Several):
     """Coordinates of a body that are led, times the load factor.
 
-    body: None for the one whose rotation is driven, or the only one. In a motion it lets go at the start, or
+    body: None for the one whose rotation is driven, or the only one. In a motion it releases at the start, or
     with a history goes on leading, times that.
     """
 

@@ -173,7 +173,7 @@ def _frequencies(modes: Modes) -> Quantities:
 
 
 def _held(model: Model, body: str | None, turn: bool) -> Flags:
-    """Return which coordinates a release does not let go (size,): what is led on, and a held turn."""
+    """Return which coordinates a release keeps (size,): what is led on, and a held turn."""
     structure = structure_of(model)
     held = np.zeros(structure.size, dtype=bool)
     if turn:

@@ -207,7 +207,7 @@ class Trajectory(Answer):
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
-        seconds: by part (`Stopwatch`), "start" the static state that is let go.
+        seconds: by part (`Stopwatch`), "start" the static state that is released.
         starts_still: whether it starts at rest in equilibrium, to round-off.
         resolution: empty, or what elements and steps leave unresolved.
         rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the

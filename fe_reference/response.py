@@ -130,7 +130,7 @@ def body_stiffness(
     It is the change of what must be exerted on the body, forces [N] and a moment [N m], by displacements [m]
     and a turn [rad] in the axes of the ground: each of the three is prescribed in turn, the others held, and
     all other coordinates follow by the consistent tangent, under loads that stay. What is prescribed to the
-    body is let go, what is prescribed to others holds them.
+    body is released, what is prescribed to others holds them.
 
     Args:
         model: the mesh that the states belong to. shares (S,): of the load that acts there.

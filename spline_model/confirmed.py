@@ -1,7 +1,7 @@
 """Lack of resolution is not physics: critical points and early ends of a path against those of a finer one.
 
 A limit point, a bifurcation or the end of a path is a property of the design only if more control points have
-it at the same place. Otherwise the path is not resolved: it is cut where both disagree, and says so.
+it at the same place. Otherwise the path is not resolved: it is cut where both disagree, with a message.
 """
 
 from __future__ import annotations

@@ -125,7 +125,7 @@ def _resolution(content: list[Content], swing: float, step: float) -> str:
 def unresolved(scene: Scene, start: Start, step: float) -> str:
     """What a step [s] leaves unresolved of the modes that carry the energy of a start.
 
-    The scene is that in motion, without the drives that the start may have multipliers of: they let go.
+    The scene is that in motion, without the drives that hold the start alone (which may have multipliers).
     """
     if start.motion.system.scene is not scene:
         start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
@@ -171,7 +171,7 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:
     """The motion with its estimated errors, and a remark in ``resolution`` where they are much of the swing.
 
-    task: that of the motion. Companions that fail leave nothing to compare, and the remark says so.
+    task: that of the motion. Companions that fail leave nothing to compare, which is remarked.
     """
     laps, count, failures = Laps(), len(motion.time) - 1, []
     # the largest divisor that leaves enough instants

@@ -102,7 +102,7 @@ class Mechanism:
         return self.scene.with_effects(*more)
 
     def released(self) -> Scene:
-        """The scene in motion (``in_motion``), without the drives that let go.
+        """The scene in motion (``in_motion``), without the drives that hold the start alone.
 
         Refused if none of its effects has inertia, and with printed forces, which have no energy.
         """

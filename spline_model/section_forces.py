@@ -89,7 +89,7 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
 
 
 def mode_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Fields of the static states (S, N) that natural modes are about: without what lets go in a motion."""
+    """Fields of the static states (S, N) that modes are about: without what is released in a motion."""
     return _fields(mechanism, mechanism.released(), states, moving=False)
 
 

@@ -212,7 +212,7 @@ class StaticSolution(Tabulated, Path):
         body: its name; None for the driven one, or the only one. Change of the force [N] and moment [N m] on
         it by its displacement [m] and turn [rad] in the axes of the ground, all loads fixed and all else in
         equilibrium: K_bb - K_br K_rr^-1 K_rb with the body's coordinates b and the rest r of the tangent,
-        multipliers included. What drives the body is let go, what drives others holds them. Exact for the
+        multipliers included. What drives the body is released, what drives others holds them. Exact for the
         discretisation; dead loads have a stiffness where they act beside centres. nan where a strip that
         cannot stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
         """

@@ -173,4 +173,4 @@ def _meaning(system: System, kind: str) -> str:
         return "the drive turns back there"
     if system.scene.driven_row is None:
         return "the load is the largest or least around, under a dead load it snaps through"
-    return "the driven body's own stiffness vanishes, let go it tips over"
+    return "the driven body's own stiffness vanishes: released, it tips over"

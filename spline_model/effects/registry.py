@@ -91,7 +91,7 @@ def _roots(design: Design, strip: StripDesign, reach: tuple[float, float]) -> tu
 
 
 def _stretching(design: Design) -> Iterator[Effect]:
-    """Stretching of every strip: mixed, or by quadrature where the discretisation says so."""
+    """Stretching of every strip: mixed, or by quadrature if the discretisation asks for it."""
     grid = design.discretisation
     for strip, _, _ in design.pieces:
         if grid.stretch != "consistent":

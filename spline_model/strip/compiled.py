@@ -100,7 +100,7 @@ _compiled = partial(njit, nogil=True, fastmath=FAST, error_model="numpy", _nrt=F
 def _say_unkept():
     logging.getLogger("spline_model").warning(
         "spline_model: got no writable place for compiled kernels, expected one beside the source, in the "
-        "user's cache or as NUMBA_CACHE_DIR: they are compiled anew each time"
+        "user's cache or as NUMBA_CACHE_DIR: they are compiled again each time"
     )
 
 
@@ -131,7 +131,7 @@ called = partial(kernel, pipeline_class=_Parts)
 
 part = partial(called, forceinline=True)
 """The same for a function that becomes a part of its callers: tables are not passed on. The compiler proper
-inlines it, on machine code to be; Numba's own inlining would type and simplify it anew in each caller."""
+inlines it, on machine code to be; Numba's own inlining would type and simplify it again in each caller."""
 
 
 lane = partial(part, pipeline_class=_Lanes)
@@ -139,7 +139,7 @@ lane = partial(part, pipeline_class=_Lanes)
 
 
 once = partial(kernel, inline="always")
-"""The same for a long function with one caller, which Numba inlines: each level of calls is optimised anew,
+"""The same for a long function with one caller, which Numba inlines: each level of calls is optimised again,
 with all that is below it."""
 
 

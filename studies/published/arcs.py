@@ -82,7 +82,7 @@ def arc_of(frame: Frame, settings: Settings, *, follow_branch: bool = False) -> 
     """Return the path to load factor 1, on the branch that crosses at a bifurcation or on the primary one.
 
     The spline follows the branch. The elements do not: they are led onto it by a small side load, or by a
-    tilt of the body that is let go.
+    tilt of the body that is released.
 
     Raises:
         BadInput: what the model refuses to be asked; forces without a potential have no stability.

@@ -111,7 +111,7 @@ def test_a_driven_body_without_stiffness_would_tip_over() -> None:
     hold("fe_tipping", error)
     assert point.rotation == pytest.approx(point.load_factor * np.radians(1.0))
     assert re.match(
-        r"limit point: .* let go it tips over at 2\.08\d kN, rotation 0\.26\d+ deg", answer.message
+        r"limit point: .* released, it tips over at 2\.08\d kN, rotation 0\.26\d+ deg", answer.message
     )
 
 

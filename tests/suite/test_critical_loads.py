@@ -35,7 +35,7 @@ def test_stability_at_zero_force_is_checked_first(name, share, answered):
         assert (answer["kind"], answer["critical_load_N"]) == ("unstable at zero force", 0.0)
         assert answer["weight_share"] == pytest.approx(share, rel=1e-3)
     for answer in answered("solve", *words)["answers"]:
-        assert "let go it tips over" in answer["message"] and f"{100.0 * share:.3g}" in answer["message"]
+        assert "released, it tips over" in answer["message"] and f"{100.0 * share:.3g}" in answer["message"]
         (point,) = answer["critical_points"]
         assert (point["kind"], point["load_factor"], point["rotation_rad"]) == ("limit point", 0.0, 0.0)
 
