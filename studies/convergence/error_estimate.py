@@ -23,7 +23,7 @@ from studies.answers.reference import rotation_error
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
-from studies.cases.section import of_moments
+from studies.cases.section import of_sides
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.record.store import Digits
 
@@ -76,7 +76,7 @@ def _drawn(bounds: Mapping[str, tuple[float, float]], count: int) -> Iterator[tu
     for number, (logarithm, *others) in enumerate(points):
         depth = given.length / math.exp(logarithm)
         values: dict[str, Any] = dict(zip([*bounds][1:], map(float, others), strict=True))
-        problem = replace(given, **of_moments(width * depth, width * depth**3 / 12.0), **values)
+        problem = replace(given, width=width, thickness=depth, **of_sides(width, depth), **values)
         identity = {"design": number, "slenderness": problem.length / problem.depth}
         identity |= {"crossing_ratio": problem.crossing_ratio, "inclination_rad": problem.inclination}
         yield identity | {"rotation_rad": problem.rotation}, problem
