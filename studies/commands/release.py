@@ -31,6 +31,7 @@ input; 3: statics does not reach the start, or the motion stopped early.
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -129,7 +130,7 @@ def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
     Of an unstable mode the duration is that in which it grows twentyfold. What has rigid motions alone has
     the usual duration, in the model's own steps.
     """
-    found = answer_modes(design, settings, count=MODES + RIGID)
+    found = answer_modes(_without_followers(design), settings, count=MODES + RIGID)
     frequency = np.sort(np.abs(found.frequency[found.frequency != 0.0]))[:MODES]
     led = _last_time(design)
     if not found.converged or not frequency.size:
@@ -138,6 +139,18 @@ def _usual(design: Design, settings: Settings) -> tuple[float, float | None]:
     last = float(frequency[frequency <= FASTEST * first].max())
     swings = GROWTH if found.falls_in else SWINGS
     return led + swings / first, 1.0 / max(STEPS * first, LEAST_STEPS * last)
+
+
+def _without_followers(design: Design) -> Design:
+    """Return the design whose loads keep their directions, which alone has modes."""
+    effects = design.effects
+    tables = {
+        name: tuple(
+            {key: value for key, value in own.items() if key != "follower"} for own in effects.every(name)
+        )
+        for name in effects.tables
+    }
+    return replace(design, effects=replace(effects, tables=tables))
 
 
 def _last_time(design: Design) -> float:
