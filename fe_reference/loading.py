@@ -144,13 +144,14 @@ class Support(Prescribed):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(Several):
-    """Spring and damper between the centre of a body and that of another or, None, a point of the ground.
+    """Spring and damper between the centre of a body, None: the only one, and that of another or, None, the
+    ground.
 
     In axes of the ground: stiffness (k_x, k_y) [N/m] and damping (c_x, c_y) [N s/m] of the displacements
     since rest, and those of the turns [N m/rad, N m s/rad]. In full at any load factor.
     """
 
-    body: str
+    body: str | None = None
     other: str | None = None
     stiffness: Annotated[Pair, not_negatives, "N/m"] = (0.0, 0.0)
     rotational_stiffness: Annotated[float, not_negative, "N m/rad"] = 0.0
@@ -162,7 +163,7 @@ class Spring(Several):
         own = (*self.stiffness, self.rotational_stiffness, *self.damping, self.rotational_damping)
         if not any(own):
             raise InvalidParameter("spring", self.body, "a stiffness or a damping above 0 [N/m]")
-        if self.other == self.body:
+        if self.other is not None and self.other == self.body:
             raise InvalidParameter("other", self.other, "another body, or None for the ground [name]")
 
 

@@ -138,9 +138,7 @@ class Motion:
         for i, d in enumerate(held):
             change = factor_of(d, time + span, drives) - factor_of(d, time, drives)
             rate[len(rows) - len(held) + i] = change / span * drives.target[d]
-        inverse = np.linalg.pinv(self.mass)
-        impulse = np.linalg.lstsq(jacobian @ inverse @ jacobian.T, rate - jacobian @ v, rcond=1e-12)[0]
-        caught = v + inverse @ jacobian.T @ impulse
+        caught = v + self._constrained(jacobian, np.zeros(count), rate - jacobian @ v)[0]
         return caught, 0.5 * float(v @ self.mass @ v - caught @ self.mass @ caught)
 
     def accelerated(self, z: Array, v: Array) -> tuple[Array, Array]:
@@ -166,15 +164,22 @@ class Motion:
                 evaluate(system, moved, 1.0, gradient, hessian)
                 drift += sign * (hessian[rows][:, q] @ v) / (2 * step)
 
-        # a coordinate without mass stands in equilibrium already: least squares leave it at rest
-        matrix = np.block([[self.mass, jacobian.T], [jacobian, np.zeros((len(rows), len(rows)))]])
-        scale = np.concatenate((unit[q] / system.scales.length, np.full(len(rows), 1.0)))
-        sizes = np.linalg.norm(jacobian * scale[q], axis=1)
-        scale[len(self.mass) :] = np.diag(self.mass).max() / np.maximum(sizes, 1e-300)
-        right = np.concatenate((force, -drift)) * scale
+        acceleration, free[rows] = self._constrained(jacobian, force, -drift)
+        return acceleration, free
+
+    def _constrained(self, jacobian: Array, force: Array, change: Array) -> tuple[Array, Array]:
+        """Solve M a + J^T l = force (Q,), J a = change (R,) for a (Q,) and l (R,).
+
+        A coordinate without mass goes where constraints take it, and is left at rest where they do not.
+        """
+        count, rows = len(self.mass), len(jacobian)
+        unit = self.system.scales.unit[:count] / self.system.scales.length
+        sizes = np.linalg.norm(jacobian * unit, axis=1)
+        scale = np.concatenate((unit, np.diag(self.mass).max() / np.maximum(sizes, 1e-300)))
+        matrix = np.block([[self.mass, jacobian.T], [jacobian, np.zeros((rows, rows))]])
+        right = np.concatenate((force, change)) * scale
         solved = scale * np.linalg.lstsq(matrix * scale[:, None] * scale, right, rcond=1e-14)[0]
-        free[rows] = solved[len(self.mass) :]
-        return solved[: len(self.mass)], free
+        return solved[:count], solved[count:]
 
     def _unconstrained(
         self, system: System, z: Array, gradient: Array, hessian: Array

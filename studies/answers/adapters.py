@@ -162,12 +162,12 @@ def answer_modes(
 def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     """Return a motion that starts in equilibrium; its message reports this, and an unstable equilibrium.
 
-    Not asked where a load or a drive has a history: modes are about the state under full loads.
+    Not asked where a load or a drive has a history, as modes are about the state under full loads, nor where
+    a load follows its body, which has no modes.
     """
-    design = answer.design
-    effects = design.effects
-    histories = (own.get("history") for name in effects.tables for own in effects.every(name))
-    if design.history or design.held or any(histories):
+    design, effects = answer.design, answer.design.effects
+    every = [own for name in effects.tables for own in effects.every(name)]
+    if design.history or design.held or any(own.get("history") or own.get("follower") for own in every):
         return answer
     fall = answer_modes(design, settings, rotation=start, count=1).falls_in
     message = NOTHING_MOVES if fall is None else UNSTABLE.format(fall)

@@ -237,3 +237,17 @@ def test_a_motion_under_a_follower_books_its_work():
         return np.abs(run.kinetic_energy + run.strain_energy - booked * run.work).max()
 
     gates.hold("spline_follower_motion", error)
+
+
+def test_a_drive_that_begins_at_speed_carries_the_points_of_its_body():
+    """Requirement: a jump of a driven rotation moves the body alike, wherever on it a load acts."""
+
+    def moved(angle, **at):
+        drive = {"angle": angle, "history": ((0.0, 0.0), (0.5, 1.0))}
+        pulled = beam("end", applied_force={"force": (0.0, 0.2), **at}, driven_rotation=drive)
+        return solve_motion(pulled, start=None, duration=1.0, step=0.01, check=False).bodies["end"]
+
+    def error(angle=0.5):
+        return np.abs(moved(0.5) - moved(angle, at=(1.5, 0.3))).max()
+
+    gates.hold("spline_drive_at_speed", error)
