@@ -66,7 +66,9 @@ class Chart:
         up, y_unit = self.y.fitting(y for _, _, y in self.curves)
         for look, x, y in self.curves:
             panel.plot(across * x, up * y, color=look.colour, linestyle=look.line)
-        panel.set(xlabel=self.x.named(x_unit), ylabel=self.y.named(y_unit))
+        part, _, label = self.y.named(y_unit).rpartition("\n")
+        panel.set(xlabel=self.x.named(x_unit), ylabel=label)
+        panel.set_title(part, loc="left", fontsize=8.0)
         if self.equal:
             panel.set(aspect="equal")
             panel.set_adjustable("datalim")
