@@ -39,8 +39,10 @@ def test_a_quantity_is_one_entry(tmp_path):
     copy = tmp_path / "copy"
     for name in ("spline_model", "fe_reference", "studies", "docs"):
         shutil.copytree(ROOT / name, copy / name)
-    shutil.copy(ROOT / "README.md", copy)
-    (copy / "results").symlink_to(ROOT / "results")
+    for name in ("README.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, copy)
+    (copy / "results" / "reference").mkdir(parents=True)
+    (copy / "results" / "data").symlink_to(ROOT / "results" / "data")
     place = copy / "studies" / "answers" / "quantities.py"
     text = place.read_text(encoding="utf-8")
     place.write_text(text.replace("QUANTITIES = (\n", ENTRY, 1), encoding="utf-8")

@@ -40,6 +40,8 @@ _LIKELY = np.array([-math.log(max(1.0, _NAMES.count(name) / CURLED)) for name in
 EXPECTED_PX, WORTH = 0.006, 1.5
 #: Part of it that comes back in every picture, of a marker that stands still on the grid of pixels [px].
 STILL_PX = 0.003
+#: Difference of all residuals below which a picture is the last one, shown again [px].
+SAME_PX = 0.001
 #: Pictures after which the weight of a residual has decreased to 1/e; iterations for the variance. After
 #: MEMORY pictures, the models are computed in one picture of EVERY: they take a tenth of its time.
 MEMORY, ROUNDS, EVERY = 50, 2, 5
@@ -127,10 +129,15 @@ class Causes:
         self._matrix, self._vector = np.zeros((count, count)), np.zeros(count)
         self.sizes, self._moment = np.zeros(count), np.zeros((count, count))
         self.variance, self.none, self._views = EXPECTED_PX**2, 1.0, 0
+        self._last = np.zeros(0)
         self.weights = {"": 1.0}
 
     def add(self, seen: View, weight: float = 1.0) -> None:
-        """Take one more view into account."""
+        """Take one more view into account, unless it is the last one once more, whose noise would look like a
+        cause."""
+        if seen.gap.shape == self._last.shape and np.abs(seen.gap - self._last).max() < SAME_PX:
+            return
+        self._last = seen.gap
         kept = 1.0 - 1.0 / MEMORY
         self._square = kept * self._square + weight * float(seen.gap @ seen.gap)
         self._count = kept * self._count + weight * seen.spare
