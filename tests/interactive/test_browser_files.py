@@ -32,7 +32,7 @@ def test_design_is_saved_opened_and_kept(page):
     give(page, "case", text.replace("width_m = 0.01", "width_m = 0.02"))
     page.wait("studio.state.preset === 'own' && studio.state.values.width === 0.02")
     page.key("ArrowUp")
-    page.wait("studio.state.pose[2] > 0.08 && JSON.parse(sessionStorage.design).pose[2] > 0.08")
+    page.wait("studio.state.pose[2] > 0.08 && JSON.parse(sessionStorage.design ?? 'null')?.pose[2] > 0.08")
     page.call("Page.reload")
     time.sleep(0.5)
     page.wait("window.studio?.state?.values.width === 0.02 && studio.state.pose[2] > 0.08")
