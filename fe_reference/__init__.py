@@ -2,10 +2,10 @@
 
 Data flow one way, and so do the imports:
 
-    loading -> effects, places -> model (mechanism) -> mesh -> structure (law, bending, matrix, links)
-    structure -> loads -> control
+    loading -> effects; strip, effects -> model (mechanism) -> mesh
+    mesh, law (bending), places (loads, links), matrix -> structure -> control
     control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, drives, loads -> actions -> motion -> schemes -> dynamics
+    structure -> mass, drives -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 
@@ -22,7 +22,7 @@ from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
 from .mechanism import compliant_mechanism, cross_axis_pivot
-from .model import ELEMENTS, BodyDesign, Model, StripDesign
+from .model import ELEMENTS, BodyDesign, Model
 from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
@@ -31,6 +31,7 @@ from .solid import SolidStrip
 from .solid_path import SolidPath, solve_solids
 from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 from .statics import solve_mechanism, solve_statics
+from .strip import StripDesign
 
 __all__ = [
     "DEFAULT_EFFECTS",

@@ -14,10 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from .arrays import Array, Flags, Indices
+from .effects import twice
 from .loading import ALWAYS_FULL, factor_of
-from .loads import Load
 from .matrix import Factors, Singular
-from .places import twice
 from .rigid import loose_coordinates
 from .structure import Evaluation, Structure
 
@@ -39,7 +38,7 @@ class State:
         y (size,), parameter: coordinates and where.
         residual (size,): [N, N m]; on the held coordinates it is what the drives exert. at: the structure
             there, whose tangent is d r / d y. potential: of all but loads that follow [J], without which its
-            gradient is r. load_work: of the full load from rest, as far as it has a potential [J].
+            gradient is r.
         norms: of the residuals of Newton's method. failure: "" or why it ended. factors: of the tangent.
         rate: d y / d p (size,).
         conjugate, slope: first and second derivative of the total potential along the path [J].
@@ -55,7 +54,6 @@ class State:
     residual: Array
     at: Evaluation
     potential: float
-    load_work: float
     norms: tuple[float, ...] = (0.0,)
     failure: str = ""
     factors: Factors | None = None
@@ -84,7 +82,8 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load: F, or None. shares: of it at both, by default the parameters.
+        span: parameter at both. load (K,): factors of the loads that make F, or None. shares: of it at both,
+            by default the parameters.
         watched: coordinate of the driven turn, whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
         props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
@@ -94,7 +93,7 @@ class Control:
     held: Indices
     values: Array
     span: tuple[float, float] = (0.0, 1.0)
-    load: Load | None = None
+    load: Array | None = None
     watched: int | None = None
     settling: bool = False
     shares: tuple[float, float] | None = None
@@ -129,20 +128,12 @@ class Control:
 
     def balance(self, y: Array, parameter: float) -> State:
         """Return the forces at y and p, by one compiled call."""
-        share = parameter if self.settling else 1.0
-        here = self.structure.evaluate(y, share)
-        residual, potential, work = here.gradient, sum(here.strain) + here.spring + share * here.gravity, 0.0
-        if self.load is not None:
-            work, acts = self.load.work(y), self.share(parameter)
-            residual, potential = residual - acts * self.load.force(y), potential - acts * work
-            here = self.load.stiffened(here, self.structure, y, acts)
-        return State(
-            y=y, parameter=parameter, residual=residual, at=here, potential=potential, load_work=work
-        )
+        share, acts = parameter if self.settling else 1.0, self.share(parameter)
+        at = self.structure.evaluate(y, share, load=self.load, acts=acts)
+        potential = sum(at.strain) + at.spring + share * at.gravity - acts * at.work
+        return State(y=y, parameter=parameter, residual=at.gradient, at=at, potential=potential)
 
-    def rates(
-        self, y: Array, parameter: float, load_work: float
-    ) -> tuple[Array | None, Array | None, float, float]:
+    def rates(self, y: Array, parameter: float) -> tuple[Array | None, Array | None, float, float]:
         """Return what p changes at fixed y: r and the gradient of the potential (size,), alike without
         followers, or None; the potential, once and twice [J]."""
         if self.settling:
@@ -150,8 +141,9 @@ class Control:
             return force, force, rate + (parameter - 1.0) * bend, bend
         if self.load is None or self.growth == 0.0:
             return None, None, 0.0, 0.0
-        force, dead = (-self.growth * self.load.force(y, each) for each in (True, False))
-        return force, dead, -self.growth * load_work, 0.0
+        dead, work = self.structure.load_force(y, self.load, dead=True)
+        force = self.structure.load_force(y, self.load)[0] if self.structure.follows else dead
+        return -self.growth * force, -self.growth * dead, -self.growth * work, 0.0
 
     def factors(self, balance: State, grain: float = 0.0) -> Factors:
         """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
@@ -173,7 +165,7 @@ def spans(
     *,
     body: int | None = None,
     rotations: Sequence[float] | None = None,
-    load: Load | None = None,
+    load: Array | None = None,
     first: bool = False,
     starts: bool = False,
 ) -> list[Control]:

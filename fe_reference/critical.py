@@ -126,7 +126,7 @@ def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         yield "load factor 0"
         return
     if control.load is not None:
-        vector = control.share(parameter) * control.load.force(y)
+        vector = control.share(parameter) * control.structure.load_force(y, control.load)[0]
         x_force, y_force, turn = (float(vector[control.structure.axis == k].sum()) for k in range(3))
         sizes = ((math.hypot(x_force, y_force), "N"), (abs(turn), "N m"))
         yield from (_quantity(size, unit) for size, unit in sizes if size > 0.0)

@@ -13,11 +13,11 @@ from itertools import pairwise
 from typing import Annotated
 
 from .arrays import Array, Flags, rotation_matrix
+from .effects import twice
 from .errors import Checked, History, InvalidParameter, finite, read_history
 from .loading import ALWAYS_FULL, factor_of
 from .mass import RigidBodies
 from .model import Model
-from .places import twice
 from .structure import Structure
 
 #: Instants nearer than this part of the motion are the same.

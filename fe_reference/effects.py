@@ -7,12 +7,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Annotated, Any, TypeVar
 
-from .errors import InvalidParameter, Pair, choice, finite, not_negative, pair
+from .errors import History, InvalidParameter, Pair, choice, finite, not_negative, pair
 from .loading import (
+    WAYS,
     AppliedForce,
     AppliedMoment,
     DrivenDisplacement,
     Effect,
+    Prescribed,
     PrescribedRotation,
     Several,
     Spring,
@@ -168,6 +170,35 @@ class Effects:
     def changed(self, name: str, *effects: Effect) -> "Effects":
         """Return the effects with others of this name."""
         return Effects(named={**self.named, name: effects})
+
+    def prescribed(self, bodies: Sequence[str], body: int | None) -> dict[int, tuple[float, History | None]]:
+        """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+
+        Coordinate k of body b stands under 3 b + k. body: where the effects name none; None: the only one.
+        """
+        found: dict[int, tuple[float, History | None]] = {}
+        for effect in self.every(Prescribed):
+            index = body if effect.body is None and body is not None else index_of(bodies, effect.body)
+            for at, end in enumerate(effect.ends, start=3 * index):
+                if at in found and end is not None:
+                    raise twice(bodies, at)
+                if end is not None:
+                    found[at] = (end, effect.history)
+        return found
+
+
+def index_of(bodies: Sequence[str], name: str | None) -> int:
+    """Return the place of a body among the names of all; None means the only one there is."""
+    known = ", ".join(bodies) or "no bodies"
+    if len(bodies) != 1 if name is None else name not in bodies:
+        raise InvalidParameter("body", name, f"one of {known} [name]")
+    return 0 if name is None else bodies.index(name)
+
+
+def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
+    """Return the refusal of a coordinate, numbered as in `Effects.prescribed`, that is prescribed twice."""
+    told = f"{WAYS[at % 3]} of {bodies[at // 3]}"
+    return InvalidParameter("prescribed", told, "one drive or support for each coordinate [name]")
 
 
 def _known(name: str) -> None:

@@ -37,45 +37,47 @@ class Several(Effect):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BodyLoad(Several):
-    """A load on a body, times load factor or history."""
+class Load(Several):
+    """A force (f_x, f_y) [N] and a moment [N m], times load factor or history.
+
+    body: that it acts on, None: the only one. at: point of the body (x, y) [m] at rest where the force acts,
+    by default its centre. A dead force keeps its direction; a follower turns with what it acts on.
+    """
 
     body: str | None = None
     history: Annotated[History, read_history] = ALWAYS_FULL
-
-
-@dataclass(frozen=True, kw_only=True)
-class AppliedForce(BodyLoad):
-    """Force (f_x, f_y) [N] on a body.
-
-    It acts at the point of the body that is `at` (x, y) [m] at rest, by default at its centre. A dead force
-    keeps its direction; a follower turns with the body.
-    """
-
-    force: Annotated[Pair, pair, "N"]
+    force: Annotated[Pair, pair, "N"] = (0.0, 0.0)
+    moment: Annotated[float, finite, "N m"] = 0.0
     at: Annotated[Pair | None, optional, pair, "m"] = None
     follower: Annotated[bool, flag] = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class AppliedMoment(BodyLoad):
-    """Moment [N m] on a body."""
+class AppliedForce(Load):
+    """Force on a body."""
 
-    moment: Annotated[float, finite, "N m"]
+    force: Annotated[Pair, pair, "N"] = field()
+    moment: float = field(init=False, default=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class TipForce(Several):
-    """Force (f_x, f_y) [N] and moment [N m] at the free end of a strip, times load factor or history.
+class AppliedMoment(Load):
+    """Moment on a body."""
 
-    The force of a follower turns with the section there.
-    """
+    moment: Annotated[float, finite, "N m"] = field()
+    force: Pair = field(init=False, default=(0.0, 0.0))
+    at: None = field(init=False, default=None)
+    follower: bool = field(init=False, default=False)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipForce(Load):
+    """Force and moment at the free end of a strip; a follower turns with the section there."""
 
     strip: str
-    force: Annotated[Pair, pair, "N"]
-    moment: Annotated[float, finite, "N m"] = 0.0
-    follower: Annotated[bool, flag] = False
-    history: Annotated[History, read_history] = ALWAYS_FULL
+    force: Annotated[Pair, pair, "N"] = field()
+    body: None = field(init=False, default=None)
+    at: None = field(init=False, default=None)
 
 
 @dataclass(frozen=True, kw_only=True)

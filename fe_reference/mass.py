@@ -28,7 +28,7 @@ import numpy as np
 
 from .arrays import Array, Flags, kernel
 from .matrix import Symmetric
-from .mesh import swept, turned
+from .places import swept, turned
 from .structure import Structure
 
 MASSES = ("consistent", "lumped")
@@ -49,10 +49,16 @@ class RigidBodies:
     centre: Array
     moment_of_inertia: Array
 
+    def rows(self, structure: Structure) -> tuple[Array, Array]:
+        """Return mass and moment of inertia of the rows of bodies (rows,), of all others without end."""
+        found = np.full((2, len(structure.numbers)), np.inf)
+        found[:, structure.nodes : -1] = self.mass, self.moment_of_inertia
+        return found[0], found[1]
+
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) of a structure that is reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
-        return structure.gathered(lumped_nodes(structure), carried)
+        return structure.gathered(np.vstack([lumped_nodes(structure), carried, np.zeros(3)]))
 
 
 def lumped_elements(structure: Structure) -> Array:
@@ -84,6 +90,7 @@ def _own_inertia(structure: Structure) -> Array:
 def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
     (attached, carried, offsets, rigid), own = structure.carried, _own_inertia(structure)
+    carried = carried - structure.nodes
     nodes = lumped_nodes(structure)[attached]
     centres = structure.model.centres
     carrier = np.append(carried, np.arange(len(own)))
@@ -120,20 +127,20 @@ def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[St
 def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
     """Return of each body that is led one way, its mass off the led point, what couples its other motions.
 
-    The rows (K, 7): body, free direction, mass, moment of inertia, first moment (2,) [kg m], whether the turn
-    is led as well.
+    The rows (K, 7): row of the body, free direction, mass, moment of inertia, first moment (2,) [kg m],
+    whether the turn is led as well.
     """
     rows = []
     for k, mass in enumerate(bodies.mass):
         x, y, turn = held[structure.body_slice(k)]
         first = mass * (bodies.centre[k] - structure.points[k])
         if x != y and first.any():
-            rows.append([k, x, mass, bodies.moment_of_inertia[k], *first, turn])
+            rows.append([structure.nodes + k, x, mass, bodies.moment_of_inertia[k], *first, turn])
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 @kernel()
-def couple(coupled: Array, bodies: Array, rates: Array, out: Array) -> None:
+def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
     """Write the forces that resist the coupled motions as if the mass were diagonal.
 
     With the first moment (X, Y) in place and y free, m y'' + X t'' - Y t'^2 = -f and X y'' + J t'' = -g. With
@@ -141,9 +148,9 @@ def couple(coupled: Array, bodies: Array, rates: Array, out: Array) -> None:
     """
     for k in range(len(coupled)):
         b, free, mass, inertia = int(coupled[k, 0]), int(coupled[k, 1]), coupled[k, 2], coupled[k, 3]
-        x, y = turned(bodies[b, 2], coupled[k, 4], coupled[k, 5])
+        x, y = turned(u[b, 2], coupled[k, 4], coupled[k, 5])
         cross, inward = (x, y) if free == 1 else (-y, x)
-        push, twist = inward * rates[b, 2] ** 2 - out[b, free], -out[b, 2]
+        push, twist = inward * v[b, 2] ** 2 - out[b, free], -out[b, 2]
         if coupled[k, 6] > 0.0:  # a led turn bears what the free motion exerts
             out[b, free] = -push
             out[b, 2] += cross * push / mass
@@ -153,13 +160,13 @@ def couple(coupled: Array, bodies: Array, rates: Array, out: Array) -> None:
             out[b, 2] = -inertia * (mass * twist - cross * push) / rest
 
 
-def coupled_energy(coupled: Array, bodies: Array, rates: Array) -> float:
+def coupled_energy(coupled: Array, u: Array, v: Array) -> float:
     """Return the kinetic energy beside that of the diagonal mass [J]."""
     total = 0.0
     for row in coupled:
         body, free = int(row[0]), int(row[1])
-        x, y = turned(bodies[body, 2], row[4], row[5])
-        total += (x if free else -y) * rates[body, free] * rates[body, 2]
+        x, y = turned(u[body, 2], row[4], row[5])
+        total += (x if free else -y) * v[body, free] * v[body, 2]
     return float(total)
 
 
@@ -184,23 +191,16 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
         masses = _linear_elements(structure)
     else:
         masses = _cubic_elements(structure, y)
-    whole = structure.reduced_matrix(np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1), y)
-    body_blocks(structure, y, _own_inertia(structure), whole)
-    return whole
-
-
-def body_blocks(structure: Structure, y: Array, values: Array, whole: Symmetric) -> None:
-    """Add to a matrix what (B, 2) values make, for translation of the bodies' centres and for rotation.
-
-    They are masses and moments of inertia, or the coefficients of dampers.
-    """
-    for k, (translation, rotation) in enumerate(values):
+    blocks = np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1)
+    whole = structure.reduced_matrix(blocks, structure.displacement(y))
+    for k, (mass, inertia) in enumerate(_own_inertia(structure)):
         at, offset = structure.body_slice(k), structure.model.bodies[k].centre - structure.points[k]
         arm = turned(y[at][2], *offset)
         slope = np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]])
-        block = translation * slope.T @ slope
-        block[2, 2] += rotation
+        block = mass * slope.T @ slope
+        block[2, 2] += inertia
         whole.data[structure.pattern.blocks[k]] += block
+    return whole
 
 
 def _linear_elements(structure: Structure) -> Array:

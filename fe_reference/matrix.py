@@ -6,19 +6,19 @@ the nodes along the strips, then those of the bodies, which leaves a band and a 
 Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
 coordinates are left out of the elimination.
 
-Products of two vectors, which are not symmetric, are added to a matrix by their low rank.
+Products of two vectors, which are not symmetric, are added to a matrix by their low rank, and to its inverse.
 
 Source: A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems (1981), ch. 4.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
 from .arrays import Array, Flags, Indices, kernel
-from .mesh import Carried, turned
+from .places import Carried, turned
 
 #: Where the entries of the rows of a matrix are, and where its factors have theirs.
 Lines = tuple[Indices, Indices, Indices, Indices]
@@ -33,14 +33,14 @@ class Singular(ArithmeticError):
 
 @kernel()
 def assemble(
-    matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
+    matrices: Array, ends: Indices, carried: Carried, u: Array, places: Indices, data: Array
 ) -> None:
     """Add element matrices (E, 8, 8) to the entries of a matrix.
 
     What the turns of bodies at the ends carry comes into the last two rows and columns, which are zero.
 
     Args:
-        ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies.
+        ends (E, 2): which attached node the ends are, or -1. u (rows, 3): displacements and turns.
         places (E, 8, 8): of the entries in data, or -1.
     """
     _, carrier, offsets, _ = carried
@@ -50,7 +50,7 @@ def assemble(
             k, row, own = ends[e, end], 3 * end, 6 + end
             if k >= 0:
                 many = 8
-                x, y = turned(turns[carrier[k]], offsets[k, 0], offsets[k, 1])
+                x, y = turned(u[carrier[k], 2], offsets[k, 0], offsets[k, 1])
                 for j in range(8):
                     matrix[own, j] = x * matrix[row + 1, j] - y * matrix[row, j]
                 for j in range(8):
@@ -131,22 +131,19 @@ class Envelope:
 
     Attributes:
         size: of the matrices.
-        places (E, 8, 8), blocks (B, 3, 3), springs (R, 2, 2), links (K, 6, 6), diagonal (size,): of the
-        entries, -1 for none.
+        places (E, 8, 8), blocks (B, 3, 3), links (K, 6, 6), diagonal (size,): of the entries, -1 for none.
     """
 
-    def __init__(
-        self, numbers: Indices, bodies: Indices, springs: Indices, links: Indices, size: int
-    ) -> None:
-        """Take the coordinates of elements (E, 8), bodies (B, 3), roots (R, 2), links (K, 6); -1 for none."""
-        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, springs, links)]
+    def __init__(self, numbers: Indices, bodies: Indices, links: Indices, size: int) -> None:
+        """Take the coordinates of elements (E, 8), bodies (B, 3) and links (K, 6), -1 for none."""
+        every, pairs = np.arange(size), [_pairs(each) for each in (numbers, bodies, links)]
         indices = np.hstack([np.reshape(pair, (2, -1)) for pair in [*pairs, (every, every)]])
         indices = indices[:, (indices >= 0).all(axis=0)].astype(np.int32)
         summed = COOData(indices, np.ones(indices.shape[1]), (size, size), None).tocsr()
         summed.sort_indices()
         self.size, self.starts, self.rows = size, summed.indptr, summed.indices
         keys = np.repeat(every, np.diff(self.starts)) * size + self.rows
-        self.places, self.blocks, self.springs, self.links = (
+        self.places, self.blocks, self.links = (
             np.where((i >= 0) & (j >= 0), np.searchsorted(keys, i * size + j), -1) for i, j in pairs
         )
         self.diagonal = np.searchsorted(keys, every * (size + 1))
@@ -166,13 +163,19 @@ def _pairs(numbers: Indices) -> tuple[Indices, Indices]:
 
 @dataclass(eq=False)
 class Symmetric:
-    """A symmetric matrix (size, size) on a pattern."""
+    """A symmetric matrix (size, size) on a pattern.
+
+    Under loads that follow there are products left (x) right of vectors (R, size) added, which are not
+    symmetric.
+    """
 
     pattern: Envelope
     data: Array
+    left: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    right: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def sparse(self) -> csc_matrix:
-        """Return it as a sparse matrix."""
+        """Return what of it is symmetric as a sparse matrix."""
         p = self.pattern
         return csc_matrix((self.data, p.rows, p.starts), (p.size, p.size))
 
@@ -180,11 +183,11 @@ class Symmetric:
         """Return the product with vectors (..., size)."""
         p, out = self.pattern, np.empty(np.shape(x))
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
-        return out
+        return out + (x @ self.right.T) @ self.left if len(self.left) else out
 
     def apart(self, one: Array, other: Array) -> float:
         """Return one.K other less that of the symmetric part."""
-        return 0.0
+        return float((self.left @ one) @ (self.right @ other)) if len(self.left) else 0.0
 
     def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
         """Return the factors of its rows and columns that are not held (size,); raises Singular.
@@ -197,24 +200,33 @@ class Symmetric:
         negative = _factorise((p.starts, p.rows, p.begin, p.first), self.data, held, grain, low, d)
         if negative < 0:
             raise Singular("the tangent is singular to round-off")
-        return Factors(p, held, low, d, negative)
+        symmetric = Factors(p, held, low, d, negative)
+        return symmetric.bordered(self.left, self.right) if len(self.left) else symmetric
 
 
 @dataclass(eq=False)
 class Factors:
-    """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out."""
+    """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out.
+
+    border: of products left (x) right of vectors (R, size) that are added, right, the solutions for left
+    (R, size) and the inverse of 1 + right.solutions (R, R).
+    """
 
     pattern: Envelope
     held: Flags
     low: Array
     d: Array
     negative: int
+    border: tuple[Array, Array, Array] | None = None
 
     def solve(self, b: Array) -> Array:
         """Return the solution (..., size) for right sides (..., size), zero at what is held."""
         x = np.where(self.held, 0.0, b)
         _solve(self.pattern.begin, self.pattern.first, self.low, self.d, x.reshape(-1, self.pattern.size))
-        return x
+        if self.border is None:
+            return x
+        right, solved, core = self.border
+        return np.asarray(x - (x @ right.T) @ core.T @ solved)
 
     def bordered(self, left: Array, right: Array) -> "Factors":
         """Return the factors of the matrix with products of vectors (R, size) added; raises Singular.
@@ -228,50 +240,5 @@ class Factors:
         if not np.isfinite(size):
             raise Singular("the tangent is singular to round-off")
         negative = int(sign * (-1.0) ** self.negative < 0.0)
-        return Bordered(
-            self.pattern,
-            self.held,
-            self.low,
-            self.d,
-            negative,
-            right,
-            solved,
-            np.asarray(np.linalg.inv(core), dtype=np.float64),
-        )
-
-
-@dataclass(eq=False)
-class Bordered(Factors):
-    """Factors of a matrix with products left (x) right of vectors (R, size).
-
-    solved (R, size): the matrix's solutions for left. core (R, R): inverse of 1 + right.solved.
-    """
-
-    right: Array
-    solved: Array
-    core: Array
-
-    def solve(self, b: Array) -> Array:
-        """Return the solution (..., size) for right sides (..., size), zero at what is held."""
-        x = super().solve(b)
-        return np.asarray(x - (x @ self.right.T) @ self.core.T @ self.solved)
-
-
-@dataclass(eq=False)
-class Unsymmetric(Symmetric):
-    """A symmetric matrix with products left (x) right of vectors (R, size) added."""
-
-    left: Array
-    right: Array
-
-    def times(self, x: Array) -> Array:
-        """Return the product with vectors (..., size)."""
-        return np.asarray(super().times(x) + (x @ self.right.T) @ self.left)
-
-    def factors(self, held: Flags, grain: float = 0.0) -> Factors:
-        """Return the factors of its rows and columns that are not held (size,); raises Singular."""
-        return super().factors(held, grain).bordered(self.left, self.right)
-
-    def apart(self, one: Array, other: Array) -> float:
-        """Return one.K other less that of the symmetric part."""
-        return float((self.left @ one) @ (self.right @ other))
+        border = right, solved, np.asarray(np.linalg.inv(core), dtype=np.float64)
+        return replace(self, negative=negative, border=border)

@@ -11,7 +11,8 @@ import numpy as np
 from .arrays import Array, rotation_matrix
 from .effects import DEFAULT_EFFECTS, Effects, Given
 from .errors import finite, pair, positive, within
-from .model import BodyDesign, Model, StripDesign
+from .model import BodyDesign, Model
+from .strip import StripDesign
 
 
 def compliant_mechanism(

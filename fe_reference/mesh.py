@@ -1,177 +1,22 @@
-"""The scikit-fem mesh of the strips, the reference geometry of their elements and the ends on bodies.
+"""The scikit-fem mesh of the strips, the reference geometry of their elements and the roots that give way.
 
 One `MeshLine` carries all strips: the mesh coordinate is the arc length along a strip, from 0 at its ground
 end, and strips are separate chains of it. Three P1 fields live on it: the displacement u_x, u_y [m] and the
-turn phi [rad] of the cross-section, both from the unloaded reference.
-
-An end at the offset b from the reference point of its body follows without penalty or extra unknowns:
-
-    u = d + (R(theta) - 1) b,    phi = theta
-
-with displacement d of that point and turn theta of the body. Forces are reduced by the transpose of the
-derivative P of the map; the tangent is P^T K P plus the curvature of the map, -(R b).f on the diagonal entry
-of theta, with f the force of the element on the end. An end whose root gives way has a turn phi of its own,
-and a spring between it and theta; that of a hinge has no stiffness.
+turn phi [rad] of the cross-section, both from the unloaded reference. An end whose root gives way has a turn
+phi of its own, and a spring between it and what it is on (`links`); that of a hinge has no stiffness.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 from skfem import Basis, ElementLineP1, ElementVector, MeshLine
 
-from .arrays import Array, Flags, Indices, kernel
+from .arrays import Array
 from .bending import TERMS
 from .effects import CURL, PreStrain, RootCompliance
-from .law import Energies, Given, Written, elements
 from .model import Model
 from .places import FREE
 from .plate import left_by_clamps, left_in_elements
-
-#: Numbers of a body's resultants: forces x, y [N], the moment [N m], and what the carrying of nodes and of
-#: the weight adds to the stiffness of its turn [N m].
-RESULTANTS = 5
-
-#: Attached nodes (K,), the bodies that carry them, their offsets (K, 2) from these bodies' points, and
-#: whether they turn with the bodies.
-Carried = tuple[Indices, Indices, Array, Flags]
-#: Nodes (R,) with roots that give way, their bodies, -1 for ground, and the stiffness of the roots [N m].
-Springs = tuple[Indices, Indices, Array]
-#: Weight of nodes (nodes, 3) and bodies (B, 4): force x, y [N], and the offset of its point from the body's
-#: [m].
-Weights = tuple[Array, Array]
-Pair = tuple[Array, Array]
-#: What is known of a structure where all its elements are run through.
-Tables = tuple[Given, Carried, Weights, Springs]
-
-
-@kernel()
-def turned(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return R (x, y) with the matrix R of a turn."""
-    c, s = math.cos(angle), math.sin(angle)
-    return c * x - s * y, s * x + c * y
-
-
-@kernel()
-def swept(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return (R - 1) (x, y), written with sines: no cancellation at small turns."""
-    sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
-    return -less * x - sine * y, sine * x - less * y
-
-
-@kernel()
-def carry(bodies: Array, carried: Carried, u: Array) -> None:
-    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
-    attached, carrier, offsets, rigid = carried
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        x, y = swept(bodies[b, 2], offsets[k, 0], offsets[k, 1])
-        u[i, 0], u[i, 1] = bodies[b, 0] + x, bodies[b, 1] + y
-        if rigid[k]:
-            u[i, 2] = bodies[b, 2]
-
-
-@kernel()
-def carry_velocity(bodies: Array, bodies_v: Array, carried: Carried, v: Array) -> None:
-    """Write the velocities of the attached nodes."""
-    attached, carrier, offsets, rigid = carried
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
-        v[i, 0] = bodies_v[b, 0] - bodies_v[b, 2] * y
-        v[i, 1] = bodies_v[b, 1] + bodies_v[b, 2] * x
-        if rigid[k]:
-            v[i, 2] = bodies_v[b, 2]
-
-
-@kernel()
-def body_forces(
-    share: float, bodies: Array, carried: Carried, weights: Weights, force: Array, out: Array
-) -> None:
-    """Write the resultants (B, 5) of the forces on attached nodes about the bodies' points.
-
-    A share of the weight of nodes and bodies is taken from the forces that resist.
-    """
-    attached, carrier, offsets, rigid = carried
-    for b in range(len(out)):
-        for k in range(RESULTANTS):
-            out[b, k] = 0.0
-    for k in range(len(attached)):
-        i, b = attached[k], carrier[k]
-        x, y = turned(bodies[b, 2], offsets[k, 0], offsets[k, 1])
-        out[b, 0] += force[i, 0]
-        out[b, 1] += force[i, 1]
-        out[b, 2] += x * force[i, 1] - y * force[i, 0]
-        if rigid[k]:
-            out[b, 2] += force[i, 2]
-        out[b, 3] -= x * force[i, 0] + y * force[i, 1]
-    _put_weight(share, weights, bodies, force, out)
-
-
-@kernel()
-def _put_weight(share: float, weights: Weights, bodies: Array, force: Array, resultants: Array) -> None:
-    """Take a share of the weight of nodes and bodies from the forces that resist."""
-    weight, body_weight = weights
-    for i in range(len(weight)):
-        force[i, 0] -= share * weight[i, 0]
-        force[i, 1] -= share * weight[i, 1]
-    for b in range(len(body_weight)):
-        w_x, w_y = share * body_weight[b, 0], share * body_weight[b, 1]
-        x, y = turned(bodies[b, 2], body_weight[b, 2], body_weight[b, 3])
-        resultants[b, 0] -= w_x
-        resultants[b, 1] -= w_y
-        resultants[b, 2] -= x * w_y - y * w_x
-        resultants[b, 4] += x * w_x + y * w_y
-
-
-@kernel()
-def gravity_energy(weights: Weights, bodies: Array, u: Array) -> float:
-    """Return the energy of the full weight, zero in the shape at rest [J]."""
-    (weight, body_weight), energy = weights, 0.0
-    for i in range(len(weight)):
-        energy -= weight[i, 0] * u[i, 0] + weight[i, 1] * u[i, 1]
-    for b in range(len(body_weight)):
-        x, y = swept(bodies[b, 2], body_weight[b, 2], body_weight[b, 3])
-        energy -= body_weight[b, 0] * (bodies[b, 0] + x) + body_weight[b, 1] * (bodies[b, 1] + y)
-    return energy
-
-
-@kernel()
-def spring_forces(
-    springs: Springs, relaxation: float, bodies: Pair, nodes: Pair, force: Array, out: Array
-) -> tuple[float, float]:
-    """Add the moments of roots between nodes and bodies; return their energy [J] and the power lost [W].
-
-    Args:
-        relaxation: time of the material [s]. bodies (B, 3), nodes (N, 3): displacements, and their rates.
-    """
-    (node, body, stiffness), (d, d_rate), (u, v), energy, loss = springs, bodies, nodes, 0.0, 0.0
-    for k in range(len(node)):
-        i, b = node[k], body[k]
-        turn, rate = u[i, 2], relaxation * v[i, 2]
-        if b >= 0:
-            turn, rate = turn - d[b, 2], rate - relaxation * d_rate[b, 2]
-        moment = stiffness[k] * (turn + rate)
-        force[i, 2] += moment
-        if b >= 0:
-            out[b, 2] -= moment
-        energy += 0.5 * stiffness[k] * turn * turn
-        if relaxation > 0.0:
-            loss += stiffness[k] * rate * rate / relaxation
-    return energy, loss
-
-
-@kernel()
-def potential(
-    tables: Tables, share: float, asked: int, u: Array, bodies: Array, written: Written, resultants: Array
-) -> tuple[Energies, float]:
-    """Write forces and resultants; return energies of the strips and of the full weight."""
-    (given, carried, weights, springs), force = tables, written[0]
-    bending, axial, shear = elements(given, share, asked, u, written)
-    body_forces(share, bodies, carried, weights, force, resultants)
-    bending += spring_forces(springs, 0.0, (bodies, bodies), (u, u), force, resultants)[0]
-    return (bending, axial, shear), gravity_energy(weights, bodies, u)
-
 
 #: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))

@@ -10,7 +10,6 @@ from scipy.sparse.linalg import eigsh, splu
 from .arrays import Array, Flags
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
-from .loads import Load, full_load
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
@@ -121,7 +120,7 @@ def natural_frequencies(
     require_model(pivot)
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
-    if (full := full_load(structure_of(pivot))) is not None and full.follows:
+    if structure_of(pivot).follows:
         raise InvalidParameter("follower", True, "dead loads for modes: flutter is not modelled [1]")
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
@@ -134,8 +133,7 @@ def natural_frequencies(
         except NothingHolds:  # under the loads in full
             y, _ = settled_state(model, rotation, body, increments, starts=True)
             time = 0.0
-        load = full_load(structure, time=time)
-        modes = _modes(structure, y, _held(model, body, held), kind, count, load)
+        modes = _modes(structure, y, _held(model, body, held), kind, count, structure.load(time))
         count = len(modes.frequency)  # of finer meshes as many as of the first
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 
@@ -148,13 +146,11 @@ def natural_frequencies(
     return modes
 
 
-def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int, load: Load | None) -> Modes:
+def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int, load: Array | None) -> Modes:
     """Return the modes about a state whose coordinates are free but for those that are `held` (size,)."""
-    tangent = structure.evaluate(y).tangent
-    if load is not None:
-        tangent = load.stiffen(tangent, y, 1.0)
+    tangent = structure.evaluate(y, load=load).tangent
     values, full = _lowest(structure, y, tangent, ~held, kind, count)
-    moves = np.array([structure.velocity(y, mode)[:, :2] for mode in full])
+    moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
     return Modes(
         rotation=np.nan,
         held=False,

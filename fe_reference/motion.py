@@ -57,7 +57,7 @@ class Scheme:
     def coupled(self, at: Instant) -> float:
         """Return the kinetic energy beside that of the lumped mass, of bodies that are led one way [J]."""
         s = self.structure
-        return coupled_energy(self.actions.coupled, s.bodies(at.y), s.bodies(at.v))
+        return coupled_energy(self.actions.coupled, s.spread(at.y), s.spread(at.v))
 
     def unloaded(self, at: Instant) -> Flags:
         """Return where the forces are none but round-off (size,)."""
@@ -277,7 +277,7 @@ def trajectory(
     model = motion.home.structure.model
     own, states = structure_of(model), np.array(motion.y)
     places, rates = own.body_places(states), own.bodies(np.array(motion.v))
-    moved = np.array([own.displacement(y)[:, :2] for y in states])
+    moved = np.array([own.displacement(y)[: own.nodes, :2] for y in states])
     energies: dict[str, Any] = dict(zip(ENERGIES, np.array(motion.energy).T.copy(), strict=True))
     status = Status.CONVERGED if not motion.message else Status.NOT_CONVERGED
     return Trajectory(

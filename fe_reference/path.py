@@ -187,7 +187,7 @@ class Path:
     def _worked(self, before: State, after: State) -> State:
         """Return a state with the work done until then, and those before it."""
         # loads a F.q: their work is [a F.q] less the integral of F.q da, which is part of the conjugate
-        done, former = (self.control.share(at.parameter) * at.load_work for at in (after, before))
+        done, former = (self.control.share(each.parameter) * each.at.work for each in (after, before))
         work = before.work + (done - former) + _integral(self.control, before, after)
         return replace(after, work=work, behind=_trail(before))
 
@@ -198,7 +198,7 @@ class Path:
             return "an element is folded"
         step, gained = after.parameter - before.parameter, after.potential - before.potential
         largest = abs(before.conjugate) + abs(after.conjugate)
-        unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter, 0.0)[-1])
+        unit = structure.moment_unit + abs(self.control.rates(after.y, after.parameter)[-1])
         scale = max(abs(gained), 0.5 * abs(step) * largest)
         if abs(gained - _integral(self.control, before, after)) > WORK_MISMATCH * scale + ROUND_OFF * unit:
             return "the state lies on another branch (energy gained and work done differ)"
@@ -239,14 +239,14 @@ def _integral(control: Control, before: State, after: State) -> float:
 
     To it comes the work of loads that follow, by Gauss' rule on the cubic through both states.
     """
-    step, load = after.parameter - before.parameter, control.load
+    step, load, structure = after.parameter - before.parameter, control.load, control.structure
     total = 0.5 * step * (before.conjugate + after.conjugate) + step**2 / 12.0 * (before.slope - after.slope)
-    if load is not None and load.follows:
+    if load is not None and structure.follows:
         ends = [(at.parameter, at.y, at.rate) for at in (before, after)]
         curve = CubicHermiteSpline(*zip(*ends, strict=True))
         for place, weight in zip(*leggauss(3), strict=True):
             p = before.parameter + 0.5 * step * (1.0 + place)
-            own = load.force(curve(p)) - load.force(curve(p), followers=False)
+            own = np.subtract(*(structure.load_force(curve(p), load, dead)[0] for dead in (False, True)))
             total += 0.5 * step * weight * control.share(p) * float(own @ curve(p, 1))
     return total
 

@@ -1,60 +1,82 @@
-"""Places where loads, drives, supports and springs of a model act, and what they prescribe there."""
+"""Places where something acts: rows of nodes, of bodies and of the ground, and points that bodies carry.
 
-from collections.abc import Sequence
+Displacements, velocities and forces of all that can move are one array (rows, 3) of x, y and the turn: the
+nodes strip by strip, then the reference points of the bodies, and last the ground, which stays at zero.
+Loads, weights, springs and dampers act on a row, at an offset o from its point. That moves and turns with
+the row:
 
-from .effects import Effects
-from .errors import History, InvalidParameter, choice
-from .loading import WAYS, BodyLoad, Prescribed, Spring, TipForce
+    u = d + (R(theta) - 1) o,    u' = d' + theta' (-(R o)_y, (R o)_x)
+
+An end of a strip on a body follows it like that without penalty or extra unknowns, and with phi = theta.
+Forces are reduced by the transpose of the derivative P of the map; the tangent is P^T K P plus the curvature
+of the map, -(R o).f on the diagonal entry of theta, with f the force of the element on the end.
+"""
+
+import math
+
+from .arrays import Array, Flags, Indices, kernel
 
 #: What an end of a strip is on, where it is not on a body: clamped to ground, or on nothing.
 GROUND, FREE = -1, -2
+#: Attached nodes (K,), the rows of the bodies that carry them, their offsets (K, 2) from these bodies'
+#: points, and whether they turn with the bodies.
+Carried = tuple[Indices, Indices, Array, Flags]
 
 
-def index_of(bodies: Sequence[str], name: str | None) -> int:
-    """Return the place of a body among the names of all; None means the only one there is."""
-    known = ", ".join(bodies) or "no bodies"
-    if len(bodies) != 1 if name is None else name not in bodies:
-        raise InvalidParameter("body", name, f"one of {known} [name]")
-    return 0 if name is None else bodies.index(name)
+@kernel()
+def turned(angle: float, x: float, y: float) -> tuple[float, float]:
+    """Return R (x, y) with the matrix R of a turn."""
+    c, s = math.cos(angle), math.sin(angle)
+    return c * x - s * y, s * x + c * y
 
 
-def check_places(effects: Effects, bodies: Sequence[str], strips: Sequence[str], free: Sequence[str]) -> None:
-    """Refuse loads, springs and drives on what is not there; free: names of strips whose tips are."""
-    for load in effects.every(BodyLoad):
-        index_of(bodies, load.body)
-    for tip in effects.every(TipForce):
-        if choice("strip", tip.strip, tuple(strips)) not in free:
-            raise InvalidParameter("tip_force", tip.strip, "a strip whose tip is free [name]")
-    for spring in effects.every(Spring):
-        index_of(bodies, spring.body)
-        index_of(bodies, spring.other or spring.body)
-    led = effects.every(Prescribed)
-    if led and not bodies:
-        name = next(name for name, same in effects.named.items() if led[0] in same)
-        raise InvalidParameter(name, "no bodies", "a body to lead [name]")
-    # those that name no body are of the one that is driven, which only a solve knows
-    prescribed(Effects(named={"": tuple(each for each in led if each.body is not None)}), bodies, None)
+@kernel()
+def swept(angle: float, x: float, y: float) -> tuple[float, float]:
+    """Return (R - 1) (x, y), written with sines: no cancellation at small turns."""
+    sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
+    return -less * x - sine * y, sine * x - less * y
 
 
-def prescribed(
-    effects: Effects, bodies: Sequence[str], body: int | None
-) -> dict[int, tuple[float, History | None]]:
-    """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+@kernel()
+def carry(carried: Carried, u: Array) -> None:
+    """Move the attached nodes with their bodies: exact rigid motion."""
+    attached, carrier, offsets, rigid = carried
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = swept(u[b, 2], offsets[k, 0], offsets[k, 1])
+        u[i, 0], u[i, 1] = u[b, 0] + x, u[b, 1] + y
+        if rigid[k]:
+            u[i, 2] = u[b, 2]
 
-    Coordinate k of body b stands under 3 b + k. body: where the effects name none; None: the only one.
+
+@kernel()
+def carry_velocity(carried: Carried, u: Array, v: Array) -> None:
+    """Write the velocities of the attached nodes."""
+    attached, carrier, offsets, rigid = carried
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = turned(u[b, 2], offsets[k, 0], offsets[k, 1])
+        v[i, 0] = v[b, 0] - v[b, 2] * y
+        v[i, 1] = v[b, 1] + v[b, 2] * x
+        if rigid[k]:
+            v[i, 2] = v[b, 2]
+
+
+@kernel()
+def gather(carried: Carried, u: Array, force: Array, curvature: Array) -> None:
+    """Add the forces on attached nodes to their bodies, about the points of these.
+
+    What the carrying adds to the stiffness of turns [N m] is written beside a zero for what else adds to it.
     """
-    found: dict[int, tuple[float, History | None]] = {}
-    for effect in effects.every(Prescribed):
-        index = body if effect.body is None and body is not None else index_of(bodies, effect.body)
-        for at, end in enumerate(effect.ends, start=3 * index):
-            if at in found and end is not None:
-                raise twice(bodies, at)
-            if end is not None:
-                found[at] = (end, effect.history)
-    return found
-
-
-def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
-    """Return the refusal of a coordinate, numbered as in `prescribed`, that is prescribed twice."""
-    told = f"{WAYS[at % 3]} of {bodies[at // 3]}"
-    return InvalidParameter("prescribed", told, "one drive or support for each coordinate [name]")
+    attached, carrier, offsets, rigid = carried
+    for i in range(len(curvature)):
+        curvature[i, 0] = curvature[i, 1] = 0.0
+    for k in range(len(attached)):
+        i, b = attached[k], carrier[k]
+        x, y = turned(u[b, 2], offsets[k, 0], offsets[k, 1])
+        force[b, 0] += force[i, 0]
+        force[b, 1] += force[i, 1]
+        force[b, 2] += x * force[i, 1] - y * force[i, 0]
+        if rigid[k]:
+            force[b, 2] += force[i, 2]
+        curvature[b, 0] -= x * force[i, 0] + y * force[i, 1]

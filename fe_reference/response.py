@@ -8,15 +8,12 @@ from .arrays import Array, kernel
 from .control import Control, State
 from .law import Written
 from .links import between
-from .loads import full_load
 from .matrix import Singular
-from .mesh import Tables, turned
 from .model import Model
-from .structure import Evaluation, Structure, structure_of
+from .places import turned
+from .structure import Evaluation, Structure, Tables, structure_of
 
 Rates = tuple[float, float, float, float]
-#: Turns of the bodies (B,), and two rates of them.
-Turns = tuple[Array, ...]
 
 
 def respond(control: Control, found: State) -> State:
@@ -33,7 +30,7 @@ def respond(control: Control, found: State) -> State:
     moves -= factors.solve(tangent.times(moves))
     left = factors.solve(found.residual)
     drive, rate = (found.residual - tangent.times(left))[held], control.slope @ moves
-    change, bent, first, second = control.rates(found.y, found.parameter, found.load_work)
+    change, bent, first, second = control.rates(found.y, found.parameter)
     if change is not None and bent is not None:
         rate -= factors.solve(change)
         second += float((change + bent) @ rate)
@@ -63,13 +60,9 @@ def _stiffness_between(
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
     written = (structure.work[0], at.ends, at.matrices, structure.work[1])
-    carried = tuple(each[structure.turns] for each in (y, one, other))
-    own = float(_between(structure.tables, u, v, w, rest, carried, written))
-    own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (carried[1] * carried[2]))
-    own += float(structure.springs[2] @ (structure.slips(one) * structure.slips(other)))
-    if len(structure.links[0]):
-        own += between(structure.links, carried[0], structure.bodies(one), structure.bodies(other))
-    return own
+    own = float(_between(structure.tables, u, v, w, rest, written))
+    own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (v[:, 2] * w[:, 2]))
+    return own + between(structure.links, u, v, w) if len(structure.links[1]) else own
 
 
 @kernel()
@@ -82,9 +75,7 @@ def _strained(x: float, y: float, rate: Array, i: int) -> tuple[float, Rates]:
 
 
 @kernel()
-def _between(
-    tables: Tables, u: Array, one: Array, other: Array, left: Array, carried: Turns, written: Written
-) -> float:
+def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, written: Written) -> float:
     """Return the same of the elements and of the nodes on bodies; of what is written forces are scratch.
 
     With v the turn of an element's chord (x, y), its own change c = rate - v (-y, x, 1) strains it, and of
@@ -96,7 +87,6 @@ def _between(
         tables,
         written,
     )
-    turns, one_turns, other_turns = carried
     total = 0.0
     force[:] = 0.0
     for e in range(len(first)):
@@ -117,8 +107,8 @@ def _between(
         force[j, 0], force[j, 1] = force[j, 0] + pull_x, force[j, 1] + pull_y
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
-        x, y = turned(turns[b], offsets[k, 0], offsets[k, 1])
-        total -= one_turns[b] * other_turns[b] * (x * force[i, 0] + y * force[i, 1])
+        x, y = turned(u[b, 2], offsets[k, 0], offsets[k, 1])
+        total -= one[b, 2] * other[b, 2] * (x * force[i, 0] + y * force[i, 1])
     return total
 
 
@@ -148,11 +138,9 @@ def body_stiffness(
     units, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     units[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)
-    load = full_load(structure)
+    load = structure.load()
     for k, y in enumerate(np.asarray(states)):
-        at = structure.evaluate(y)
-        if load is not None:
-            at = load.stiffened(at, structure, y, float(shares[k]))
+        at = structure.evaluate(y, load=load, acts=float(shares[k]))
         try:
             moves = units - at.tangent.factors(held).solve(at.tangent.times(units))
         except Singular:

@@ -14,7 +14,6 @@ from scipy.sparse.csgraph import connected_components
 
 from .arrays import Array, Flags, Indices
 from .errors import InvalidParameter
-from .loads import Load
 from .model import Model
 from .places import FREE, GROUND
 from .structure import Structure
@@ -78,8 +77,8 @@ def _tied(structure: Structure, part: Indices, many: int) -> Iterable[Array]:
         place, there = model.rest[strip, -end], model.ends[strip, end]
         ends = part[strip], part[-1 if there == GROUND else first + there]
         yield np.subtract(*(_motions(structure, each, place, many) for each in ends))[:2]
-    centres = np.vstack([model.centres, np.zeros(2)])
-    for pair, stiffness in zip(structure.links[0], structure.links[2], strict=True):
+    (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
+    for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
         one, other = (_motions(structure, part[first:][b], centres[b], many) for b in pair)
         yield (one - other)[stiffness > 0.0]
 
@@ -94,9 +93,10 @@ def _motions(structure: Structure, part: int, point: Array, many: int) -> Array:
     return rates[:, : 3 * many]
 
 
-def require_balance(structure: Structure, props: Indices, residual: Array, load: Load | None) -> None:
+def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
     """Refuse a state in which coordinates that are held for want of anything else bear something."""
-    largest = 0.0 if load is None else float(np.abs(load.constant).max())
+    rest = np.zeros(structure.size)
+    largest = 0.0 if load is None else float(np.abs(structure.load_force(rest, load)[0]).max())
     for k in props:
         if abs(residual[k]) > NONE * (structure.scale[k] + largest):
             body, axis = divmod(int(k) - structure.first_body, 3)

@@ -41,7 +41,7 @@ from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .links import fastest
-from .loads import full_load, steepest
+from .loads import steepest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme
@@ -64,33 +64,36 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array, coupled: 
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
     """
-    curvature, actions = structure.evaluate(y).curvature[:, 0], Actions(structure)
-    square = _highest(structure, bodies, y, TANGENT)
-    square += float(np.max(curvature / bodies.moment_of_inertia, initial=0.0))
-    square += steepest(structure, bodies.moment_of_inertia)
-    square += fastest(structure.links, structure.links[2], bodies.mass, bodies.moment_of_inertia)
-    for _, _, mass, inertia, *first, turn in () if coupled is None else coupled:
-        square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(mass * inertia)
-    material = _highest(structure, bodies, y, MATERIAL) if len(actions.dissipative[0]) else 0.0
-    decay = actions.fastest_decay(material, bodies.mass, bodies.moment_of_inertia)
+    actions, links = Actions(structure), structure.links
+    mass, inertia = bodies.rows(structure)
+    square = _highest(structure, inertia, y, TANGENT)
+    square += float(np.max(structure.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
+    square += steepest(structure.loads, structure.histories, inertia)
+    square += fastest(links, links[3], mass, inertia)
+    for _, _, own, turning, *first, turn in () if coupled is None else coupled:
+        square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
+    decay = actions.drag_rate + fastest(links, links[4], mass, inertia)
+    if len(actions.dissipative[0]):
+        decay += float(actions.dissipative[0][0]) * _highest(structure, inertia, y, MATERIAL)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
 
 
-def _highest(structure: Structure, bodies: RigidBodies, y: Array, asked: int) -> float:
+def _highest(structure: Structure, inertia: Array, y: Array, asked: int) -> float:
     """Return a squared frequency [1/s^2] above those of all elements, and of roots that give way.
 
     A root of stiffness k between a node of the inertia m and a body of the inertia J is shared out between
     them, with 2 a b <= r a^2 + b^2 / r and r^2 = m / J: k (1 + r) to the node, k (1 + 1 / r) to the body.
     """
     lumped, local = lumped_elements(structure), structure.evaluate(y, asked=asked).matrices[:, :6, :6]
-    (node, body, stiffness), last = structure.springs, structure.stations - 1
-    (strip, place), inertia = np.divmod(node, last + 1), np.append(bodies.moment_of_inertia, np.inf)
+    (roots, ends, _, stiffness, _), last = structure.links, structure.stations - 1
+    (node, row), stiffness = ends[:roots].T, stiffness[:roots, 2]
+    strip, place = np.divmod(node, last + 1)
     end = np.sign(place)
     element, turn = strip * last + end * (last - 1), 2 + 3 * end
-    ratio = np.sqrt(lumped[turn, element] / inertia[body])
+    ratio = np.sqrt(lumped[turn, element] / inertia[row])
     local[element, turn, turn] += stiffness * (1.0 + ratio)
     on_bodies = np.zeros(len(inertia))
-    np.add.at(on_bodies, body, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
+    np.add.at(on_bodies, row, stiffness * ratio * (1.0 + ratio) / lumped[turn, element])
     root = np.sqrt(lumped).T
     highest = np.linalg.eigvalsh(local / (root[:, :, None] * root[:, None, :]))[:, -1].max()
     return float(highest + on_bodies.max())
@@ -111,21 +114,15 @@ class Explicit(Scheme):
                 "central-difference",
                 "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
             )
-        self.compliance = structure.at_nodes(1.0 / self.mass)
 
     def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant:
         """Return the instant after a piece of steps."""
         s, actions, h, totals = self.structure, self.actions, piece.step, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
-        state = (
-            s.displacement(now.y),
-            s.velocity(now.y, late),
-            s.bodies(now.y).copy(),
-            s.bodies(late).copy(),
-        )
-        compliance = (self.compliance, s.bodies(self.inverse))
-        advance(actions.acting, actions.coupled, compliance, state, totals, now.time, h, piece.steps)
-        y, late = (s.gathered(*moved) for moved in (state[::2], state[1::2]))
+        state = s.displacement(now.y), s.velocity(now.y, late)
+        drives = actions.coupled, s.coordinates[self.held]
+        advance(actions.acting, *drives, s.spread(self.inverse), state, totals, now.time, h, piece.steps)
+        y, late = (s.gathered(moved) for moved in state)
         after = actions.resist(y, late, now.time + piece.steps * h)
         a = -self.inverse * after.force
         v = late + 0.5 * h * a
@@ -263,14 +260,12 @@ class Implicit(Scheme):
 
         What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
         """
-        tangent = self.structure.evaluate(y).tangent
+        tangent = self.structure.evaluate(y, load=self.structure.load(time)).tangent
         if self.actions.damped:
             tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
         tangent.data *= 1.0 - self.af
+        tangent.left *= 1.0 - self.af
         tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
-        load = full_load(self.structure, time=time)
-        if load is not None:
-            tangent = load.stiffen(tangent, y, 1.0 - self.af)
         samples.counters["factorisations"] += 1
         return tangent.factors(self.held)
 

@@ -117,7 +117,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
         ends = np.array([structure.evaluate(each, asked=FORCES).ends for each in y])
     grid, rows, many = (structure.strips, structure.stations), (structure.strips, -1), len(y)
     force_x, force_y, first, last = np.moveaxis(ends[..., :4], -1, 0).reshape(4, many, *rows)
-    nodal = np.array([structure.displacement(each) for each in y]).reshape(many, *grid, 3)
+    nodal = np.array([structure.displacement(each)[: structure.nodes] for each in y]).reshape(many, *grid, 3)
     force_x, force_y, moment = _midpoints(force_x), _midpoints(force_y), _at_nodes(-first, last)
     angle = _nodal_angles(structure)
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])

@@ -11,7 +11,6 @@ from .control import Control, spans
 from .errors import InvalidParameter, choice, count, finite, pair, several
 from .law import FORCES
 from .loading import WAYS, DrivenDisplacement, Prescribed
-from .loads import full_load
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import confirmed, limit_of
@@ -196,7 +195,7 @@ def settled_state(
     above.
     """
     structure, led = structure_of(model), model.effects.every(Prescribed)
-    load = full_load(structure, time=0.0 if starts else None)
+    load = structure.load(0.0 if starts else None)
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
     if not rotation and load is None and not _moving(led) and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
@@ -231,7 +230,7 @@ def _solved(
     led = model.effects.every(Prescribed)
     driven = rotations is not None or any(each.body is None for each in led)
     which = model.body_index(body) if driven or body is not None else None
-    acting = full_load(structure, time=0.0 if starts else None)
+    acting = structure.load(0.0 if starts else None)
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
     controls = spans(

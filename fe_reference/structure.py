@@ -2,10 +2,11 @@
 
 Reduced coordinates y: displacement and turn (u_x, u_y, phi) of every free node, strip by strip, then for
 every body the displacement d (2,) of its reference point and its turn theta; between them the turns of nodes
-at roots that give way. Attached ends of strips follow their bodies as in `mesh`.
+at roots that give way. Attached ends of strips follow their bodies as in `places`.
 
-Gravity and natural strains, where they are named, are part of the potential here. They can be applied in
-part: `share` goes from 0 to 1 on the way from the shape at rest to the state under both.
+Gravity, natural strains and links, where they are named, are part of the potential here, and loads where they
+are asked for. Gravity and natural strains can be applied in part: `share` goes from 0 to 1 on the way from
+the shape at rest to the state under both.
 """
 
 from collections.abc import Sequence
@@ -15,23 +16,19 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Array, Flags, Indices
+from .arrays import Array, Flags, Indices, kernel
 from .bending import CURL
 from .effects import Gravity, PreStrain
-from .law import FORCES, TANGENT
-from .links import add_links, link_forces, links_of, numbers
+from .law import FORCES, TANGENT, Energies, Given, Written, elements
+from .links import Links, add_links, link_forces, links_of
+from .loads import Pulls, followers, loads_of, pull, pulls_of, put_factors
 from .matrix import Envelope, Symmetric, assemble
-from .mesh import (
-    RESULTANTS,
-    Elements,
-    carry,
-    carry_velocity,
-    potential,
-    root_stiffness,
-    strip_basis,
-)
+from .mesh import Elements, root_stiffness, strip_basis
 from .model import Model
-from .places import FREE
+from .places import FREE, Carried, carry, carry_velocity, gather
+
+#: What of a structure resists by its place alone: elements, ends on bodies, weight and links.
+Tables = tuple[Given, Carried, Pulls, Links]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,11 +38,12 @@ class Evaluation:
     Attributes:
         gradient (size,): [N, N m]. tangent: its derivative, zero if it was not asked for.
         strain (3,): bending, axial and shear energy [J]. spring: energy of springs between bodies [J].
-        gravity: energy of the full weight [J].
+        gravity: energy of the full weight [J]. work: of the loads in full since rest, of those with a
+        potential [J].
         ends (E, 5): force x, y [N] at the second node of the elements, moments [N m] at both, and the largest
             turn of an end from its element [rad].
-        matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (B, 2): what
-            the carrying of nodes, and of weight and springs, adds to the stiffness of the turns [N m].
+        matrices (E, 8, 8): tangents of the elements, none if they were not asked for. curvature (rows, 2):
+            what the carrying of nodes, and of weight, links and loads, adds to the stiffness of turns [N m].
     """
 
     gradient: Array
@@ -53,6 +51,7 @@ class Evaluation:
     strain: tuple[float, float, float]
     spring: float
     gravity: float
+    work: float
     ends: Array
     matrices: Array
     curvature: Array
@@ -73,12 +72,14 @@ class Structure:
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
         self.strips, self.stations = model.arcs.shape
-        self._number()
+        #: rows of the nodes, from which on come those of the bodies and of the ground
+        self.nodes = model.arcs.size
+        soft = self._number()
         self.length = float(model.lengths.max())
         rigidity = max(strip.flexural_rigidity for strip in model.strips)
         self.force_unit, self.moment_unit = rigidity / self.length**2, rigidity / self.length
         #: which component each coordinate is: x, y or turn
-        self.axis = np.append(self.nodal, np.arange(self.size - self.first_body)) % 3
+        self.axis = self.coordinates % 3
         self.scale = np.where(self.axis == 2, self.moment_unit, self.force_unit)
         #: what changes of the coordinates are multiplied with to count in strip lengths and rad
         self.measure = np.where(self.axis == 2, 1.0, 1.0 / self.length)
@@ -89,81 +90,75 @@ class Structure:
             first,
             CURL,
         )
-        self.links = links_of(model, self.points)
-        self.tables = (self.given, self.carried, self._weight(), self.springs)
-        nodes = self.strips * self.stations
-        self.work = (np.zeros((nodes, 3)), np.zeros((4, 4)))
+        self.links = links_of(model, self.points, soft)
+        self.loads, self.histories = loads_of(model, self.points)
+        self.tables: Tables = (self.given, self.carried, self._weight(), self.links)
+        rows = len(self.numbers)
+        self.work = (np.zeros((rows, 3)), np.zeros((4, 4)), np.zeros((rows, 3)))
 
-    def _number(self) -> None:
-        """Number the reduced coordinates, of elements (E, 6) and of the bodies at their ends (E, 2).
+    def _number(self) -> list[tuple[int, int, float]]:
+        """Number the reduced coordinates: those of rows (rows, 3), and of elements (E, 8).
 
-        -1 marks what is clamped, and an end on no body.
+        -1 marks what is clamped. Returned is of the roots that give way: node, row of what it is on and
+        stiffness [N m].
         """
-        grid, ends = np.arange(self.strips * self.stations).reshape(self.strips, -1), self.model.ends
+        grid, ends = np.arange(self.nodes).reshape(self.strips, -1), self.model.ends
         stiffness, at_ends = root_stiffness(self.model), grid[:, [0, -1]]
         end, strip = np.nonzero(ends.T >= 0)
         node, carrier = at_ends[strip, end], ends[strip, end]
         offsets = self.model.rest.reshape(-1, 2)[node] - self.points[carrier]
-        self.carried = (node, carrier, offsets, np.isinf(stiffness[strip, end]))
+        self.carried = (node, self.nodes + carrier, offsets, np.isinf(stiffness[strip, end]))
         soft = np.isfinite(stiffness)
-        self.springs = (at_ends[soft], np.maximum(ends[soft], -1), stiffness[soft])
         free = np.setdiff1d(grid, at_ends[ends != FREE])
-        self.nodal = np.append(3 * free[:, None] + np.arange(3), 3 * self.springs[0] + 2)
-        self.first_body = len(self.nodal)
-        self.size = self.first_body + 3 * len(self.points)
+        nodal = np.append(3 * free[:, None] + np.arange(3), 3 * at_ends[soft] + 2)
+        bodies = np.arange(3 * self.nodes, 3 * (self.nodes + len(self.points)))
+        #: where in rows the coordinates are
+        self.coordinates, self.first_body = np.append(nodal, bodies), len(nodal)
+        self.size = len(self.coordinates)
         self.turns = np.arange(self.first_body + 2, self.size, 3)
-        numbers = np.full(3 * grid.size, -1, dtype=np.int64).reshape(-1, 3)
-        numbers[node] = self.turns[carrier, None] + np.arange(-2, 1)
-        numbers.reshape(-1)[self.nodal] = np.arange(self.first_body)
+        self.numbers = np.full((self.nodes + len(self.points) + 1, 3), -1, dtype=np.int64)
+        self.numbers[node] = self.turns[carrier, None] + np.arange(-2, 1)
+        self.numbers.reshape(-1)[self.coordinates] = np.arange(self.size)
         self.ends, turns = np.full((2, self.strips, self.stations - 1, 2), -1)
         place = (strip, end * (self.stations - 2), end)
         self.ends[place], turns[place] = np.arange(len(node)), self.turns[carrier]
         self.ends = self.ends.reshape(-1, 2)
-        self.numbers = np.hstack([numbers.ravel()[self.basis.element_dofs].T, turns.reshape(-1, 2)])
+        own = self.numbers.ravel()[self.basis.element_dofs].T
+        self.element_numbers = np.hstack([own, turns.reshape(-1, 2)])
+        rows = np.where(ends[soft] >= 0, ends[soft], len(self.points)) + self.nodes
+        return list(zip(at_ends[soft], rows, stiffness[soft], strict=True))
 
     @cached_property
     def pattern(self) -> Envelope:
         """Where the entries of matrices in the reduced coordinates lie."""
-        every, first = np.arange(self.size), self.first_body
-        bodies = every[first:].reshape(-1, 3)
-        roots = every[first - len(self.springs[0]) : first]
-        springs = np.stack([roots, np.append(self.turns, -1)[self.springs[1]]], axis=1)
-        return Envelope(self.numbers, bodies, springs, numbers(self.links, bodies), self.size)
+        bodies = np.arange(self.first_body, self.size).reshape(-1, 3)
+        links = self.numbers[self.links[1]].reshape(-1, 6)
+        return Envelope(self.element_numbers, bodies, links, self.size)
 
     def bodies(self, y: Array) -> Array:
         """Return what coordinates or velocities (..., size) have of the bodies (..., B, 3)."""
         return y[..., self.first_body :].reshape(*y.shape[:-1], -1, 3)
 
-    def slips(self, y: Array) -> Array:
-        """Return how far nodes or rates of them (size,) are turned from roots that give way (R,)."""
-        own = y[self.first_body - len(self.springs[0]) : self.first_body]
-        return np.asarray(own - np.append(y[self.turns], 0.0)[self.springs[1]])
-
-    def _weight(self) -> tuple[Array, Array]:
-        """Return the weight of nodes (nodes, 3) and bodies (B, 4) as in `rigid`, empty if not named.
+    def _weight(self) -> Pulls:
+        """Return the weight of free nodes and of bodies with what they carry, none if it is not named.
 
         Half of every element is at each of its nodes: an error of second order in the element length. What
         hangs on a clamp is not felt.
         """
         gravity = self.model.effects.find(Gravity)
         if gravity is None:
-            return np.zeros((0, 3)), np.zeros((0, 4))
-        g, masses, (attached, carrier, offsets, _) = (
-            np.array(gravity.acceleration),
-            self.nodal_masses(),
-            self.carried,
-        )
-        nodes, bodies = np.zeros((len(masses), 3)), np.zeros((len(self.points), 4))
-        free = self.nodal[self.nodal % 3 == 0] // 3
-        nodes[free, :2] = masses[free, None] * g
-        own = np.array([body.mass for body in self.model.bodies])
-        total, moments = own.copy(), own[:, None] * (self.model.centres - self.points)
+            return pulls_of(np.zeros(0), np.zeros((0, 6)))
+        masses, (attached, carrier, offsets, _) = self.nodal_masses(), self.carried
+        total = np.concatenate([masses, [body.mass for body in self.model.bodies]])
+        moments = total[self.nodes :, None] * (self.model.centres - self.points)
         np.add.at(total, carrier, masses[attached])
-        np.add.at(moments, carrier, masses[attached][:, None] * offsets)
-        heavy = total > 0.0
-        bodies[:, :2] = total[:, None] * g
-        bodies[heavy, 2:] = moments[heavy] / total[heavy, None]
-        return nodes, bodies
+        np.add.at(moments, carrier - self.nodes, masses[attached][:, None] * offsets)
+        free = np.setdiff1d(self.coordinates[self.axis == 0] // 3, attached)
+        table = np.zeros((len(total), 6))
+        table[:, :2] = total[:, None] * gravity.acceleration
+        heavy = np.flatnonzero(total[self.nodes :] > 0.0)
+        table[self.nodes + heavy, 3:5] = moments[heavy] / total[self.nodes + heavy, None]
+        return pulls_of(free, table[free])
 
     @cached_property
     def constant_words(self) -> str:
@@ -193,9 +188,15 @@ class Structure:
         """Return which of the coordinates are chosen (size,)."""
         return np.isin(np.arange(self.size), chosen)
 
-    def gathered(self, nodes: Array, bodies: Array) -> Array:
-        """Return in the order of the coordinates (size,) what nodes (nodes, 3) and bodies (B, 3) have."""
-        return np.concatenate([nodes.ravel()[self.nodal], bodies.ravel()])
+    def gathered(self, rows: Array) -> Array:
+        """Return in the order of the coordinates (size,) what rows (rows, 3) have."""
+        return rows.ravel()[self.coordinates]
+
+    def spread(self, y: Array) -> Array:
+        """Return what coordinates or velocities (size,) have in rows (rows, 3), 0 where they follow."""
+        full = np.zeros(3 * len(self.numbers))
+        full[self.coordinates] = y
+        return full.reshape(-1, 3)
 
     def nodal_masses(self) -> Array:
         """Return the mass of the strips that falls to each node, half of every element (nodes,) [kg]."""
@@ -203,64 +204,78 @@ class Structure:
         masses: Array = np.bincount(self.basis.mesh.t.ravel(), np.tile(half, 2)).astype(float)
         return masses
 
-    def at_nodes(self, y: Array) -> Array:
-        """Return what coordinates or velocities (size,) have of the nodes (nodes, 3), 0 where they follow."""
-        full = np.zeros(3 * self.strips * self.stations)
-        full[self.nodal] = y[: self.first_body]
-        return full.reshape(-1, 3)
-
     def displacement(self, y: Array) -> Array:
-        """Return displacement and turn of all nodes, (nodes, 3) [m, rad]."""
-        full = self.at_nodes(y)
-        carry(self.bodies(y), self.carried, full)
+        """Return displacement and turn of all rows, (rows, 3) [m, rad]."""
+        full = self.spread(y)
+        carry(self.carried, full)
         return full
 
     def velocity(self, y: Array, v: Array) -> Array:
-        """Return the rates of displacement and turn of all nodes, (nodes, 3) [m/s, rad/s]."""
-        full = self.at_nodes(v)
-        carry_velocity(self.bodies(y), self.bodies(v), self.carried, full)
+        """Return the rates of displacement and turn of all rows, (rows, 3) [m/s, rad/s]."""
+        full = self.spread(v)
+        carry_velocity(self.carried, self.spread(y), full)
         return full
 
-    def evaluate(self, y: Array, share: float = 1.0, asked: int = TANGENT) -> Evaluation:
-        """Return gradient, tangent and energies at y under a share of weight and natural strains."""
-        many, tangent = len(self.numbers), self.pattern.zero()
+    def load(self, time: float | None = None) -> Array | None:
+        """Return the factors of the loads in full, or at an instant [s], (K,); None if there are none."""
+        factors = np.ones(len(self.loads[0]))
+        if time is not None:
+            put_factors(self.histories, time, factors)
+        return factors if factors.size else None
+
+    @property
+    def follows(self) -> bool:
+        """Whether there are loads without a potential."""
+        table = self.loads[1]
+        return bool((table[:, 5] * np.abs(table[:, :2]).sum(axis=1)).any())
+
+    def load_force(self, y: Array, load: Array, dead: bool = False) -> tuple[Array, float]:
+        """Return generalised force and work [J] of loads times factors (K,), or of the dead ones."""
+        force = np.zeros((len(self.numbers), 3))
+        self.loads[2][:] = load * (1.0 - self.loads[1][:, 5]) if dead else load
+        work = pull(self.loads, -1.0, self.displacement(y), force, np.empty((len(force), 2)))
+        return self.gathered(force), work
+
+    def evaluate(
+        self, y: Array, share: float = 1.0, asked: int = TANGENT, load: Array | None = None, acts: float = 1.0
+    ) -> Evaluation:
+        """Return gradient, tangent and energies at y under a share of weight and natural strains.
+
+        load (K,): factors of the loads, of which the share `acts` is in the gradient and in the tangent.
+        """
+        many, tangent = len(self.element_numbers), self.pattern.zero()
         matrices, ends = np.zeros((many if asked != FORCES else 0, 8, 8)), np.empty((many, 5))
-        u, bodies = self.displacement(y), self.bodies(y)
-        resultants, (force, scratch) = np.empty((len(bodies), RESULTANTS)), self.work
-        written = (force, ends, matrices, scratch)
-        strain, gravity = potential(self.tables, share, asked, u, bodies, written, resultants)
-        spring = 0.0
-        if len(self.links[0]):
-            spring, _ = link_forces(self.links, bodies, np.zeros_like(bodies), resultants)
+        u, (force, scratch, still), work = self.displacement(y), self.work, 0.0
+        written, curvature = (force, ends, matrices, scratch), np.empty((len(u), 2))
+        strain, spring, gravity = potential(self.tables, share, asked, u, still, written, curvature)
+        if load is not None:
+            self.loads[2][:] = load
+            work = pull(self.loads, acts, u, force, curvature)
         if asked != FORCES:
-            tangent = self.reduced_matrix(matrices, y)
+            tangent = self.reduced_matrix(matrices, u)
         if asked == TANGENT:
-            tangent.data[self.pattern.diagonal[self.turns]] += resultants[:, 3:].sum(axis=1)
-            if len(self.springs[0]):
-                self.add_springs(tangent)
-            if len(self.links[0]):
-                add_links(self.links, y[self.turns], self.links[2], tangent)
+            bodies = curvature[self.nodes : -1].sum(axis=1)
+            tangent.data[self.pattern.diagonal[self.turns]] += bodies
+            if len(self.links[1]):
+                add_links(self.links, u, self.links[3], tangent)
+            if load is not None and self.follows:
+                tangent.left, tangent.right = followers(self.loads, acts, self.numbers, u, self.size)
         return Evaluation(
-            gradient=self.gathered(force, resultants[:, :3]),
+            gradient=self.gathered(force),
             tangent=tangent,
             strain=strain,
             spring=spring,
             gravity=gravity,
+            work=work,
             ends=ends,
             matrices=matrices,
-            curvature=resultants[:, 3:],
+            curvature=curvature,
         )
 
-    def add_springs(self, matrix: Symmetric, part: float = 1.0) -> None:
-        """Add a part of the stiffness of the roots to a matrix."""
-        places, signs = self.pattern.springs, np.array([[part, -part], [-part, part]])
-        values = self.springs[2][:, None, None] * signs
-        np.add.at(matrix.data, places[places >= 0], values[places >= 0])
-
-    def reduced_matrix(self, matrices: Array, y: Array) -> Symmetric:
-        """Assemble element matrices (E, 8, 8) into the reduced coordinates as P^T K P: see `assemble`."""
+    def reduced_matrix(self, matrices: Array, u: Array) -> Symmetric:
+        """Assemble element matrices (E, 8, 8) at displacements of all rows as P^T K P: see `assemble`."""
         whole = self.pattern.zero()
-        assemble(matrices, self.ends, self.carried, y[self.turns], self.pattern.places, whole.data)
+        assemble(matrices, self.ends, self.carried, u, self.pattern.places, whole.data)
         return whole
 
     def body_places(self, y: Array) -> Array:
@@ -281,6 +296,22 @@ class Structure:
         )
         bend = 4.0 * (u_0 - 2.0 * u_1 + u_2)
         return full.gradient - none.gradient, u_2 - u_0 + 0.5 * bend, bend
+
+
+@kernel()
+def potential(
+    tables: Tables, share: float, asked: int, u: Array, still: Array, written: Written, curvature: Array
+) -> tuple[Energies, float, float]:
+    """Write forces and curvature; return energies of the strips, of springs and of the full weight.
+
+    still (rows, 3): velocities of zero.
+    """
+    given, carried, weights, links = tables
+    bending, axial, shear = elements(given, share, asked, u, written)
+    gather(carried, u, written[0], curvature)
+    gravity = -pull(weights, share, u, written[0], curvature)
+    rooted, spring, _ = link_forces(links, u, still, written[0], curvature)
+    return (bending + rooted, axial, shear), spring, gravity
 
 
 @lru_cache(maxsize=16)

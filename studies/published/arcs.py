@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
 from fe_reference.control import Control, equilibrate
-from fe_reference.loads import full_load
 from fe_reference.model import Model
 from fe_reference.path import Path, follow
 from fe_reference.response import respond
@@ -131,7 +130,7 @@ def _led(model: Model, frame: Frame) -> Control:
         ends[structure.body_slice(at // 3).start + at % 3] = end
     held = np.array(sorted(ends), dtype=np.int64)
     values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])
-    return Control(structure=structure, held=held, values=values, load=full_load(structure))
+    return Control(structure=structure, held=held, values=values, load=structure.load())
 
 
 def _let_turn(model: Model, frame: Frame, control: Control) -> Path:
@@ -198,7 +197,8 @@ def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
 def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice) -> Arc:
     """Return an arc with the states on from the limit of its load, as far as its body is led."""
     assert path.control.load is not None
-    on, factors = _led_on(path, path.control.load.constant)
+    force, _ = structure.load_force(np.zeros(structure.size), path.control.load)
+    on, factors = _led_on(path, force)
     if len(on.states) < 2:
         return arc
     load, slope = frame.load * factors

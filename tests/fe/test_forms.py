@@ -108,7 +108,7 @@ def test_elements_are_what_scikit_fem_assembles(element: str) -> None:
     basis = Basis(structure.basis.mesh, structure.basis.elem, quadrature=POINTS[element])
 
     def error(move: float = 0.0) -> float:
-        u, many = bent(structure), len(structure.numbers)
+        u, many = bent(structure), len(structure.elements.length)
         nodal, ends, own = np.empty_like(u), np.empty((many, 5)), np.empty((many, 6, 6))
         written = (nodal, ends, own, np.empty((4, 4)))
         energies = elements(structure.given, 1.0, TANGENT, u + move * LENGTH * u, written)
