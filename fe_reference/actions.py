@@ -67,7 +67,7 @@ class Actions:
         self.damped = any(len(table) for table in self.dissipative) or bool(structure.links[4].any())
         force, scratch, _ = structure.work
         self.written = (force, np.zeros((many, 5)), np.zeros((len(relaxation), 6, 6)), scratch)
-        tables = (structure.tables, self.dissipative, structure.loads, structure.histories)
+        tables = (structure.tables, self.dissipative, structure.loads.pulls, structure.loads.histories)
         self.acting: Acting = (*tables, self.written, np.zeros((len(force), 2)))
         self.coupled = np.zeros((0, 7))
 

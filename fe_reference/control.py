@@ -142,7 +142,7 @@ class Control:
         if self.load is None or self.growth == 0.0:
             return None, None, 0.0, 0.0
         dead, work = self.structure.load_force(y, self.load, dead=True)
-        force = self.structure.load_force(y, self.load)[0] if self.structure.follows else dead
+        force = self.structure.load_force(y, self.load)[0] if self.structure.loads.follows else dead
         return -self.growth * force, -self.growth * dead, -self.growth * work, 0.0
 
     def factors(self, balance: State, grain: float = 0.0) -> Factors:

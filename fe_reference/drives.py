@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated
 
-from .arrays import Array, Flags, rotation_matrix
+import numpy as np
+
+from .arrays import Array, Flags
 from .effects import twice
 from .errors import Checked, History, InvalidParameter, finite, read_history
 from .loading import ALWAYS_FULL, factor_of
@@ -110,18 +112,11 @@ class Span:
         for at, rate in self.rates.items():
             after[structure.first_body + at] = rate
         for body in self.led:
-            place, inertia = structure.body_slice(body), bodies.moment_of_inertia[body]
-            if 3 * body + 2 not in self.rates and inertia > 0.0:
-                arm = rotation_matrix(y[place][2]) @ (bodies.centre[body] - structure.points[body])
-                change = (after - v)[place]
-                lever = arm[0] * change[1] - arm[1] * change[0]
-                free = [k for k in (0, 1) if 3 * body + k not in self.rates]
-                for k in free:  # what is led one way is turned, and thereby moved the other way
-                    inertia -= bodies.mass[body] * arm[1 - k] ** 2
-                turn = -bodies.mass[body] * lever / inertia
-                after[place.stop - 1] += turn
-                for k in free:
-                    after[place.start + k] += (arm[1], -arm[0])[k] * turn
+            place, free = structure.body_slice(body), [k for k in range(3) if 3 * body + k not in self.rates]
+            mass = bodies.block(structure, body, y[place][2])[free]
+            impulse = mass @ (after - v)[place]
+            if impulse.any():  # free coordinates take what keeps their momentum
+                after[place][free] -= np.linalg.solve(mass[:, free], impulse)
         return after
 
     def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[Piece]:

@@ -5,6 +5,8 @@ and a stiffness that depend on the turn. A follower R F has no potential: its ta
 -R' F (x) 1 of its rate in the turn and the turn's unit vector, which is not symmetric.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .arrays import Array, Indices, kernel
@@ -24,34 +26,6 @@ def pulls_of(rows: Array | Indices, table: Array) -> Pulls:
     """Return loads on rows (K,) with a table (K, 6), in full."""
     many = len(rows)
     return np.asarray(rows, dtype=np.int64), np.reshape(table, (many, 6)), np.ones(many), np.zeros((many, 3))
-
-
-def loads_of(model: Model, points: Array) -> tuple[Pulls, Histories]:
-    """Return the named loads of a model whose bodies are reduced about `points` (B, 2) [m]."""
-    rows, table, histories = [], [], list[History]()
-    for load in model.effects.every(Load):
-        if isinstance(load, TipForce):
-            row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
-        else:
-            k = model.body_index(load.body)
-            row, place = model.arcs.size + k, model.bodies[k].centre if load.at is None else load.at
-            offset = place - points[k]
-        rows.append(row)
-        table.append((*load.force, load.moment, *offset, load.follower))
-        histories.append(load.history)
-    instants, factors = np.array([point for each in histories for point in each]).reshape(-1, 2).T.copy()
-    begins = np.cumsum([0, *map(len, histories)])
-    return pulls_of(np.array(rows), np.array(table)), (begins, instants, factors)
-
-
-def steepest(pulls: Pulls, histories: Histories, inertia: Array) -> float:
-    """Return what no stiffness of turns by forces beside the points of rows exceeds, over the inertia
-    (rows,) [1/s^2]."""
-    (rows, table, _, _), (begins, _, factors), total = pulls, histories, 0.0
-    for k in np.flatnonzero(table[:, 3:5].any(axis=1)):
-        largest = np.abs(factors[begins[k] : begins[k + 1]]).max()
-        total += float(largest * np.hypot(*table[k, :2]) * np.hypot(*table[k, 3:5]) / inertia[rows[k]])
-    return total
 
 
 @kernel()
@@ -103,16 +77,66 @@ def load_power(pulls: Pulls, v: Array) -> float:
     return power
 
 
-def followers(pulls: Pulls, share: float, numbers: Indices, u: Array, size: int) -> tuple[Array, Array]:
-    """Return the vectors (R, size) whose products a share of the loads that follow adds to the tangent.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Loads:
+    """The named loads of a model."""
 
-    numbers (rows, 3): coordinates.
-    """
-    rows, table, factors, _ = pulls
-    follow = np.flatnonzero((table[:, 5] > 0.0) & table[:, :2].any(axis=1))
-    left, right = np.zeros((2, len(follow), size))
-    for r, k in enumerate(follow):
-        x, y = turned(u[rows[k], 2], *(share * factors[k] * table[k, :2]))
-        left[r, numbers[rows[k], :2]] = y, -x
-        right[r, numbers[rows[k], 2]] = 1.0
-    return left, right
+    pulls: Pulls
+    histories: Histories
+
+    @classmethod
+    def of(cls, model: Model, points: Array) -> "Loads":
+        """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
+        rows, table, histories = [], [], list[History]()
+        for load in model.effects.every(Load):
+            if isinstance(load, TipForce):
+                row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
+            else:
+                k = model.body_index(load.body)
+                row, place = model.arcs.size + k, model.bodies[k].centre if load.at is None else load.at
+                offset = place - points[k]
+            rows.append(row)
+            table.append((*load.force, load.moment, *offset, load.follower))
+            histories.append(load.history)
+        instants, factors = np.array([point for each in histories for point in each]).reshape(-1, 2).T.copy()
+        begins = np.cumsum([0, *map(len, histories)])
+        return cls(pulls=pulls_of(np.array(rows), np.array(table)), histories=(begins, instants, factors))
+
+    def factors(self, time: float | None = None) -> Array | None:
+        """Return the factors of the loads in full, or at an instant [s], (K,); None if there are none."""
+        factors = np.ones(len(self.pulls[0]))
+        if time is not None:
+            put_factors(self.histories, time, factors)
+        return factors if factors.size else None
+
+    @property
+    def _following(self) -> Indices:
+        table = self.pulls[1]
+        return np.flatnonzero((table[:, 5] > 0.0) & table[:, :2].any(axis=1))
+
+    @property
+    def follows(self) -> bool:
+        """Whether there are loads without a potential."""
+        return len(self._following) > 0
+
+    def tangent(self, share: float, numbers: Indices, u: Array, size: int) -> tuple[Array, Array]:
+        """Return vectors (R, size), whose products a share of the loads that follow adds to the tangent.
+
+        numbers (rows, 3): coordinates. u (rows, 3): displacements and turns.
+        """
+        (rows, table, factors, _), follow = self.pulls, self._following
+        left, right = np.zeros((2, len(follow), size))
+        for r, k in enumerate(follow):
+            x, y = turned(u[rows[k], 2], *(share * factors[k] * table[k, :2]))
+            left[r, numbers[rows[k], :2]] = y, -x
+            right[r, numbers[rows[k], 2]] = 1.0
+        return left, right
+
+    def steepest(self, inertia: Array) -> float:
+        """Return what no stiffness of turns by forces beside the points of rows exceeds, over the inertia
+        (rows,) [1/s^2]."""
+        (rows, table, _, _), (begins, _, factors), total = self.pulls, self.histories, 0.0
+        for k in np.flatnonzero(table[:, 3:5].any(axis=1)):
+            largest = np.abs(factors[begins[k] : begins[k + 1]]).max()
+            total += float(largest * np.hypot(*table[k, :2]) * np.hypot(*table[k, 3:5]) / inertia[rows[k]])
+        return total

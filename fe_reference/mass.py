@@ -55,6 +55,11 @@ class RigidBodies:
         found[:, structure.nodes : -1] = self.mass, self.moment_of_inertia
         return found[0], found[1]
 
+    def block(self, structure: Structure, body: int, turn: float) -> Array:
+        """Return the mass matrix (3, 3) of a body in its coordinates where it is turned [rad]."""
+        arm = turned(turn, *(self.centre[body] - structure.points[body]))
+        return _block(self.mass[body], arm, self.moment_of_inertia[body])
+
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) of a structure that is reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
@@ -194,13 +199,16 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     blocks = np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1)
     whole = structure.reduced_matrix(blocks, structure.displacement(y))
     for k, (mass, inertia) in enumerate(_own_inertia(structure)):
-        at, offset = structure.body_slice(k), structure.model.bodies[k].centre - structure.points[k]
-        arm = turned(y[at][2], *offset)
-        slope = np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]])
-        block = mass * slope.T @ slope
-        block[2, 2] += inertia
-        whole.data[structure.pattern.blocks[k]] += block
+        arm = turned(y[structure.turns[k]], *(structure.model.bodies[k].centre - structure.points[k]))
+        about = inertia + mass * (arm[0] ** 2 + arm[1] ** 2)
+        whole.data[structure.pattern.blocks[k]] += _block(mass, arm, about)
     return whole
+
+
+def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
+    """Return the mass matrix (3, 3) of a body whose mass is at an arm [m], about which its inertia is not."""
+    x, y = mass * arm[0], mass * arm[1]
+    return np.array([[mass, 0.0, -y], [0.0, mass, x], [-y, x, inertia]])
 
 
 def _linear_elements(structure: Structure) -> Array:

@@ -120,7 +120,7 @@ def natural_frequencies(
     require_model(pivot)
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
-    if structure_of(pivot).follows:
+    if structure_of(pivot).loads.follows:
         raise InvalidParameter("follower", True, "dead loads for modes: flutter is not modelled [1]")
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
@@ -133,7 +133,7 @@ def natural_frequencies(
         except NothingHolds:  # under the loads in full
             y, _ = settled_state(model, rotation, body, increments, starts=True)
             time = 0.0
-        modes = _modes(structure, y, _held(model, body, held), kind, count, structure.load(time))
+        modes = _modes(structure, y, _held(model, body, held), kind, count, structure.loads.factors(time))
         count = len(modes.frequency)  # of finer meshes as many as of the first
         return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
 

@@ -241,7 +241,7 @@ def _integral(control: Control, before: State, after: State) -> float:
     """
     step, load, structure = after.parameter - before.parameter, control.load, control.structure
     total = 0.5 * step * (before.conjugate + after.conjugate) + step**2 / 12.0 * (before.slope - after.slope)
-    if load is not None and structure.follows:
+    if load is not None and structure.loads.follows:
         ends = [(at.parameter, at.y, at.rate) for at in (before, after)]
         curve = CubicHermiteSpline(*zip(*ends, strict=True))
         for place, weight in zip(*leggauss(3), strict=True):

@@ -138,7 +138,7 @@ def body_stiffness(
     units, nothing = np.zeros((3, structure.size)), np.zeros(structure.size)
     units[:, place] = np.eye(3)
     found = np.full((len(states), 3, 3), np.nan)
-    load = structure.load()
+    load = structure.loads.factors()
     for k, y in enumerate(np.asarray(states)):
         at = structure.evaluate(y, load=load, acts=float(shares[k]))
         try:

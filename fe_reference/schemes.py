@@ -41,7 +41,6 @@ from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .links import fastest
-from .loads import steepest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme
@@ -68,7 +67,7 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array, coupled: 
     mass, inertia = bodies.rows(structure)
     square = _highest(structure, inertia, y, TANGENT)
     square += float(np.max(structure.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
-    square += steepest(structure.loads, structure.histories, inertia)
+    square += structure.loads.steepest(inertia)
     square += fastest(links, links[3], mass, inertia)
     for _, _, own, turning, *first, turn in () if coupled is None else coupled:
         square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
@@ -260,7 +259,7 @@ class Implicit(Scheme):
 
         What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
         """
-        tangent = self.structure.evaluate(y, load=self.structure.load(time)).tangent
+        tangent = self.structure.evaluate(y, load=self.structure.loads.factors(time)).tangent
         if self.actions.damped:
             tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
         tangent.data *= 1.0 - self.af

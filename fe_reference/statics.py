@@ -195,7 +195,7 @@ def settled_state(
     above.
     """
     structure, led = structure_of(model), model.effects.every(Prescribed)
-    load = structure.load(0.0 if starts else None)
+    load = structure.loads.factors(0.0 if starts else None)
     ends = None if rotation is None else [finite("rotation", rotation, "rad")]
     if not rotation and load is None and not _moving(led) and not structure.constant_words:
         return np.zeros(structure.size), ""  # rest, whether or not clamps hold it
@@ -230,7 +230,7 @@ def _solved(
     led = model.effects.every(Prescribed)
     driven = rotations is not None or any(each.body is None for each in led)
     which = model.body_index(body) if driven or body is not None else None
-    acting = structure.load(0.0 if starts else None)
+    acting = structure.loads.factors(0.0 if starts else None)
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
     controls = spans(

@@ -21,7 +21,7 @@ from .bending import CURL
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT, Energies, Given, Written, elements
 from .links import Links, add_links, link_forces, links_of
-from .loads import Pulls, followers, loads_of, pull, pulls_of, put_factors
+from .loads import Loads, Pulls, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import Elements, root_stiffness, strip_basis
 from .model import Model
@@ -91,7 +91,7 @@ class Structure:
             CURL,
         )
         self.links = links_of(model, self.points, soft)
-        self.loads, self.histories = loads_of(model, self.points)
+        self.loads = Loads.of(model, self.points)
         self.tables: Tables = (self.given, self.carried, self._weight(), self.links)
         rows = len(self.numbers)
         self.work = (np.zeros((rows, 3)), np.zeros((4, 4)), np.zeros((rows, 3)))
@@ -140,7 +140,7 @@ class Structure:
         return y[..., self.first_body :].reshape(*y.shape[:-1], -1, 3)
 
     def _weight(self) -> Pulls:
-        """Return the weight of free nodes and of bodies with what they carry, none if it is not named.
+        """Return the weight of nodes, free or on bodies, and of bodies, none if it is not named.
 
         Half of every element is at each of its nodes: an error of second order in the element length. What
         hangs on a clamp is not felt.
@@ -148,17 +148,14 @@ class Structure:
         gravity = self.model.effects.find(Gravity)
         if gravity is None:
             return pulls_of(np.zeros(0), np.zeros((0, 6)))
-        masses, (attached, carrier, offsets, _) = self.nodal_masses(), self.carried
-        total = np.concatenate([masses, [body.mass for body in self.model.bodies]])
-        moments = total[self.nodes :, None] * (self.model.centres - self.points)
-        np.add.at(total, carrier, masses[attached])
-        np.add.at(moments, carrier - self.nodes, masses[attached][:, None] * offsets)
-        free = np.setdiff1d(self.coordinates[self.axis == 0] // 3, attached)
-        table = np.zeros((len(total), 6))
-        table[:, :2] = total[:, None] * gravity.acceleration
-        heavy = np.flatnonzero(total[self.nodes :] > 0.0)
-        table[self.nodes + heavy, 3:5] = moments[heavy] / total[self.nodes + heavy, None]
-        return pulls_of(free, table[free])
+        (attached, carrier, offsets, _), own = self.carried, [body.mass for body in self.model.bodies]
+        masses = np.append(self.nodal_masses(), own)
+        rows, table = np.arange(len(masses)), np.zeros((len(masses), 6))
+        table[:, :2] = masses[:, None] * gravity.acceleration
+        table[self.nodes :, 3:5] = self.model.centres - self.points
+        rows[attached], table[attached, 3:5] = carrier, offsets
+        free = self.numbers[rows, 0] >= 0
+        return pulls_of(rows[free], table[free])
 
     @cached_property
     def constant_words(self) -> str:
@@ -216,24 +213,11 @@ class Structure:
         carry_velocity(self.carried, self.spread(y), full)
         return full
 
-    def load(self, time: float | None = None) -> Array | None:
-        """Return the factors of the loads in full, or at an instant [s], (K,); None if there are none."""
-        factors = np.ones(len(self.loads[0]))
-        if time is not None:
-            put_factors(self.histories, time, factors)
-        return factors if factors.size else None
-
-    @property
-    def follows(self) -> bool:
-        """Whether there are loads without a potential."""
-        table = self.loads[1]
-        return bool((table[:, 5] * np.abs(table[:, :2]).sum(axis=1)).any())
-
     def load_force(self, y: Array, load: Array, dead: bool = False) -> tuple[Array, float]:
         """Return generalised force and work [J] of loads times factors (K,), or of the dead ones."""
-        force = np.zeros((len(self.numbers), 3))
-        self.loads[2][:] = load * (1.0 - self.loads[1][:, 5]) if dead else load
-        work = pull(self.loads, -1.0, self.displacement(y), force, np.empty((len(force), 2)))
+        force, (_, table, factors, _) = np.zeros((len(self.numbers), 3)), self.loads.pulls
+        factors[:] = load * (1.0 - table[:, 5]) if dead else load
+        work = pull(self.loads.pulls, -1.0, self.displacement(y), force, np.empty((len(force), 2)))
         return self.gathered(force), work
 
     def evaluate(
@@ -249,8 +233,8 @@ class Structure:
         written, curvature = (force, ends, matrices, scratch), np.empty((len(u), 2))
         strain, spring, gravity = potential(self.tables, share, asked, u, still, written, curvature)
         if load is not None:
-            self.loads[2][:] = load
-            work = pull(self.loads, acts, u, force, curvature)
+            self.loads.pulls[2][:] = load
+            work = pull(self.loads.pulls, acts, u, force, curvature)
         if asked != FORCES:
             tangent = self.reduced_matrix(matrices, u)
         if asked == TANGENT:
@@ -258,8 +242,8 @@ class Structure:
             tangent.data[self.pattern.diagonal[self.turns]] += bodies
             if len(self.links[1]):
                 add_links(self.links, u, self.links[3], tangent)
-            if load is not None and self.follows:
-                tangent.left, tangent.right = followers(self.loads, acts, self.numbers, u, self.size)
+            if load is not None and self.loads.follows:
+                tangent.left, tangent.right = self.loads.tangent(acts, self.numbers, u, self.size)
         return Evaluation(
             gradient=self.gathered(force),
             tangent=tangent,

@@ -130,7 +130,7 @@ def _led(model: Model, frame: Frame) -> Control:
         ends[structure.body_slice(at // 3).start + at % 3] = end
     held = np.array(sorted(ends), dtype=np.int64)
     values = np.array([[0.0] * len(held), [ends[int(at)] for at in held]])
-    return Control(structure=structure, held=held, values=values, load=structure.load())
+    return Control(structure=structure, held=held, values=values, load=structure.loads.factors())
 
 
 def _let_turn(model: Model, frame: Frame, control: Control) -> Path:
