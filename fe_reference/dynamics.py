@@ -11,15 +11,12 @@ import numpy as np
 from .arrays import Array, Flags
 from .companions import with_companions
 from .drives import DrivenRotation, Span, drive_spans
-from .effects import DEFAULT_EFFECTS, Effects
 from .errors import Checked, InvalidParameter, choice, count, finite, optional, positive, require_kind, within
 from .mass import about_mass_centre, carried_over, couplings
 from .model import Model, require_model
-from .modes import natural_frequencies
+from .modes import first_frequency
 from .motion import ENERGIES, Progress, Samples, Scheme, Trajectory, course, trajectory
-from .places import GROUND
 from .refined import limit_of
-from .rigid import loose_coordinates
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
 from .statics import settled_state
@@ -28,7 +25,6 @@ from .structure import Structure, structure_of
 INTEGRATORS = ("central-difference", "generalised-alpha")
 #: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
 STEPS_PER_PERIOD = 6000
-ELASTIC = (*DEFAULT_EFFECTS, "spring", "support")
 #: Most steps of one run unless more are allowed, some 25 s with 20 elements; 50 times more, 20 minutes, are
 #: the most that are recommended. Most numbers kept of a run.
 MOST_STEPS, FAR_MORE = 20_000_000, 50
@@ -265,7 +261,7 @@ def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samp
         )
         choices, longest = {"critical_step_s": limit, "safety": run.safety}, run.safety * limit
     elif run.step is None:
-        longest = 1.0 / (STEPS_PER_PERIOD * _first_frequency(model))
+        longest = 1.0 / (STEPS_PER_PERIOD * first_frequency(model))
     h, steps = _steps(run, longest)
     _affordable(model, run, h, steps, y.size)
     spans = drive_spans(model, run.drive, steps * h)
@@ -290,26 +286,11 @@ def _sampling(steps: int, samples: int) -> list[int]:
     return [every] * whole + ([rest] if rest else [])
 
 
-def _first_frequency(model: Model) -> float:
-    """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
-    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
-    bare = replace(model, effects=Effects(named=kept))
-    structure = structure_of(bare)
-    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
-    clamped = (model.ends == GROUND).any()
-    found = np.zeros(0)  # of free strips without bodies
-    if clamped or model.bodies:
-        found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
-    if not (found > 0.0).any():
-        raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
-    return float(found[found > 0.0][0])
-
-
 def _cheaper(model: Model, run: Run, steps: int) -> str:
     """Return what to do about a run of too many steps: of all ways those that can be run."""
     ways = ["take longer steps"]
     if run.explicit:
-        implicit = max(run.duration * STEPS_PER_PERIOD * _first_frequency(model), 1.0)
+        implicit = max(run.duration * STEPS_PER_PERIOD * first_frequency(model), 1.0)
         ways = [f"--integrator generalised-alpha takes about {implicit:.2g}"]
         if implicit > run.most_steps:
             ways = [

@@ -165,16 +165,6 @@ def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
             out[b, 2] = -inertia * (mass * twist - cross * push) / rest
 
 
-def coupled_energy(coupled: Array, u: Array, v: Array) -> float:
-    """Return the kinetic energy beside that of the diagonal mass [J]."""
-    total = 0.0
-    for row in coupled:
-        body, free = int(row[0]), int(row[1])
-        x, y = turned(u[body, 2], row[4], row[5])
-        total += (x if free else -y) * v[body, free] * v[body, 2]
-    return float(total)
-
-
 def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
     """Return coordinates y of one structure in another that is reduced about other points of the bodies.
 
@@ -206,7 +196,7 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
 
 
 def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
-    """Return the mass matrix (3, 3) of a body whose mass is at an arm [m], about which its inertia is not."""
+    """Return the mass matrix (3, 3) of a body with its centre of mass at an arm [m] from its point."""
     x, y = mass * arm[0], mass * arm[1]
     return np.array([[mass, 0.0, -y], [0.0, mass, x], [-y, x, inertia]])
 

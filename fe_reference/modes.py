@@ -8,17 +8,21 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
+from .effects import DEFAULT_EFFECTS, Effects
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
 from .mass import MASSES, mass_matrix
 from .matrix import Symmetric
 from .model import Model, require_model
+from .places import GROUND
 from .refined import Quantities, missed, refine
 from .rigid import NothingHolds, loose_coordinates
 from .solution import ErrorEstimate
 from .statics import settled_state
 from .structure import Structure, structure_of
 
+#: Effects that the first frequency is of.
+ELASTIC = (*DEFAULT_EFFECTS, "spring", "support")
 #: Stiffness of a rigid motion over the sum of the terms that cancel in it.
 ROUND_OFF = 1e-14
 #: Part of a squared frequency by which the energy of its mode may differ; beyond it round-off decides it.
@@ -144,6 +148,21 @@ def natural_frequencies(
     if estimate is not None and (told := missed(estimate)):
         raise ConvergenceError(told, solution=modes, load_factor=1.0, history=())
     return modes
+
+
+def first_frequency(model: Model) -> float:
+    """Return the first frequency about the shape at rest, of inertia, elasticity and supports alone [Hz]."""
+    kept = {name: same for name, same in model.effects.named.items() if name in ELASTIC}
+    bare = replace(model, effects=Effects(named=kept))
+    structure = structure_of(bare)
+    rigid = len(loose_coordinates(structure, [structure.first_body + at for at in bare.prescribed(None)]))
+    clamped = (model.ends == GROUND).any()
+    found = np.zeros(0)  # of free strips without bodies
+    if clamped or model.bodies:
+        found = natural_frequencies(bare, rotation=None, count=rigid + 1, mass="lumped").frequency
+    if not (found > 0.0).any():
+        raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
+    return float(found[found > 0.0][0])
 
 
 def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int, load: Array | None) -> Modes:

@@ -11,7 +11,7 @@ import numpy as np
 from .actions import Actions, Instant
 from .arrays import Array, Flags
 from .drives import Piece, Span
-from .mass import RigidBodies, carried_over, coupled_energy, couplings
+from .mass import RigidBodies, carried_over, couplings
 from .solution import Answer, ErrorEstimate, Status, Stopwatch
 from .structure import Structure, structure_of
 
@@ -32,7 +32,8 @@ class Scheme:
 
     Attributes:
         blow_up: relative gain of energy that stops a motion. mass (size,): lumped. held (size,): what is led;
-        inverse (size,): of the mass, zero where there is none and where it is led.
+        inverse (size,): of the mass, zero where there is none and where it is led. off: bodies whose mass is
+        off the point that is led.
     """
 
     blow_up = BLOW_UP
@@ -41,6 +42,7 @@ class Scheme:
         self.structure, self.bodies = structure, bodies
         self.mass, self.actions = bodies.diagonal(structure), Actions(structure)
         self.held = np.zeros(structure.size, dtype=bool)
+        self.off = np.flatnonzero((bodies.centre != structure.points).any(axis=1)).tolist()
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
         """Return an instant with its consistent acceleration, from which what is `held` is led at its v."""
@@ -54,10 +56,22 @@ class Scheme:
         """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
         raise NotImplementedError
 
-    def coupled(self, at: Instant) -> float:
-        """Return the kinetic energy beside that of the lumped mass, of bodies that are led one way [J]."""
-        s = self.structure
-        return coupled_energy(self.actions.coupled, s.spread(at.y), s.spread(at.v))
+    def swing(self, y: Array, v: Array, ways: Flags) -> float:
+        """Return the kinetic energy of masses that turn off led points, with these moving in `ways` (size,)."""
+        total = 0.0
+        for body in self.off:
+            at = self.structure.body_slice(body)
+            moved, coupling = np.where(ways, v, 0.0)[at], self.bodies.block(self.structure, body, y[at][2])[2]
+            total += float(v[at][2] * (coupling[:2] @ moved[:2]))
+        return total
+
+    def kinetic(self, y: Array, v: Array) -> float:
+        """Return the kinetic energy at coordinates y and velocities v [J]."""
+        return 0.5 * float(self.mass @ v**2) + self.swing(y, v, np.ones(len(v), dtype=bool))
+
+    def beside(self, at: Instant) -> float:
+        """Return what of it the equations of motion do not have, for it is of led coordinates [J]."""
+        return self.swing(at.y, at.v, self.held)
 
     def unloaded(self, at: Instant) -> Flags:
         """Return where the forces are none but round-off (size,)."""
@@ -102,25 +116,13 @@ class Samples:
         """Energy that is at stake in any motion [J]: what loads put into a rest is held against it."""
         return FLOOR * self.home.structure.moment_unit
 
-    def kinetic(self, scheme: Scheme, y: Array, v: Array) -> float:
-        """Return the kinetic energy of a state of a scheme [J]."""
-        return 0.5 * float(self.home.mass @ carried_over(scheme.structure, y, self.home.structure, v) ** 2)
-
-    def beside(self, scheme: Scheme, at: Instant) -> float:
-        """Return the kinetic energy beside the scheme's, of bodies with a mass off the point that is led."""
-        if scheme is self.home:
-            return 0.0
-        beside = self.kinetic(scheme, at.y, at.v) - 0.5 * float(scheme.mass @ at.v**2)
-        return beside - scheme.coupled(at)
-
     def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
         """Keep an instant if its energy is sound; otherwise note when it was lost and return False.
 
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
         do the work of what is beside the scheme's energy as well, which was `begun` as the span began.
         """
-        work = float(self.books[0]) + self.beside(scheme, at) - begun
-        kinetic = self.kinetic(scheme, at.y, at.v)
+        work, kinetic = float(self.books[0]) + scheme.beside(at) - begun, scheme.kinetic(at.y, at.v)
         energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
         former = self.energy[-1] if self.energy else energy
         self.stake = max(self.stake, float(former[:2].sum()), *np.abs(former[2:]).tolist())
@@ -170,11 +172,11 @@ def course(
         before, scheme = scheme.structure, scheme_of(span.led)
         y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
-        gained = samples.kinetic(scheme, y, caught) - samples.kinetic(scheme, y, v)
+        gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
         # what a catch takes from the motion is lost; what a drive gives it, by a jump of rates too, is work
         samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
-        begun = samples.beside(scheme, now)
+        begun = scheme.beside(now)
         if not samples.time:
             samples.still = not caught.any() and bool(scheme.unloaded(now)[~scheme.held].all())
             samples.take(scheme, now, begun)
@@ -185,7 +187,7 @@ def course(
             now = after
             if piece.kept and progress is not None:
                 progress(len(samples.time) - 1, len(chunks))
-        samples.books[0] += samples.beside(scheme, now) - begun
+        samples.books[0] += scheme.beside(now) - begun
         y, v = now.y, now.v
     return samples
 

@@ -17,7 +17,7 @@ from .arrays import Array
 from .errors import positive
 from .model import Model
 from .motion import Trajectory
-from .solution import ENERGIES, CriticalPoint, ErrorEstimate, StaticSolution, Status
+from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
 
 Answer = TypeVar("Answer")
 Solved = TypeVar("Solved", StaticSolution, Trajectory)
@@ -159,12 +159,6 @@ KEPT = 0.03
 TURN = 1e-2
 #: Smallest relative difference of two meshes that is printed.
 LEAST = 1e-6
-#: Arrays with a row a state.
-BY_STATE = (
-    *("inertia", "load_factor", "torque", "stiffness", *ENERGIES, "largest_stress"),
-    *("reactions", "clamp_reactions"),
-    *("shape", "axial_force", "shear_force", "bending_moment", "states"),
-)
 
 
 def confirmed(
@@ -219,12 +213,8 @@ def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[
         f"not resolved with {elements[0]} elements: {ends[0]}; with {elements[1]}: {ends[1]}; "
         f"take {most} elements"
     )
-    rows: dict[str, Any] = {name: getattr(answer, name)[:kept] for name in BY_STATE}
     return replace(
-        answer,
-        **rows,
-        bodies={name: place[:kept] for name, place in answer.bodies.items()},
-        tips={name: place[:kept] for name, place in answer.tips.items()},
+        answer.until(kept),
         critical_points=answer.critical_points[:known],
         status=Status.CONVERGED if whole else Status.NOT_CONVERGED,
         message=message,

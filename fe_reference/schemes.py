@@ -213,9 +213,7 @@ class Implicit(Scheme):
 
     def _gains(self, now: Instant, after: Instant, h: float, samples: Samples) -> bool:
         """Return whether a step of h [s] has gained energy, by more than stops a motion."""
-        before, since = (
-            0.5 * float(self.mass @ at.v**2) + self.coupled(at) + at.strain for at in (now, after)
-        )
+        before, since = (self.kinetic(at.y, at.v) - self.beside(at) + at.strain for at in (now, after))
         work, lost = 0.5 * h * np.sum([self._powers(at) for at in (now, after)], axis=0)
         gain = since - before + after.gravity - now.gravity - work + lost
         return not gain <= GAIN * max(samples.stake, samples.floor, before, abs(work))

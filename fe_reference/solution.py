@@ -1,10 +1,10 @@
 """Answers of the static solution: a status that says what to do, and arrays over the converged states."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from time import perf_counter
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -209,6 +209,15 @@ class StaticSolution(Answer):
     def strain_energy(self) -> Array:
         """Sum of the three parts (S,), without springs between bodies [J]."""
         return self.bending_energy + self.axial_energy + self.shear_energy
+
+    def until(self, count: int) -> Self:
+        """Return the answer with its first states alone."""
+
+        def first(value: Any) -> Any:
+            return {k: each[:count] for k, each in value.items()} if isinstance(value, dict) else value[:count]
+
+        arrays = {name for name, value in vars(self).items() if isinstance(value, np.ndarray)} - {"stations"}
+        return replace(self, **{name: first(getattr(self, name)) for name in arrays | {"bodies", "tips"}})
 
     def body_stiffness(self, body: str | None = None) -> Array:
         """Return the stiffness (S, 3, 3) of a body's x, y and turn, on the finest mesh: `body_stiffness`.

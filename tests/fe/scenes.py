@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fe_reference import DEFAULT_EFFECTS, BodyDesign, Model, StripDesign, compliant_mechanism
+from tests.refusals import scene
 from tests.table_one import SECTION
 
 Parameters = Mapping[str, Any]
@@ -45,6 +46,24 @@ def free_cantilever(
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
     given = parameters or {}
     return compliant_mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
+
+
+#: A body without mass at the tip of a strip.
+TIP = BodyDesign(name="tip", centre=(GUIDE, 0.0))
+
+
+def tipped(
+    *bodies: BodyDesign,
+    strip: Parameters | None = None,
+    elements: int = 20,
+    element: str = "corotational",
+    **given: Any,
+) -> Model:
+    """Return a horizontal strip with the first of the bodies at its tip, and effects by their parameters."""
+    along = {"start": (0.0, 0.0), "end": (GUIDE, 0.0), "tip": bodies[0].name} | SECTION | dict(strip or {})
+    effects = scene(DEFAULT_EFFECTS, **given)
+    strips = [StripDesign(name="strip", **along)]
+    return compliant_mechanism(strips=strips, bodies=bodies, elements=elements, element=element, **effects)
 
 
 def guide(

@@ -13,7 +13,6 @@ from scipy.special import ellipk
 from fe_reference import (
     DEFAULT_EFFECTS,
     BodyDesign,
-    DrivenRotation,
     Model,
     StaticSolution,
     StripDesign,
@@ -22,8 +21,8 @@ from fe_reference import (
     solve_mechanism,
     solve_motion,
 )
-from tests.fe.cases import extrapolated
-from tests.fe.scenes import BARE, four_bar, free_cantilever
+from tests.fe.cases import EI, extrapolated
+from tests.fe.scenes import BARE, GUIDE, TIP, four_bar, free_cantilever, tipped
 from tests.gates import check, hold, refuse
 from tests.refusals import refused, scene
 from tests.table_one import SECTION
@@ -106,51 +105,13 @@ def test_reactions_balance_loads() -> None:
     assert same.reactions[:, 0].tolist() == same.torque.tolist()
 
 
-TWICE = "expected one drive or support for each coordinate"
-#: Parameters of effects that make no sense, and what is said of them.
-LED, ROLL = {"body": "crank", "displacement": (0.0, None)}, {"body": "crank", "fixed": ["x", "rotation"]}
-WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"gravity": [{"acceleration": (0.0, 1.0)}]}, "gravity: got ... expected the parameters of one effect"),
-    ({"applied_moment": []}, "applied_moment: got [], expected parameters, or a sequence of them"),
-    ({"support": {"body": "crank", "fixed": "x"}}, "fixed: got 'x', expected one or more of x, y, rotation"),
-    ({"support": {"body": "crank", "fixed": ("x", "x")}}, "fixed: got ('x', 'x'), expected one or more"),
-    ({"support": {"body": "crank"}}, "support: got ... expected a value of fixed"),
-    ({"spring": {"body": "crank"}}, "spring: got 'crank', expected a stiffness or a damping above 0"),
-    ({"spring": {"body": "crank", "stiffness": (1.0, -1.0)}}, "stiffness: got -1.0, expected a number not"),
-    ({"spring": {"body": "crank", "other": "car", "stiffness": (1.0, 1.0)}}, "body: got 'car', expected one"),
-    ({"spring": {"body": "crank", "other": "crank", "stiffness": (1.0, 1.0)}}, "other: got 'crank'"),
-    ({"tip_force": {"strip": "a", "force": (1.0, 0.0), "follower": 1}}, "follower: got 1, expected True or"),
-    ({"support": ROLL, "driven_displacement": LED}, f"prescribed: got 'x of crank', {TWICE}"),
-    ({"driven_displacement": [LED, LED]}, f"prescribed: got 'x of crank', {TWICE}"),
-]
-
-
-@pytest.mark.parametrize(("given", "said"), WRONG, ids=[said for _, said in WRONG])
-def test_refusals(given: dict[str, Any], said: str) -> None:
-    """What makes no sense is refused in one line."""
-    refused(lambda: four_bar(given), said)
-
-
-def test_a_rotation_is_prescribed_once() -> None:
-    """A rotation that drives a path or a motion and a support or drive of it are refused."""
-    model = four_bar({"support": ROLL})
-    for ask in (solve_mechanism, partial(natural_frequencies, count=1)):
-        refused(lambda ask=ask: ask(model, body="crank", rotation=0.1), f"'rotation of crank', {TWICE}")
-    drive = DrivenRotation(body="crank", angle=0.1)
-    refused(lambda: solve_motion(model, drive=drive, duration=1e-5), f"'rotation of crank', {TWICE}")
-
-
 SPRING: dict[str, Any] = {"body": "mass", "stiffness": (1000.0, 2000.0), "rotational_stiffness": 0.5}
 
 
 def on_springs(**given: Any) -> Model:
     """Return a strip with a body at its tip, and a body on springs alone."""
-    bodies = [
-        BodyDesign(name="tip", centre=(0.1, 0.0)),
-        BodyDesign(name="mass", centre=(0.3, 0.1), mass=0.2, moment_of_inertia=1e-3),
-    ]
-    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="tip", **SECTION)
-    return compliant_mechanism(strips=[strip], bodies=bodies, elements=3, **scene(DEFAULT_EFFECTS, **given))
+    mass = BodyDesign(name="mass", centre=(0.3, 0.1), mass=0.2, moment_of_inertia=1e-3)
+    return tipped(TIP, mass, elements=3, **given)
 
 
 def test_springs_alone() -> None:
@@ -190,10 +151,8 @@ def test_a_mass_on_a_spring(how: dict[str, Any], damping: float) -> None:
 
 def pulled(centre: tuple[float, float], **force: Any) -> Model:
     """Return a strip with a body at its tip that a force pulls sideways and along."""
-    strip = StripDesign(name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="body", **SECTION)
     body = BodyDesign(centre=centre, mass=0.1, moment_of_inertia=1e-4)
-    given = scene(DEFAULT_EFFECTS, applied_force={"force": (-30.0, 20.0), **force})
-    return compliant_mechanism(strips=[strip], bodies=[body], elements=8, **given)
+    return tipped(body, elements=8, applied_force={"force": (-30.0, 20.0), **force})
 
 
 @pytest.mark.parametrize("follower", [False, True])
@@ -287,14 +246,10 @@ def column(
     root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation"), follower: bool = False
 ) -> Model:
     """Return a column between joints, the upper one guided, under a load in pi^2 EI/L^2."""
-    strip = StripDesign(
-        name="strip", start=(0.0, 0.0), end=(0.1, 0.0), tip="head", root_joint=root, tip_joint=tip, **SECTION
-    )
-    force = (-load * np.pi**2 * strip.flexural_rigidity / 0.1**2, 0.0)
+    force = (-load * np.pi**2 * EI / GUIDE**2, 0.0)
     head = BodyDesign(name="head", centre=(0.1, 0.0), mass=0.01, moment_of_inertia=1e-6)
-    pull, pin = {"force": force, "follower": follower}, {"body": "head", "fixed": guided}
-    given = {"applied_force": pull, "support": pin}
-    return compliant_mechanism(strips=[strip], bodies=[head], **scene(DEFAULT_EFFECTS, **given))
+    given = {"applied_force": {"force": force, "follower": follower}, "support": {"fixed": guided}}
+    return tipped(head, strip={"root_joint": root, "tip_joint": tip}, **given)
 
 
 @pytest.mark.parametrize(

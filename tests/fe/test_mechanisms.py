@@ -1,13 +1,14 @@
-"""Statics of mechanisms and of effects: closed forms, a published value, balance, frame indifference."""
+"""Statics of strips and mechanisms: closed forms, balance, stiffness, states that are refused."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fe_reference import solve_mechanism, solve_statics
-from tests.fe.cases import EI, QUICK_ELEMENTS, extrapolated, pivot
-from tests.fe.scenes import GUIDE, PARAMETERS, WIDE, four_bar, free_cantilever, guide
+from fe_reference import ELEMENTS, Status, cross_axis_pivot, solve_mechanism, solve_statics
+from tests.fe.cases import EI, MOMENT, QUICK_ELEMENTS, STRIP, TABLE_1, extrapolated, pivot
+from tests.fe.scenes import GUIDE, PARAMETERS, TIP, WIDE, four_bar, free_cantilever, guide, tipped
 from tests.gates import hold
 
 STATIC = {
@@ -76,3 +77,83 @@ def test_static_balance(element: str) -> None:
         return float(np.abs(answer.work - (stored - stored[0])).max() / np.abs(answer.work).max())
 
     hold(f"fe_static_balance_{element}", error)
+
+
+#: Few elements, and strips so heavy that the half of one that hangs beside the centre turns the body.
+HEAVY = {"density": 2e6, "body_mass": 0.0, "centre_offset": (0.03, 0.05)}
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> None:
+    """Stiffness is the difference quotient of torques where half-elements of heavy strips hang on a body."""
+    model = cross_axis_pivot(
+        **(TABLE_1 | HEAVY),
+        elements=2,
+        element=element,
+        effects=("bending", "stretching", "gravity"),
+        parameters={"gravity": {"acceleration": (0.0, -9.81)}},
+    )
+    stiffness = solve_statics(model, rotation=0.5, increments=4).stiffness[-1]
+
+    def error(step: float = 1e-3) -> float:
+        ends = [
+            solve_statics(model, rotation=angle, increments=4).torque[-1]
+            for angle in (0.5 + step, 0.5 - step)
+        ]
+        return abs(stiffness - (ends[0] - ends[1]) / (2.0 * step)) / MOMENT
+
+    hold("fe_weight_stiffness", error)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
+    """Whichever strip comes first, stiffness is the same: round-off of EA is not in it, however slender."""
+    thinner = {"area": 0.1 * STRIP.area, "second_moment_of_area": 1e-3 * STRIP.second_moment_of_area}
+    given = pivot(crossing_ratio=0.35, element=element)
+    model = replace(given, strips=tuple(replace(strip, **thinner) for strip in given.strips))
+    turned = replace(model, strips=model.strips[::-1])
+    one, other = (solve_statics(each, rotation=0.5, increments=4).stiffness for each in (model, turned))
+    assert one[1:] == pytest.approx(other[1:], rel=1e-12)
+
+
+LENGTH, DEPTH, WIDTH, YOUNGS_MODULUS, POISSON_RATIO, FORCE = 0.05, 0.01, 0.008, 2e9, 0.3, 1e-3
+
+
+def deflection(elements: int) -> float:
+    """Return the deflection of the tip of a stubby strip under a force so small that it is linear [m]."""
+    section = {"area": WIDTH * DEPTH, "second_moment_of_area": WIDTH * DEPTH**3 / 12.0, "density": 1.0}
+    section |= {"youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": POISSON_RATIO}
+    load = {"tip_force": {"strip": "strip", "force": (0.0, FORCE)}}
+    how = {"elements": elements, "element": "reissner"}
+    model = free_cantilever(length=LENGTH, section=section, parameters=load, **how)
+    return float(solve_mechanism(model, increments=1).shape[-1, 0, -1, 1])
+
+
+def test_shear_of_a_stubby_cantilever_is_timoshenkos() -> None:
+    """F L^3 / 3 EI + F L / (5/6 G A): the factor of a rectangle, of which the shear is 3 % here.
+
+    Timoshenko and Gere, Mechanics of Materials (1972), section 7.
+    """
+    bending = FORCE * LENGTH**3 / (YOUNGS_MODULUS * WIDTH * DEPTH**3 / 4.0)
+    shear_modulus = YOUNGS_MODULUS / (2.0 * (1.0 + POISSON_RATIO))
+    exact = bending + FORCE * LENGTH / (5.0 / 6.0 * shear_modulus * WIDTH * DEPTH)
+    assert 0.02 < 1.0 - bending / exact < 0.05
+
+    def error(elements: tuple[int, ...] = (4, 8, 16)) -> float:
+        return abs(float(extrapolated([deflection(count) for count in elements])) / exact - 1.0)
+
+    hold("fe_timoshenko_tip", error)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
+    """Two elements rolled by 1.2 whole turns stop where each is bent by half a turn and say so; four go on."""
+    coarse, fine = (
+        tipped(TIP, elements=n, element=element, applied_moment={"moment": 2.4 * np.pi * EI / GUIDE})
+        for n in (2, 4)
+    )
+    answer = solve_mechanism(coarse, increments=12, check=False, raise_on_failure=False)
+    assert answer.status is Status.NOT_CONVERGED
+    assert "an element is folded" in answer.message
+    assert 0.9 < answer.rotation[-1] / (2.0 * np.pi) <= 1.0
+    assert solve_mechanism(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)

@@ -1,10 +1,14 @@
-"""Linearised frequencies against closed forms, and their convergence."""
+"""Modes: both masses, rotary inertia of the sections, strips without mass, what is held."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from fe_reference import ELEMENTS, natural_frequencies
-from tests.fe.cases import extrapolated, pivot
+from fe_reference import DEFAULT_EFFECTS, ELEMENTS, natural_frequencies
+from tests.fe.cases import MOMENT, TABLE_1, extrapolated, pivot
+from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
 from tests.gates import hold
 
 
@@ -57,3 +61,68 @@ def test_small_meshes_give_all_their_modes() -> None:
     assert few.frequency == pytest.approx(many.frequency[:3], rel=1e-9)
     assert natural_frequencies(model, count=10).frequency == pytest.approx(many.frequency, rel=1e-9)
     assert natural_frequencies(model, count=10, accuracy=0.1).frequency.shape == (9,)
+
+
+#: A thick section, so that its rotary inertia is felt; stretching is put out of the way at the same rho A.
+THICK = SECTION | {"second_moment_of_area": SECTION["area"] * (0.02 * GUIDE) ** 2}
+
+
+def rayleigh_frequency() -> float:
+    """Return the second frequency [Hz] of a cantilever with rotary inertia.
+
+    EI w'''' + rho I W^2 w'' - mu W^2 w = 0, clamped at 0; w'' = 0 and EI w''' + rho I W^2 w' = 0 at L. With
+    w = exp(k s) this has the roots k = +-a and k = +-i b.
+    """
+    ei = THICK["youngs_modulus"] * THICK["second_moment_of_area"]
+    mu, rotary = THICK["density"] * THICK["area"], THICK["density"] * THICK["second_moment_of_area"]
+
+    def condition(omega: float) -> float:
+        half, all_of = 0.5 * rotary * omega**2 / ei, mu * omega**2 / ei
+        root = np.sqrt(half**2 + all_of)
+        a, b = np.sqrt(root - half), np.sqrt(root + half)
+        ch, sh, c, s = np.cosh(a * GUIDE), np.sinh(a * GUIDE), np.cos(b * GUIDE), np.sin(b * GUIDE)
+        # w = A (cosh - cos) + B (sinh - a/b sin) satisfies the clamp
+        moment = [a**2 * ch + b**2 * c, a**2 * sh + a * b * s]
+        slope = [a * sh + b * s, a * ch - a * c]
+        third = [a**3 * sh - b**3 * s, a**3 * ch + a * b**2 * c]
+        shear = [p + 2.0 * half * q for p, q in zip(third, slope, strict=True)]
+        return float((moment[0] * shear[1] - moment[1] * shear[0]) / (ch * ch))
+
+    unit = np.sqrt(ei / mu) / GUIDE**2
+    return float(brentq(condition, 18.0 * unit, 24.0 * unit, xtol=1e-9)) / (2.0 * np.pi)
+
+
+def test_section_rotary_inertia() -> None:
+    """Consistent and lumped masses with rotary inertia tend to the Rayleigh beam, without it they do not."""
+    exact = rayleigh_frequency()
+
+    def error(effects: tuple[str, ...] = ("section_rotary_inertia",)) -> float:
+        worst = 0.0
+        for mass in ("consistent", "lumped"):
+            seen = [
+                natural_frequencies(
+                    free_cantilever(section=THICK, elements=n, effects=(*DEFAULT_EFFECTS, *effects)),
+                    rotation=None,
+                    count=2,
+                    mass=mass,
+                ).frequency[1]
+                for n in (20, 40, 80)
+            ]
+            pairs = [(4.0 * fine - coarse) / 3.0 for coarse, fine in pairwise(seen)]
+            worst = max(worst, abs((16.0 * pairs[1] - pairs[0]) / 15.0 / exact - 1.0))
+        return float(worst)
+
+    hold("fe_rayleigh_beam", error)
+
+
+def test_body_on_massless_strips() -> None:
+    """Bodies on strips without inertia have their own modes only, at the closed-form frequency."""
+    inertia = TABLE_1["body_moment_of_inertia"] + TABLE_1["body_mass"] * 0.03**2
+    exact = np.sqrt(2.0 * MOMENT / inertia) / (2.0 * np.pi)
+
+    def error(area: float = 1e3) -> float:
+        model = pivot(effects=MASSLESS, area=area * TABLE_1["area"])
+        return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
+
+    hold("fe_massless_strips", error)
+    assert len(natural_frequencies(pivot(effects=MASSLESS), count=4).frequency) == 3

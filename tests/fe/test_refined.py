@@ -1,5 +1,6 @@
-"""An accuracy is asked for: meshes are refined to their limit, whose error is below the estimate."""
+"""Errors of meshes: an accuracy that is asked for, and the level of the default."""
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,13 +10,15 @@ from fe_reference import (
     DEFAULT_EFFECTS,
     ELEMENTS,
     ConvergenceError,
+    StaticSolution,
     natural_frequencies,
     solve_mechanism,
     solve_release,
     solve_statics,
 )
-from tests.fe.cases import pivot
+from tests.fe.cases import extrapolated, pivot
 from tests.fe.scenes import four_bar
+from tests.gates import hold
 from tests.refusals import scene
 
 
@@ -89,3 +92,38 @@ def test_an_accuracy_out_of_reach_is_told() -> None:
     pressed = pivot(elements=2, **scene(DEFAULT_EFFECTS, applied_force={"force": (0.0, -1e6)}))
     stopped = solve_mechanism(pressed, accuracy=1e-3, raise_on_failure=False)
     assert stopped.status.value == "not_converged" and stopped.estimate is None
+
+
+QUANTITIES = {
+    "torque": lambda path: path.torque,
+    "trajectory": lambda path: path.centre,
+    "stiffness": lambda path: path.stiffness,
+}
+
+
+@cache
+def path(element: str, elements: int) -> StaticSolution:
+    return solve_statics(pivot(element=element, elements=elements), rotation=np.pi / 2.0, increments=10)
+
+
+def deviation(value: np.ndarray, exact: np.ndarray) -> float:
+    """Return the largest deviation over the path, over the largest change of the quantity on it."""
+    size = np.linalg.norm(
+        np.atleast_2d(exact.T - exact[0][..., None] if exact.ndim > 1 else exact), axis=0
+    ).max()
+    gap = value - exact
+    return float((np.linalg.norm(gap, axis=1) if gap.ndim > 1 else np.abs(gap)).max() / size)
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_level_of_twenty_elements(element: str, quantity: str) -> None:
+    """Twenty elements are as near to the extrapolated value as stated."""
+    pick = QUANTITIES[quantity]
+
+    def error(elements: int = 20) -> float:
+        return deviation(
+            pick(path(element, elements)), extrapolated([pick(path(element, n)) for n in (40, 80, 160)])
+        )
+
+    hold(f"fe_level_{quantity}_{element}", error)

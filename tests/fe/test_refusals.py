@@ -10,6 +10,7 @@ import pytest
 from fe_reference import (
     DEFAULT_EFFECTS,
     BodyDesign,
+    DrivenRotation,
     Model,
     StripDesign,
     compliant_mechanism,
@@ -21,8 +22,8 @@ from fe_reference import (
     solve_release,
 )
 from tests import table_one
-from tests.fe.cases import cantilever, pivot
-from tests.fe.scenes import WIDE, four_bar, free_cantilever, guide
+from tests.fe.cases import pivot
+from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, tipped
 from tests.refusals import refused, scene
 from tests.table_one import BARE, SIDES
 
@@ -99,7 +100,7 @@ def release(given: Any = None, **options: Any) -> object:
 
 def unheld() -> Model:
     """Return a strip that nothing holds."""
-    return cantilever(elements=2, root=None, moment=1.0)
+    return tipped(TIP, strip={"root": None}, applied_moment={"moment": 1.0})
 
 
 ALPHA = "generalised-alpha"
@@ -138,12 +139,12 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: hung(bodies=("car",)), "tip: got 'plate', expected one of ground, car"),
     (lambda: hung(bodies=("ground",)), "bodies: got 'ground', expected another name"),
     (lambda: hung(strips=2), "strips: got ... expected names that differ"),
-    (lambda: cantilever(elements=2, end=(0.0, 0.0)), "ends that coincide"),
-    (lambda: cantilever(elements=2, start=(0.0, np.inf)), "start: got inf, expected a finite number"),
+    (lambda: tipped(TIP, strip={"end": (0.0, 0.0)}), "ends that coincide"),
+    (lambda: tipped(TIP, strip={"start": (0.0, np.inf)}), "start: got inf, expected a finite number"),
     (lambda: BodyDesign(centre=np.array([np.nan, 0.0])), "centre: got nan, expected a finite number"),
-    (lambda: cantilever(elements=2, density=0.0), "above 0"),
+    (lambda: tipped(TIP, strip={"density": 0.0}), "above 0"),
     (lambda: Model(strips=()), "one or more strips"),
-    (lambda: solve_mechanism(unheld()), "nothing holds body body against turning"),
+    (lambda: solve_mechanism(unheld()), "nothing holds body tip against turning"),
     (lambda: solve_mechanism(four_bar(), rotation=0.1), "body: got None, expected one of crank, cou"),
     (lambda: solve_mechanism(free_cantilever(), rotation=0.1), "body: got None, expected one of no bodies"),
     (lambda: alone(driven_displacement=LED), "driven_displacement: got 'no bodies'"),
@@ -172,6 +173,33 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     ),
 ]
 ASKED += [(partial(pivot, **given), said) for given, said in PIVOTS]
+ONCE, FORCED = "expected one drive or support for each coordinate", {"stiffness": (1.0, 1.0)}
+PUSHED, ROLL = {"body": "crank", "displacement": (0.0, None)}, {"body": "crank", "fixed": ["x", "rotation"]}
+ROLLED = partial(four_bar, {"support": ROLL})
+#: Effects of the four-bar of which there may be several, and what is said of them.
+LISTS: list[tuple[dict[str, Any], str]] = [
+    ({"gravity": [{"acceleration": (0.0, 1.0)}]}, "gravity: got ... expected the parameters of one effect"),
+    ({"applied_moment": []}, "applied_moment: got [], expected parameters, or a sequence of them"),
+    ({"support": {"body": "crank", "fixed": "x"}}, "fixed: got 'x', expected one or more of x, y, rotation"),
+    ({"support": {"body": "crank", "fixed": ("x", "x")}}, "fixed: got ('x', 'x'), expected one or more"),
+    ({"support": {"body": "crank"}}, "support: got ... expected a value of fixed"),
+    ({"spring": {"body": "crank"}}, "spring: got 'crank', expected a stiffness or a damping above 0"),
+    ({"spring": {"body": "crank", "stiffness": (1.0, -1.0)}}, "stiffness: got -1.0, expected a number not"),
+    ({"spring": {"body": "crank", "other": "car", **FORCED}}, "body: got 'car', expected one"),
+    ({"spring": {"body": "crank", "other": "crank", **FORCED}}, "other: got 'crank'"),
+    ({"tip_force": {"strip": "a", "force": PULL, "follower": 1}}, "follower: got 1, expected True or"),
+    ({"support": ROLL, "driven_displacement": PUSHED}, f"prescribed: got 'x of crank', {ONCE}"),
+    ({"driven_displacement": [PUSHED, PUSHED]}, f"prescribed: got 'x of crank', {ONCE}"),
+]
+ASKED += [(partial(four_bar, given), said) for given, said in LISTS]
+ASKED += [
+    (lambda: solve_mechanism(ROLLED(), body="crank", rotation=0.1), f"'rotation of crank', {ONCE}"),
+    (lambda: natural_frequencies(ROLLED(), body="crank", rotation=0.1), f"'rotation of crank', {ONCE}"),
+    (
+        lambda: solve_motion(ROLLED(), drive=DrivenRotation(body="crank", angle=0.1), **BRIEF),
+        f"'rotation of crank', {ONCE}",
+    ),
+]
 
 
 @pytest.mark.parametrize(("ask", "said"), ASKED, ids=[f"{k}: {row[1]}" for k, row in enumerate(ASKED)])

@@ -1,4 +1,4 @@
-"""Effects of a strip's width, thickness and roots: what they need, and what they make of the strip."""
+"""Effects with nothing in them, effects of the sides of strips, and what they make of these."""
 
 from typing import Any
 
@@ -10,11 +10,14 @@ from fe_reference import (
     ELEMENTS,
     cross_axis_pivot,
     solve_mechanism,
+    solve_motion,
     solve_statics,
     strip_fields,
 )
+from tests.fe.cases import LENGTH, pivot
 from tests.fe.scenes import SIDED, WIDE, guide
 from tests.gates import hold
+from tests.spline.test_effects import ZERO
 from tests.table_one import BARE
 
 EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monolithic"}}
@@ -52,3 +55,19 @@ def test_sides_without_a_curl_change_nothing(element: str) -> None:
     for name in ("states", "curvature", "strain_energy", "largest_stress", "stiffness"):
         if hasattr(one, name):
             assert np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True)
+
+
+MOTIONS = ({"step": 1e-7}, {"integrator": "generalised-alpha", "step": 1e-5})
+
+
+@pytest.mark.parametrize("name", ZERO)
+def test_zero_equals_absent(name: str) -> None:
+    """An effect with a coefficient of zero gives the path and the motion of either scheme without it."""
+    scene = {"effects": (*DEFAULT_EFFECTS, name), "parameters": {name: ZERO[name]}}
+    bare, named = pivot(elements=4), pivot(elements=4, **scene)
+    paths = [solve_statics(each, rotation=0.4, increments=5, order="together") for each in (bare, named)]
+    assert np.abs(paths[0].torque - paths[1].torque).max() <= 1e-14 * paths[0].torque[-1]
+    for how in MOTIONS:
+        runs = [solve_motion(each, start=0.4, duration=1e-4, check=False, **how) for each in (bare, named)]
+        assert np.ptp(runs[0].rotation) > 1e-6
+        assert np.abs(runs[0].shape - runs[1].shape).max() <= 1e-14 * LENGTH
