@@ -57,7 +57,7 @@ class Scheme:
         raise NotImplementedError
 
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
-        """Return the kinetic energy of masses that turn off led points, with these moving in `ways` (size,)."""
+        """Return the kinetic energy of masses that turn off led points moving in `ways` (size,) [J]."""
         total = 0.0
         for body in self.off:
             at = self.structure.body_slice(body)

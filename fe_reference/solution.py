@@ -214,7 +214,7 @@ class StaticSolution(Answer):
         """Return the answer with its first states alone."""
 
         def first(value: Any) -> Any:
-            return {k: each[:count] for k, each in value.items()} if isinstance(value, dict) else value[:count]
+            return {k: it[:count] for k, it in value.items()} if isinstance(value, dict) else value[:count]
 
         arrays = {name for name, value in vars(self).items() if isinstance(value, np.ndarray)} - {"stations"}
         return replace(self, **{name: first(getattr(self, name)) for name in arrays | {"bodies", "tips"}})

@@ -72,34 +72,24 @@ def potential(structure: Structure, y: Array, share: float) -> float:
 @pytest.mark.parametrize("kind", SCENES)
 @pytest.mark.parametrize("about_mass", [False, True])
 @pytest.mark.parametrize("element", ELEMENTS)
-def test_force_is_the_gradient_of_the_potential(element: str, about_mass: bool, kind: str) -> None:
-    """With gravity, natural strains and several bodies the force is the gradient of the potential."""
+def test_force_and_tangent_are_derivatives(element: str, about_mass: bool, kind: str) -> None:
+    """With every effect and several bodies the force is the gradient of the potential, the tangent the
+    derivative of the force, in the coordinates and in the share."""
     structure = scene(element, about_mass, kind)
-    y, size = far(structure), sizes(structure, 1.0)
+    y, size, short = far(structure), sizes(structure, 1.0), 1e-3 if kind == "curved" else 1e-4
+    here = structure.evaluate(y, 0.7)
 
-    def error(step: float = 1e-3 if kind == "curved" else 1e-4) -> float:
+    def of_force(step: float = short) -> float:
         slope = derivative(lambda z: np.array(potential(structure, z, 0.7)), y, sizes(structure, step))
-        force = structure.evaluate(y, 0.7).gradient
-        return float(np.abs((slope - force) * size).max() / np.abs(force * size).max())
+        return float(np.abs((slope - here.gradient) * size).max() / np.abs(here.gradient * size).max())
 
-    hold("fe_scene_force_is_gradient", error)
-
-
-@pytest.mark.parametrize("kind", SCENES)
-@pytest.mark.parametrize("about_mass", [False, True])
-@pytest.mark.parametrize("element", ELEMENTS)
-def test_tangent_is_the_derivative_of_the_force(element: str, about_mass: bool, kind: str) -> None:
-    """The tangent is the derivative of that force, in the coordinates and in the share."""
-    structure = scene(element, about_mass, kind)
-    y, size = far(structure), sizes(structure, 1.0)
-
-    def error(step: float = 1e-3 if kind == "curved" else 1e-4) -> float:
+    def of_tangent(step: float = short) -> float:
         slope = derivative(lambda z: structure.evaluate(z, 0.7).gradient, y, sizes(structure, step))
-        tangent = structure.evaluate(y, 0.7).tangent.sparse().toarray()
-        gap = np.abs((slope - tangent) * size * size[:, None]).max()
-        return float(gap / np.abs(tangent * size * size[:, None]).max())
+        tangent, scale = here.tangent.sparse().toarray(), size * size[:, None]
+        return float(np.abs((slope - tangent) * scale).max() / np.abs(tangent * scale).max())
 
-    hold("fe_scene_tangent_is_derivative", error)
+    hold("fe_scene_force_is_gradient", of_force)
+    hold("fe_scene_tangent_is_derivative", of_tangent)
     full, none = structure.evaluate(y, 1.0).gradient, structure.evaluate(y, 0.0).gradient
     force, slope, bend = structure.share_rates(y)
     assert np.allclose(full - none, force, rtol=0.0, atol=1e-11 * np.abs(full).max())
