@@ -5,7 +5,7 @@ Data flow one way, and so do the imports:
     loading -> effects; strip, effects -> model (mechanism) -> mesh
     mesh, law (bending), places (loads, links), matrix -> structure -> control
     control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, drives -> actions -> motion -> schemes -> dynamics
+    structure -> mass, drives -> actions -> motion -> schemes, run -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
     plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
 
