@@ -44,8 +44,7 @@ def free_cantilever(
 ) -> Model:
     """Return a horizontal strip, clamped on the left, with a free tip."""
     strip = StripDesign(name="strip", start=(0.0, 0.0), end=(length, 0.0), root=root, tip=None, **section)
-    given = parameters or {}
-    return compliant_mechanism(strips=[strip], effects=(*effects, *given), parameters=given, **discretisation)
+    return compliant_mechanism(strips=[strip], **scene(effects, **parameters or {}), **discretisation)
 
 
 #: A body without mass at the tip of a strip.
@@ -75,14 +74,8 @@ def guide(
         for name, x in (("left", 0.0), ("right", APART))
     ]
     stage = BodyDesign(name="stage", centre=(0.5 * APART, GUIDE), mass=0.2, moment_of_inertia=1e-4)
-    given = parameters or {}
-    return compliant_mechanism(
-        strips=strips,
-        bodies=[stage],
-        effects=(*DEFAULT_EFFECTS, *given),
-        parameters=given,
-        **discretisation,
-    )
+    given = scene(DEFAULT_EFFECTS, **parameters or {})
+    return compliant_mechanism(strips=strips, bodies=[stage], **given, **discretisation)
 
 
 def four_bar(
@@ -118,7 +111,5 @@ def four_bar(
         BodyDesign(name=name, centre=centre, mass=0.1, moment_of_inertia=1e-4)
         for name, centre in centres.items()
     ]
-    given = parameters or {}
-    return compliant_mechanism(
-        strips=strips, bodies=bodies, effects=(*effects, *given), parameters=given, **discretisation
-    )
+    given = scene(effects, **parameters or {})
+    return compliant_mechanism(strips=strips, bodies=bodies, **given, **discretisation)

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference import ELEMENTS, Status, cross_axis_pivot, solve_mechanism, solve_statics
-from tests.fe.cases import EI, MOMENT, QUICK_ELEMENTS, STRIP, TABLE_1, extrapolated, pivot
+from fe_reference import ELEMENTS, Status, solve_mechanism, solve_statics
+from tests.fe.cases import EI, MOMENT, QUICK_ELEMENTS, STRIP, extrapolated, pivot
 from tests.fe.scenes import GUIDE, PARAMETERS, TIP, WIDE, four_bar, free_cantilever, guide, tipped
 from tests.gates import hold
+from tests.refusals import scene
 
 STATIC = {
     name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain", "spring")
@@ -86,13 +87,8 @@ HEAVY = {"density": 2e6, "body_mass": 0.0, "centre_offset": (0.03, 0.05)}
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> None:
     """Stiffness is the difference quotient of torques where half-elements of heavy strips hang on a body."""
-    model = cross_axis_pivot(
-        **(TABLE_1 | HEAVY),
-        elements=2,
-        element=element,
-        effects=("bending", "stretching", "gravity"),
-        parameters={"gravity": {"acceleration": (0.0, -9.81)}},
-    )
+    weight = scene(("bending", "stretching"), gravity={"acceleration": (0.0, -9.81)})
+    model = pivot(**HEAVY, **weight, elements=2, element=element)
     stiffness = solve_statics(model, rotation=0.5, increments=4).stiffness[-1]
 
     def error(step: float = 1e-3) -> float:

@@ -10,8 +10,6 @@ from fe_reference import (
     DrivenRotation,
     Model,
     Status,
-    StripDesign,
-    compliant_mechanism,
     solve_motion,
     solve_release,
 )
@@ -19,7 +17,7 @@ from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
 from fe_reference.structure import Structure, structure_of
 from tests.fe.cases import LENGTH, pivot
-from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, SIDED_SCENE, THICK, four_bar, free_cantilever
+from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, SIDED_SCENE, THICK, four_bar, free_cantilever, tipped
 from tests.gates import hold
 
 QUARTER = np.pi / 2.0
@@ -107,14 +105,8 @@ def test_impulse_of_a_load() -> None:
     force = {"force": (30.0, -20.0), "history": history}
 
     def error(step: float = 1e-6) -> float:
-        ends = {"start": (0.0, 0.0), "end": (GUIDE, 0.0), "root": None, "tip": "body"}
-        model = compliant_mechanism(
-            strips=[StripDesign(name="strip", **ends, **SECTION)],
-            bodies=[BodyDesign(name="body", centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)],
-            effects=("bending", "stretching", "strip_inertia", "body_inertia", "applied_force"),
-            parameters={"applied_force": force},
-            elements=5,
-        )
+        body = BodyDesign(centre=(1.2 * GUIDE, 0.01), mass=0.01, moment_of_inertia=1e-5)
+        model = tipped(body, strip={"root": None}, elements=5, applied_force=force)
         motion = solve_motion(model, duration=2e-3, step=step, samples=4, settled=False, check=False)
         masses = SECTION["area"] * SECTION["density"] * GUIDE / 5.0 * np.array([0.5, 1.0, 1.0, 1.0, 1.0, 0.5])
         moments = masses @ motion.shape[:, 0] + 0.01 * motion.bodies["body"][:, :2]

@@ -6,32 +6,19 @@ import numpy as np
 import pytest
 
 import fe_reference
-from fe_reference import Model, cross_axis_pivot, solve_mechanism, solve_statics
+from fe_reference import DEFAULT_EFFECTS, Model, cross_axis_pivot, solve_mechanism, solve_statics
 from tests.fe.cases import extrapolated, pivot
 from tests.frames import heavy
 from tests.gates import hold
-
-DEFAULT = ("bending", "stretching", "strip_inertia", "body_inertia")
+from tests.refusals import scene
+from tests.table_one import BARE
 
 
 def pressed(force: float = 20e3, elements: int = 20) -> Model:
     """Return a pivot of steel strips, 300 x 50 x 3 mm at 60 deg, crossing in the middle, pressed down."""
-    area, moment = 50e-3 * 3e-3, 50e-3 * 3e-3**3 / 12.0
-    return cross_axis_pivot(
-        length=0.3,
-        inclination=np.pi / 3.0,
-        crossing_ratio=0.5,
-        area=area,
-        second_moment_of_area=moment,
-        youngs_modulus=206e9,
-        poisson_ratio=0.3,
-        density=7850.0,
-        body_mass=1.0,
-        body_moment_of_inertia=0.01,
-        effects=(*DEFAULT, "applied_force"),
-        parameters={"applied_force": {"force": (0.0, -force)}},
-        elements=elements,
-    )
+    sides = {"length": 0.3, "inclination": np.pi / 3.0, "width": 50e-3, "thickness": 3e-3}
+    loaded = scene(DEFAULT_EFFECTS, applied_force={"force": (0.0, -force)})
+    return cross_axis_pivot(**BARE | sides | loaded, elements=elements)
 
 
 #: Load at which the clamped strips of the pressed pivot buckle [N].
