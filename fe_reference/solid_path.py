@@ -18,8 +18,8 @@ from .arrays import Array
 from .errors import ConvergenceError, InvalidParameter, finite
 from .solid import SolidStrip
 
-#: Newton iterations of one state, and the largest correction of a solved state in thicknesses.
-ITERATIONS, CORRECTION = 30, 1e-9
+#: Newton iterations of one state, and its largest last correction in thicknesses, which leaves the square.
+ITERATIONS, CORRECTION = 30, 1e-6
 #: Rotations that are closer than this are one node of the polynomial that predicts a state [rad].
 APART = 1e-6
 
@@ -97,19 +97,18 @@ def solve_solids(
     local = strip.nodes[strip.tip, :2] @ [1.0, 1.0j]
     body = _Body(strip, axes, root[:, None] + np.multiply.outer(axes, local) - complex(*centre))
     at, known = [0.0], [np.zeros(3 + len(axes) * strip.nodes.size)]
-    turns, states, torques = [finite("rotations", each, "rad") for each in rotations], [], []
+    turns, states = [finite("rotations", each, "rad") for each in rotations], []
     for rotation in turns:
         guess = krogh_interpolate(at, np.stack(known), rotation) if len(at) > 2 else known[-1]
-        state, torque = body.equilibrium(np.asarray(guess), rotation)
-        torques.append(torque)
+        state, moment = body.equilibrium(np.asarray(guess), rotation)
         strains = (np.abs(strip.strained(u)[1]).max() for u in body.strips(state))
-        states.append((*state[:2], max(strains)))
+        states.append((moment, *state[:2], max(strains)))
         if min(abs(rotation - other) for other in at) > APART:
             at, known = [*at, rotation][-4:], [*known, state][-4:]
-    x, y, strain = np.array(states).T
+    torque, x, y, strain = np.array(states).T
     return SolidPath(
         rotation=np.array(turns),
-        torque=np.array(torques),
+        torque=torque,
         centre=np.stack([x, y], axis=1) + np.asarray(centre),
         largest_strain=strain,
     )

@@ -63,14 +63,16 @@ MODES, MODE_MESHES, STORED, WRITTEN = 5, MESHES[:3], 2, 1e-8
 def beams(theory: str) -> dict[str, pd.DataFrame]:
     """Return statics, natural frequencies and free vibration of plane beams: limits of refinement."""
     pivot, (element, order, meshes) = named_case(), BEAMS[theory]
-    path, chosen = reference(pivot, element), slice(STORED, None, STORED)
+    path = reference(pivot, element)
     torque = path.uncertainty["torque"] * path.torque.max()
     states = states_of(path).iloc[1:]
-    settings = [FeSettings(elements=count, element=element) for count in MODE_MESHES]
+    settings = (FeSettings(elements=count, element=element) for count in MODE_MESHES)
     modes = [answer_modes(pivot, each, count=MODES).frequency for each in settings]
     frequency, unsure = extrapolate(modes, order=order)
-    swing = swing_reference(pivot, duration=DURATION, instants=INSTANTS, meshes=meshes, element=element)
-    time, rotation, late = swing.time[chosen], swing.rotation[chosen], swing.uncertainty["rotation_rad"]
+    swing = swing_reference(
+        pivot, duration=DURATION, instants=INSTANTS[::STORED], meshes=meshes, element=element
+    )
+    time, rotation, late = swing.time[1:], swing.rotation[1:], swing.uncertainty["rotation_rad"]
     rows = [
         _states(states, torque, path.uncertainty["trajectory"] * _travel(states)),
         _rows("frequency_Hz", np.arange(1, MODES + 1), frequency, unsure, frequency),
@@ -106,8 +108,9 @@ def _states(rows: pd.DataFrame, torque: Any, place: Any) -> pd.DataFrame:
 def _rows(quantity: str, at: Any, value: Any, uncertainty: Any, scale: Any) -> pd.DataFrame:
     """Return rows of one quantity; the uncertainty is at least that of the written digits."""
     unsure = np.maximum(uncertainty, WRITTEN * np.abs(value))
-    given = {"quantity": quantity, "at": at, "value": value, "uncertainty": unsure, "scale": scale}
-    return pd.DataFrame(given)
+    return pd.DataFrame(
+        {"quantity": quantity, "at": at, "value": value, "uncertainty": unsure, "scale": scale}
+    )
 
 
 def _inputs() -> str:
@@ -129,5 +132,5 @@ def _inputs() -> str:
     }
     theories = {name: {"theory": theory} for name, theory in THEORIES.items()}
     document = {"pivot": given, "references": theories, "quantities": QUANTITIES}
-    written = "The benchmark pivot, written by `python -m studies readme`; docs/benchmark.md explains it."
-    return as_toml(document, [written])
+    remark = "The benchmark pivot, written by `python -m studies readme`: docs/benchmark.md explains it."
+    return as_toml(document, [remark])

@@ -1,8 +1,8 @@
 """Pivots as solids and as beams: states, limits of refinement, and deviations of one from the other."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -36,7 +36,8 @@ class Design:
         case: name of the case. width: other than that of the case [m]; 0 for its own.
         blocks: sides of the blocks of the supports over the thickness; 0 for rigid end faces.
         step: between the rotations that are compared [deg]. states: their number.
-        models: names of the beam models. meshes: fineness, law and element of every mesh.
+        models: of beams, by name; settings and effects that are added come first.
+        meshes: fineness, law and element of every mesh.
         orders: of the error of the mesh, that of the limit and the other one of its uncertainty. At the
             corners between strip and block the stress is more singular than at a rigid face.
     """
@@ -46,7 +47,7 @@ class Design:
     blocks: float = 0.0
     step: float = 10.0
     states: int = 6
-    models: tuple[str, ...] = ()
+    models: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
     meshes: tuple[tuple[int, str, str], ...] = tuple((n, STIFF, "serendipity") for n in (4, 3, 2))
     orders: tuple[float, float] = (ORDER, SINGULAR)
 
@@ -118,8 +119,6 @@ def compared(tables: Tables, design: str) -> dict[str, pd.DataFrame]:
 
 def deviation(own: pd.DataFrame, solid: pd.DataFrame) -> pd.DataFrame:
     """Return the deviations of states from those of solids, or of other beams."""
-    errors = {
-        "error_torque": relative_error(own["torque_Nm"].to_numpy(), solid["torque_Nm"].to_numpy()),
-        "error_trajectory": trajectory_error(own[VALUES[1:]].to_numpy(), solid[VALUES[1:]].to_numpy()),
-    }
-    return pd.DataFrame(errors)
+    (torque, *place), (expected, *places) = (each[VALUES].to_numpy().T for each in (own, solid))
+    trajectory = trajectory_error(np.transpose(place), np.transpose(places))
+    return pd.DataFrame({"error_torque": relative_error(torque, expected), "error_trajectory": trajectory})
