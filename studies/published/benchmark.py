@@ -132,5 +132,5 @@ def _inputs() -> str:
     }
     theories = {name: {"theory": theory} for name, theory in THEORIES.items()}
     document = {"pivot": given, "references": theories, "quantities": QUANTITIES}
-    remark = "The benchmark pivot, written by `python -m studies readme`: docs/benchmark.md explains it."
+    remark = "The benchmark pivot, written by `python -m studies readme`; docs/benchmark.md explains it."
     return as_toml(document, [remark])
