@@ -5,7 +5,7 @@ is symmetric about the plane of motion. With the displacement gradient H, Green'
 E = (H + H^T + H^T H) / 2, and the stress S of the material law
 
     St. Venant-Kirchhoff   S = lambda tr(E) I + 2 mu E
-    neo-Hookean            S = mu (I - C^-1) + lambda ln(J) C^-1,    C = I + 2 E
+    neo-Hookean            S = lambda ln(J) C^-1 + 2 mu C^-1 E,    C = I + 2 E,  J^2 = det(C)
 
 The forces of the nodes are int S : dE dV over all elements, of all virtual displacements of the nodes.
 
@@ -18,36 +18,41 @@ Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysi
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from skfem import Basis, ElementHex2, ElementHexS2, MeshHex
 from skfem.quadrature import get_quadrature
 
 from .arrays import Array, Indices
-from .errors import InvalidParameter
+from .errors import Checked, choice, count, not_negative, positive, within
 
 #: Elements with 20 and 27 nodes, and the order of the quadrature that each of them needs.
 ELEMENTS = {"serendipity": (ElementHexS2, 3), "lagrange": (ElementHex2, 5)}
 LAWS = ("st-venant-kirchhoff", "neo-hookean")
 #: Pairs of axes of the six strains, shear strains twice.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+FIRST, SECOND = np.array([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]).T
 #: Clustering of nodes towards clamps and edges: lengths differ by a factor of about 6.
 CLUSTERED = 0.76
 #: Elements that are assembled at once.
 CHUNK = 400
 
 
-def _lines(count: int, low: float, high: float, *, both: bool = True) -> Array:
-    """Return mesh lines between two places, clustered towards both ends or towards the upper one."""
-    s = np.linspace(0.0, 1.0, count + 1)
-    curved = 0.5 * (1.0 - np.cos(np.pi * s)) if both else np.sin(0.5 * np.pi * s)
-    lines: Array = low + (high - low) * ((1.0 - CLUSTERED) * s + CLUSTERED * curved)
-    return lines
+def _lines(cells: int, low: float, high: float) -> Array:
+    """Return mesh lines between two places, clustered towards both."""
+    s = np.linspace(0.0, 1.0, cells + 1)
+    curved = 0.5 * (1.0 - np.cos(np.pi * s))
+    return np.asarray(low + (high - low) * ((1.0 - CLUSTERED) * s + CLUSTERED * curved))
+
+
+def _cells(name: str, value: tuple[int, int, int]) -> tuple[int, int, int]:
+    """Return the elements in three directions, or refuse a direction without one."""
+    along, thick, wide = value
+    return count(name, along), count(name, thick), count(name, wide)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SolidStrip:
+class SolidStrip(Checked):
     """A meshed strip: along x from 0 to the length, thickness along y, half of the width along z.
 
     Parameters
@@ -56,7 +61,7 @@ class SolidStrip:
         Sides of the block; the thickness is in the plane of motion.
     youngs_modulus : float, Pa
     poisson_ratio : float
-        From 0 to below 0.5.
+        Between -1 and 0.5.
     law : str
         One of `LAWS`.
     element : str
@@ -84,49 +89,32 @@ class SolidStrip:
     (6, 1, 1)
     """
 
-    length: float
-    width: float
-    thickness: float
-    youngs_modulus: float
-    poisson_ratio: float
-    law: str = LAWS[0]
-    element: str = "serendipity"
-    mesh: tuple[int, int, int] = (32, 4, 3)
-    support: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("length", "width", "thickness", "youngs_modulus"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InvalidParameter(name, value, "a positive number")
-        if not 0.0 <= self.poisson_ratio < 0.5:
-            raise InvalidParameter("poisson_ratio", self.poisson_ratio, "a number from 0 to below 0.5")
-        for name, known in (("law", LAWS), ("element", tuple(ELEMENTS))):
-            if getattr(self, name) not in known:
-                raise InvalidParameter(name, getattr(self, name), "one of " + ", ".join(known))
-        if min(self.mesh) < 1:
-            raise InvalidParameter("mesh", self.mesh, "at least one element in each direction")
-        if not (np.isfinite(self.support) and self.support >= 0.0):
-            raise InvalidParameter("support", self.support, "a number of at least 0")
+    length: Annotated[float, positive, "m"]
+    width: Annotated[float, positive, "m"]
+    thickness: Annotated[float, positive, "m"]
+    youngs_modulus: Annotated[float, positive, "Pa"]
+    poisson_ratio: Annotated[float, within, -1.0, 0.5, "1"]
+    law: Annotated[str, choice, LAWS] = LAWS[0]
+    element: Annotated[str, choice, tuple(ELEMENTS)] = "serendipity"
+    mesh: Annotated[tuple[int, int, int], _cells] = (32, 4, 3)
+    support: Annotated[float, not_negative, "m"] = 0.0
 
     @cached_property
     def _basis(self) -> Basis:
         kind, order = ELEMENTS[self.element]
-        x = self._supported(_lines(self.mesh[0], 0.0, self.length))
-        y = self._supported(_lines(self.mesh[1], -0.5 * self.thickness, 0.5 * self.thickness))
-        mesh = MeshHex.init_tensor(x, y, _lines(self.mesh[2], 0.0, 0.5 * self.width, both=False))
+        element, half = kind(), 0.5 * self.thickness
+        x, y = self._supported(_lines(self.mesh[0], 0.0, self.length)), _lines(self.mesh[1], -half, half)
+        z = _lines(2 * self.mesh[2], -0.5 * self.width, 0.5 * self.width)[self.mesh[2] :]
+        mesh = MeshHex.init_tensor(x, self._supported(y), z)
         along, across, _ = mesh.p[:, mesh.t].mean(axis=1)
-        empty = (along > 0.0) & (along < self.length) & (np.abs(across) > 0.5 * self.thickness)
-        element = kind()
+        empty = (along > 0.0) & (along < self.length) & (np.abs(across) > half)
         mesh = mesh.remove_elements(np.flatnonzero(empty))
         return Basis(mesh, element, quadrature=get_quadrature(element, order))
 
     def _supported(self, lines: Array) -> Array:
         """Return mesh lines with those of the blocks on both sides, which are clustered towards the strip."""
-        if not self.support:
-            return lines
-        count = self.mesh[1] + 1
-        beyond = self.support * (np.arange(1, count + 1) / count) ** 2
+        cells = self.mesh[1] + 1 if self.support else 0
+        beyond = self.support * (np.arange(1, cells + 1) / max(cells, 1)) ** 2
         return np.concatenate([lines[0] - beyond[::-1], lines, lines[-1] + beyond])
 
     @cached_property
@@ -142,8 +130,7 @@ class SolidStrip:
     @cached_property
     def elements(self) -> Indices:
         """Coordinates of the elements (E, 3 n), displacement components of a node next to each other."""
-        place = np.argsort(self._order)
-        nodes = place[self._basis.element_dofs.T]
+        nodes = np.argsort(self._order)[self._basis.element_dofs.T]
         return np.asarray((3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), -1))
 
     @cached_property
@@ -178,50 +165,22 @@ class SolidStrip:
         below = np.where(used, row - column, 0)
         return (below * len(self.free) + column)[used], np.flatnonzero(used), int(below.max()) + 1
 
-    @cached_property
-    def _sections(self) -> tuple[Indices, Array]:
-        """Section of every node, sections having one x, and the number of nodes of each."""
-        _, section = np.unique(self.nodes[:, 0].round(12), return_inverse=True)
-        return section, np.bincount(section).astype(float)
-
-    @property
-    def unknowns(self) -> int:
-        """Free displacements of the interior."""
-        return len(self.free)
-
-    def moved(self, u: Array, change: Array) -> Array:
-        """Return displacements (N, 3) after a change (N, 3), with the mean turn of each section finite."""
-        section, count = self._sections
-        here = self.nodes[:, :2] + u[:, :2]
-
-        def mean(values: Array) -> Array:
-            found: Array = (np.bincount(section, values) / count)[section]
-            return found
-
-        def means(values: Array) -> Array:
-            return np.stack([mean(values[:, 0]), mean(values[:, 1])], axis=1)
-
-        middle, shift = means(here), means(change[:, :2])
-        arm, rest = here - middle, change[:, :2] - shift
-        turn = mean(arm[:, 0] * rest[:, 1] - arm[:, 1] * rest[:, 0]) / mean((arm**2).sum(axis=1))
-        arm = arm + rest - np.stack([-turn * arm[:, 1], turn * arm[:, 0]], axis=1)
-        cos, sin = np.cos(turn), np.sin(turn)
-        turned = np.stack([cos * arm[:, 0] - sin * arm[:, 1], sin * arm[:, 0] + cos * arm[:, 1]], axis=1)
-        return np.column_stack([middle + shift + turned - self.nodes[:, :2], u[:, 2] + change[:, 2]])
-
     def _stress(self, strain: Array) -> tuple[Array, Array]:
         """Return the stress (..., 3, 3) and its derivative by the six strains (..., 6, 6) [Pa]."""
         mu = self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
         first = 2.0 * mu * self.poisson_ratio / (1.0 - 2.0 * self.poisson_ratio)
-        one = np.eye(3)
-        if self.law == LAWS[0]:
-            trace = np.trace(strain, axis1=-2, axis2=-1)[..., None, None]
-            return first * trace * one + 2.0 * mu * strain, _moduli(one, first, mu)
-        inverse = np.asarray(np.linalg.inv(one + 2.0 * strain), dtype=np.float64)
-        volume = 0.5 * np.log1p(_dilation(2.0 * strain))[..., None, None]
-        return 2.0 * mu * inverse @ strain + first * volume * inverse, _moduli(
-            inverse, first, mu - first * volume
+        unit: Any = np.eye(3)
+        metric, shear = np.broadcast_to(unit, strain.shape), mu
+        growth = np.trace(strain, axis1=-2, axis2=-1)[..., None, None]
+        if self.law == LAWS[1]:
+            metric = np.linalg.inv(unit + 2.0 * strain)
+            growth = 0.5 * np.log(np.linalg.det(unit + 2.0 * strain))[..., None, None]
+            shear = mu - first * growth
+        i, j, k, m = FIRST[:, None], SECOND[:, None], FIRST[None], SECOND[None]
+        moduli = first * metric[..., i, j] * metric[..., k, m] + shear * (
+            metric[..., i, k] * metric[..., j, m] + metric[..., i, m] * metric[..., j, k]
         )
+        return first * growth * metric + 2.0 * mu * metric @ strain, moduli
 
     def assembled(self, u: Array, moves: Array) -> tuple[Array, Array, Array]:
         """Return forces and stiffness at displacements u (N, 3).
@@ -232,59 +191,45 @@ class SolidStrip:
             Forces of the nodes (3 N,) [N], lower band of the stiffness of the interior, and the stiffness
             times `moves` (3 N, k).
         """
-        gradients, volumes = self.gradients
         entries, used, height = self._band
-        flat, force, product = u.reshape(-1), np.zeros(u.size), np.zeros_like(moves)
+        force, product = np.zeros(u.size), np.zeros_like(moves)
         matrices = np.empty((len(self.elements), self.elements.shape[1] ** 2))
         for begin in range(0, len(self.elements), CHUNK):
             chunk = slice(begin, begin + CHUNK)
             own = self.elements[chunk]
-            local, stiffness = self._chunk(gradients[chunk], volumes[chunk], flat[own])
+            local, stiffness = self._chunk(chunk, u)
             np.add.at(force, own, local)
             np.add.at(product, own, stiffness @ moves[own])
             matrices[chunk] = stiffness.reshape(len(own), -1)
-        count = len(self.free)
-        band = np.bincount(entries, matrices.reshape(-1)[used], minlength=height * count)
-        return force, np.asarray(band.reshape(height, count), dtype=np.float64), product
+        shape = height, len(self.free)
+        band = np.bincount(entries, matrices.reshape(-1)[used], minlength=shape[0] * shape[1])
+        return force, np.asarray(band.reshape(shape), dtype=np.float64), product
 
-    def _chunk(self, gradient: Array, volume: Array, u: Array) -> tuple[Array, Array]:
-        """Return forces (E, 3 n) and stiffness (E, 3 n, 3 n) of elements with displacements (E, 3 n)."""
-        count, points, nodes, _ = gradient.shape
-        slope = np.einsum("eqnj,eni->eqij", gradient, u.reshape(count, nodes, 3), optimize=True)
-        strain = 0.5 * (slope + slope.swapaxes(2, 3) + slope.swapaxes(2, 3) @ slope)
+    def strained(self, u: Array, chunk: slice = slice(None)) -> tuple[Array, Array]:
+        """Return displacement gradient and Green's strain (E, Q, 3, 3) at the points of elements."""
+        gradient, own = self.gradients[0][chunk], u.reshape(-1)[self.elements[chunk]]
+        slope = np.einsum("eqnj,eni->eqij", gradient, own.reshape(len(own), -1, 3), optimize=True)
+        return slope, 0.5 * (slope + slope.swapaxes(2, 3) + slope.swapaxes(2, 3) @ slope)
+
+    def _chunk(self, chunk: slice, u: Array) -> tuple[Array, Array]:
+        """Return forces (E, 3 n) and stiffness (E, 3 n, 3 n) of elements."""
+        gradient, volume = (each[chunk] for each in self.gradients)
+        elements, points, nodes, _ = gradient.shape
+        slope, strain = self.strained(u, chunk)
         stress, moduli = self._stress(strain)
         deformed = np.eye(3) + slope
-        rates: Array = np.empty((count, points, 6, nodes, 3))
-        for k, (i, j) in enumerate(PAIRS):
+        rates: Array = np.empty((elements, points, 6, nodes, 3))
+        for k, (i, j) in enumerate(zip(FIRST, SECOND, strict=True)):
             rates[:, :, k] = deformed[:, :, None, :, i] * gradient[:, :, :, j, None]
             if i != j:
                 rates[:, :, k] += deformed[:, :, None, :, j] * gradient[:, :, :, i, None]
-        whole = rates.reshape(count, points * 6, 3 * nodes)
-        weighted = volume[:, :, None, None] * (moduli @ whole.reshape(count, points, 6, -1))
-        stiffness = whole.swapaxes(1, 2) @ weighted.reshape(count, points * 6, -1)
-        pulled = volume[:, :, None, None] * (gradient @ stress)
-        along = np.moveaxis(pulled, 1, 2).reshape(count, nodes, -1) @ np.moveaxis(gradient, 1, 2).reshape(
-            count, nodes, -1
-        ).swapaxes(1, 2)
+        whole = rates.reshape(elements, points * 6, 3 * nodes)
+        weighted = volume[:, :, None, None] * (moduli @ whole.reshape(elements, points, 6, -1))
+        stiffness = whole.swapaxes(1, 2) @ weighted.reshape(elements, points * 6, -1)
+        pulled = np.moveaxis(volume[:, :, None, None] * (gradient @ stress), 1, 2)
+        spread = np.moveaxis(gradient, 1, 2).reshape(elements, nodes, -1)
+        along = pulled.reshape(elements, nodes, -1) @ spread.swapaxes(1, 2)
         for i in range(3):
             stiffness[:, i::3, i::3] += along
-        six = np.stack([stress[:, :, i, j] for i, j in PAIRS], axis=2) * volume[:, :, None]
-        return np.einsum("ep,epn->en", six.reshape(count, -1), whole, optimize=True), stiffness
-
-
-def _dilation(a: Array) -> Array:
-    """Return det(I + a) - 1 of symmetric a (..., 3, 3) without the round-off of the difference."""
-    trace = np.trace(a, axis1=-2, axis2=-1)
-    found: Array = trace + 0.5 * (trace**2 - (a * a).sum(axis=(-2, -1))) + np.linalg.det(a)
-    return found
-
-
-def _moduli(metric: Array, first: float, second: Any) -> Array:
-    """Return first M_ij M_kl + second (M_ik M_jl + M_il M_jk) of a symmetric M, for the six strains."""
-    found = np.empty((*metric.shape[:-2], 6, 6))
-    second = np.asarray(second)[..., 0, 0] if np.ndim(second) else second
-    for a, (i, j) in enumerate(PAIRS):
-        for b, (k, m) in enumerate(PAIRS):
-            both = metric[..., i, k] * metric[..., j, m] + metric[..., i, m] * metric[..., j, k]
-            found[..., a, b] = first * metric[..., i, j] * metric[..., k, m] + second * both
-    return found
+        six = (stress[:, :, FIRST, SECOND] * volume[:, :, None]).reshape(elements, 1, -1)
+        return (six @ whole)[:, 0], stiffness

@@ -120,7 +120,7 @@ class Study:
     Attributes:
         cases: names of the designs it reads, which its results depend on; the paper's pivot by default.
         parts: what is asked, in this order.
-        made: tables that follow from those before them, by name.
+        made: tables that follow from those before them, by name: rows, or tables one below the other.
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
         figures: name -> what draws it from the tables as they come back from their files; none by default.
         varying: tables that differ from run to run, beside those whose name says time.
@@ -131,7 +131,7 @@ class Study:
 
     cases: tuple[str, ...] = (TABLE_1,)
     parts: tuple[Part, ...]
-    made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Row]]] = field(default_factory=dict)
+    made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Any]]] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
     claims_of_time: tuple[Claim, ...] = ()
     figures: Mapping[str, Callable[[Tables], Figure]] = field(default_factory=dict)

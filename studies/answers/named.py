@@ -6,31 +6,26 @@ Each is a quantity like those of every path, so that tables, files, pictures and
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from operator import attrgetter, methodcaller
+from operator import methodcaller
 from typing import Any
 
 import numpy as np
 
 from studies.answers.answer import centre_shift
-from studies.answers.quantities import (
-    ENERGY_FLOOR,
-    FORCE_FLOOR,
-    MOTION,
-    PATH,
-    QUANTITIES,
-    Quantity,
-)
+from studies.answers.quantities import MOTION, PATH, QUANTITIES, Quantity
 from studies.answers.response import PLACES
 from studies.cases.design import Design
 from studies.cases.mechanism import Point
 from studies.kinds import Array
 
-#: Coordinate of a body -> key and unit of what is exerted on the body for it.
-EXERTED = {"x": ("force_x_N", "N"), "y": ("force_y_N", "N"), "rotation": ("moment_Nm", "N m")}
+#: Coordinate of a body -> end of the key of what is exerted on the body for it, heading, and what that is.
+EXERTED = {
+    "x": ("force_x_N", "x", "force along x"),
+    "y": ("force_y_N", "y", "force along y"),
+    "rotation": ("moment_Nm", "moment", "moment"),
+}
 #: What takes the displacement of a place (S, 2 or 3), with its rotation, from an answer.
 Moved = Callable[[Any], Array]
-#: Displacement over the length of the longest strip, and rotation [rad], that are none.
-STILL = 1e-12
 
 
 def named(design: Design) -> tuple[Quantity, ...]:
@@ -67,16 +62,13 @@ def prescribed(design: Design) -> tuple[tuple[str, str], ...]:
 def _reactions(design: Design) -> Iterator[Quantity]:
     """Yield the forces and moments that prescribed coordinates need."""
     for body, part in prescribed(design):
-        key, unit = EXERTED[part]
-        turns = part == "rotation"
+        key, heading, name = EXERTED[part]
         yield Quantity(
             key=f"{body}_{key}",
-            heading="moment" if turns else part,
+            heading=heading,
             group=f"exerted on {body}",
-            unit=unit,
-            meaning=f"{'moment' if turns else f'force along {part}'} that is exerted on {body} from outside",
+            meaning=f"{name} that is exerted on {body} from outside",
             of=methodcaller("exerted", body, part),
-            floor=FORCE_FLOOR,
         )
 
 
@@ -91,43 +83,26 @@ def _free_ends(design: Design) -> Iterator[Quantity]:
 def _points(design: Design) -> Iterator[Quantity]:
     """Yield displacements of the named points of bodies."""
     for point in design.points:
-        yield from _moved(
-            f"{point.name}_displacement", point.name, partial(_point_moved, point), estimated=PLACES
-        )
+        moved = partial(_point_moved, point)
+        yield from _moved(f"{point.name}_displacement", point.name, moved, estimated=PLACES)
 
 
 def _moved(
-    key: str,
-    group: str,
-    of: Moved,
-    *,
-    turns: bool = False,
-    estimated: tuple[str, ...] = (),
-    analyses: tuple[str, ...] = (PATH, MOTION),
+    key: str, group: str, of: Moved, *, turns: bool = False, analyses: Any = (PATH, MOTION), **more: Any
 ) -> Iterator[Quantity]:
     """Yield the displacement of a place, and its rotation if it is one that turns."""
-    for axis, part in enumerate("xy"):
-        yield Quantity(
-            key=f"{key}_{part}_m",
-            heading=part,
-            group=group,
-            unit="m",
-            meaning=f"displacement of {group} along {part}",
-            of=partial(_part, of, axis),
-            floor=STILL,
-            analyses=analyses,
-            estimated=estimated,
-        )
+    names = {f"{key}_{axis}_m": (axis, f"displacement of {group} along {axis}") for axis in "xy"}
     if turns:
+        names[f"{key.removesuffix('displacement')}rotation_rad"] = "rotation", f"rotation of {group}"
+    for part, (name, (heading, meaning)) in enumerate(names.items()):
         yield Quantity(
-            key=f"{key.removesuffix('displacement')}rotation_rad",
-            heading="rotation",
+            key=name,
+            heading=heading,
             group=group,
-            unit="rad",
-            meaning=f"rotation of {group}",
-            of=partial(_part, of, 2),
-            floor=STILL,
+            meaning=meaning,
+            of=partial(_part, of, part),
             analyses=analyses,
+            **more,
         )
 
 
@@ -153,15 +128,8 @@ def _point_moved(point: Point, answer: Any) -> Array:
 def _springs(design: Design) -> Iterator[Quantity]:
     """Yield the energy of the springs between bodies."""
     if design.effects.acting("spring"):
-        yield Quantity(
-            key="spring_energy_J",
-            heading="springs",
-            unit="J",
-            meaning="energy of the springs between bodies",
-            of=attrgetter("spring_energy"),
-            floor=ENERGY_FLOOR,
-            chart=False,
-        )
+        meaning = "energy of the springs between bodies"
+        yield Quantity(key="spring_energy_J", heading="springs", meaning=meaning, chart=False)
 
 
 def _drift(design: Design) -> Iterator[Quantity]:

@@ -6,7 +6,7 @@ entries: a new quantity is one more of them.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any
 
@@ -18,8 +18,20 @@ from studies.kinds import Array
 
 #: Analyses.
 PATH, MOTION, MODES = "static", "release", "modes"
-#: What solvers do not resolve: moments and energies in EI/L of the strips, stress in E.
-FORCE_FLOOR, ENERGY_FLOOR, STRAIN_FLOOR = 1e-9, 1e-20, 1e-12
+#: Energy that solvers do not resolve, in EI/L of the stiffest strip.
+ENERGY_FLOOR = 1e-20
+#: End of a key -> its unit, and what solvers do not resolve: of moments, forces and energies in EI/L of the
+#: stiffest strip, of stress in E, of displacements in strip lengths.
+UNITS = {
+    "_Nm_per_rad": ("N m/rad", 1e-9),
+    "_Nm": ("N m", 1e-9),
+    "_N": ("N", 1e-9),
+    "_J": ("J", ENERGY_FLOOR),
+    "_Pa": ("Pa", 1e-12),
+    "_m": ("m", 1e-12),
+    "_rad": ("rad", 1e-12),
+    "_Hz": ("Hz", 0.0),
+}
 #: Which state stands for a path, by what is said of it, of values (..., S).
 STANDING: dict[str, Callable[[Array], Array]] = {
     "end": lambda values: np.asarray(values[..., -1]),
@@ -93,16 +105,15 @@ class Quantity(Scale):
     """One number of every state of an answer.
 
     Attributes:
-        key: its name in files, with its unit.
+        key: its name in files, which ends with its unit, as of `UNITS`.
         meaning: what it is.
-        of: its values (S,) in an answer.
+        heading, of: the rest of the key, and the attribute of an answer of that name, unless they are given:
+            what it is called, and its values (S,) in an answer.
         analyses: that have it, of PATH, MOTION and MODES.
-        floor: value that is round-off, in EI/L of the stiffest strip, in E of a stress, in strip lengths of a
-            displacement.
         digits: significant, in tables.
         standing: the state that stands for the path in `compare` and a sweep, of `STANDING`; "": none does.
         swept: name of its column in a sweep; "": as the key.
-        column: whether the table of `solve` has it. mechanisms: whether files have it of mechanisms alone.
+        mechanisms: whether only files have it, and of mechanisms alone.
         chart: whether a picture of a path has a curve of it over the states.
         drive: whether it is of a drive, which only a driven rotation has.
         estimated: names of the errors that models estimate of it.
@@ -111,19 +122,26 @@ class Quantity(Scale):
 
     key: str
     meaning: str
-    of: Callable[[Any], Array]
-    floor: float
+    heading: str = ""
+    of: Any = None
     analyses: tuple[str, ...] = (PATH,)
     highest: int = 0
     digits: int = 7
     standing: str = "end"
     swept: str = ""
-    column: bool = True
     mechanisms: bool = False
     chart: bool = True
     drive: bool = False
     estimated: tuple[str, ...] = ()
     group: str = ""
+    floor: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        end = next(end for end in UNITS if self.key.endswith(end))
+        name = self.key.removesuffix(end)
+        values = (*UNITS[end], self.heading or name.replace("_", " "), self.of or attrgetter(name))
+        for attribute, value in zip(("unit", "floor", "heading", "of"), values, strict=True):
+            object.__setattr__(self, attribute, value)
 
     def named(self, unit: str) -> str:
         """Return what an axis in that unit is called, below what it is of."""
@@ -144,84 +162,44 @@ class Quantity(Scale):
         return self.floor * scales.get(self.unit, bending)
 
 
-def _of_motion(key: str, name: str, meaning: str, *, mechanisms: bool = False) -> Quantity:
-    """Return an energy of a motion by the attribute of its answer."""
-    return Quantity(
-        analyses=(MOTION,),
-        key=key,
-        heading=key.removesuffix("_J"),
-        unit="J",
-        meaning=meaning,
-        of=attrgetter(name),
-        floor=ENERGY_FLOOR,
-        standing="",
-        column=not mechanisms,
-        mechanisms=mechanisms,
-    )
-
+#: Energies of a motion.
+_MOVING: dict[str, Any] = {"analyses": (MOTION,), "standing": ""}
 
 QUANTITIES = (
-    Quantity(
-        key="torque_Nm",
-        heading="torque",
-        unit="N m",
-        meaning="torque of the drive",
-        of=attrgetter("torque"),
-        floor=FORCE_FLOOR,
-        drive=True,
-    ),
+    Quantity(key="torque_Nm", meaning="torque of the drive", drive=True),
     Quantity(
         key="stiffness_Nm_per_rad",
-        heading="stiffness",
-        unit="N m/rad",
         meaning="stiffness of the driven rotation at fixed loads",
-        of=attrgetter("stiffness"),
-        floor=FORCE_FLOOR,
         standing="",
         drive=True,
     ),
     Quantity(
         key="strain_energy_J",
         heading="energy",
-        unit="J",
         meaning="energy stored in all strips",
-        of=attrgetter("strain_energy"),
-        floor=ENERGY_FLOOR,
         swept="energy_J",
         chart=False,  # its parts are drawn
     ),
     Quantity(
         key="gravity_energy_J",
         heading="gravity",
-        unit="J",
         meaning="energy of the weight against rest",
-        of=attrgetter("gravity_energy"),
-        floor=ENERGY_FLOOR,
         standing="",
-        column=False,
         mechanisms=True,
         chart=False,
     ),
     Quantity(
         key="work_J",
-        heading="work",
-        unit="J",
         meaning="work of drives and loads since the first state",
-        of=attrgetter("work"),
-        floor=ENERGY_FLOOR,
         analyses=(PATH, MOTION),
         standing="",
-        column=False,
         mechanisms=True,
         chart=False,
     ),
     Quantity(
         key="max_stress_Pa",
         heading="stress",
-        unit="Pa",
         meaning="largest extreme-fibre stress of all strips",
-        of=attrgetter("max_stress"),
-        floor=STRAIN_FLOOR,
         analyses=(PATH, MOTION),
         highest=6,
         digits=6,
@@ -229,18 +207,20 @@ QUANTITIES = (
         swept="stress_max_Pa",
         chart=False,  # drawn with the yield strength
     ),
-    _of_motion("kinetic_J", "kinetic_energy", "of a motion"),
-    _of_motion("strain_J", "strain_energy", "of a motion, of all strips"),
-    _of_motion("gravity_J", "gravity_energy", "of a motion against rest", mechanisms=True),
-    _of_motion("dissipated_J", "dissipated", "of a motion since its start", mechanisms=True),
+    Quantity(key="kinetic_J", meaning="of a motion", of=attrgetter("kinetic_energy"), **_MOVING),
+    Quantity(key="strain_J", meaning="of a motion, of all strips", of=attrgetter("strain_energy"), **_MOVING),
     Quantity(
-        analyses=(MODES,),
+        key="gravity_J",
+        meaning="of a motion against rest",
+        of=attrgetter("gravity_energy"),
+        mechanisms=True,
+        **_MOVING,
+    ),
+    Quantity(key="dissipated_J", meaning="of a motion since its start", mechanisms=True, **_MOVING),
+    Quantity(
         key="frequency_Hz",
-        heading="frequency",
-        unit="Hz",
         meaning="of the mode; negative where the state is unstable",
-        of=attrgetter("frequency"),
-        floor=0.0,
+        analyses=(MODES,),
         standing="",
     ),
 )

@@ -129,8 +129,8 @@ def stored_table(store: Store, study: str, name: str) -> pd.DataFrame:
     """Return one stored table of a study; BadInput if it was never run."""
     try:
         return store.load_tables(study)[name]
-    except FileNotFoundError:
-        raise BadInput(f"{study}: got no stored tables, expected those of `make figures`") from None
+    except (FileNotFoundError, KeyError):
+        raise BadInput(f"{study}/{name}: got no stored table, expected those of `make figures`") from None
 
 
 def uncertainties(store: Store, study: str) -> "pd.Series[Any]":

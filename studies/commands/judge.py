@@ -38,24 +38,24 @@ def main(arguments: argparse.Namespace) -> int:
     """Judge a file; return the exit code."""
     reference = read_csv((FOLDER / f"{arguments.reference}.csv").read_bytes())
     given = _read(arguments.file, reference["quantity"].unique().tolist())
-    known = dict(iter(reference.groupby("quantity")))
-    rows = [_judged(arguments.file, str(name), own, known[name]) for name, own in given.groupby("quantity")]
+    rows = [_judged(arguments.file, str(name), own, reference) for name, own in given.groupby("quantity")]
     print(f"{arguments.file}: compared with {arguments.reference} ({THEORIES[arguments.reference]})")
     heads = ("quantity", "compared", "largest deviation", "at", "allowed", "verdict")
     print("\n".join(line for line in table(list(map(plain, heads, zip(*rows, strict=True)))) if line.strip()))
     return DEVIATES if "deviates" in [row[-1] for row in rows] else 0
 
 
-def _judged(path: Path, name: str, own: pd.DataFrame, known: pd.DataFrame) -> tuple[str, ...]:
+def _judged(path: Path, name: str, own: pd.DataFrame, reference: pd.DataFrame) -> tuple[str, ...]:
     """Return quantity, number of places, largest deviation, its place, what is allowed there, verdict."""
-    (at, _, tolerance), places = QUANTITIES[name], known["at"].to_numpy()
+    quantity, known = QUANTITIES[name], reference[reference["quantity"] == name]
+    places = known["at"].to_numpy()
     row, place = np.nonzero(np.abs(own["at"].to_numpy()[:, None] - places) <= SAME * np.abs(places))
     if not len(row):
-        expected = f"{at}, for example {places[0]:.8g} or {places[-1]:.8g}"
+        expected = f"{quantity['at']}, for example {places[0]:.8g} or {places[-1]:.8g}"
         raise BadInput(f"{path}: {name}: got no value at a place of the reference, expected at: {expected}")
     true = known.iloc[place]
     deviation = (own["value"].to_numpy()[row] - true["value"].to_numpy()) / true["scale"].to_numpy()
-    allowed = tolerance + (true["uncertainty"] / true["scale"]).to_numpy()
+    allowed = quantity["tolerance"] + (true["uncertainty"] / true["scale"]).to_numpy()
     worst = int(np.argmax(np.abs(deviation) - allowed))
     verdict = "pass" if abs(deviation[worst]) <= allowed[worst] else "deviates"
     compared, where = f"{len(set(place))} of {len(places)}", f"{true['at'].iloc[worst]:.6g}"
@@ -66,19 +66,16 @@ def _read(path: Path, known: list[str]) -> pd.DataFrame:
     """Return the rows of a file of results; BadInput if a row is not of a known quantity or has no number."""
     try:
         rows = pd.read_csv(path, dtype=str, keep_default_na=False, index_col=False).fillna("")
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be read ({error.strerror}), expected a CSV file") from None
-    except ValueError as error:
-        raise BadInput(f"{path}: got no table ({error}), expected a CSV file in UTF-8") from None
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise BadInput(f"{path}: got no table ({why}), expected a CSV file in UTF-8") from None
     if not set(COLUMNS) <= set(rows) or rows.empty:
         got = f"{len(rows)} rows with the columns {', '.join(map(str, rows))}"
         raise BadInput(f"{path}: got {got}, expected rows with the columns {', '.join(COLUMNS)}")
-    numbers = pd.DataFrame({name: pd.to_numeric(rows[name], errors="coerce") for name in COLUMNS[1:]})
-    for line, row in enumerate(rows.to_dict("records")):
-        where, quantity = f"{path}: line {line + 2}", row["quantity"]
-        if quantity not in known:
-            raise BadInput(f"{where}: quantity: got {quantity}, expected {nearest(quantity, known)}")
-        for name in COLUMNS[1:]:
-            if not np.isfinite(numbers[name][line]):
-                raise BadInput(f"{where}: {name}: got {row[name] or 'nothing'}, expected a finite number")
-    return numbers.assign(quantity=rows["quantity"])
+    numbers = rows[COLUMNS[1:]].apply(pd.to_numeric, errors="coerce")
+    wrong = (~np.isfinite(numbers)).assign(quantity=~rows["quantity"].isin(known))[COLUMNS]
+    for line, name in np.argwhere(wrong.to_numpy())[:1]:
+        got = rows[COLUMNS].iloc[line, name] or "nothing"
+        expected = "a finite number" if name else nearest(got, known)
+        raise BadInput(f"{path}: line {line + 2}: {COLUMNS[name]}: got {got}, expected {expected}")
+    return pd.DataFrame(numbers.assign(quantity=rows["quantity"]))

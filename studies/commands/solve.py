@@ -242,7 +242,7 @@ def _columns(answer: Response) -> Iterator[Column]:
         floor = SHIFT_FLOOR * _length(answer)
         yield from quantity("m", highest=-3, floor=floor, digits=6, shift=np.hypot(*answer.centre_shift.T))
     for each, values in quantities_of(answer):
-        if each.column and np.isfinite(values).any():
+        if not each.mechanisms and np.isfinite(values).any():
             if each.unit == "rad":
                 yield columns.angle(values, group=each.group)
                 continue

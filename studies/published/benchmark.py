@@ -1,7 +1,7 @@
 """The benchmark package: inputs and reference solutions of the benchmark pivot, for any other code.
 
 `results/reference/` has the inputs as TOML and one table for each theory. The tables come from the stored
-results of the studies; nothing is solved here. A row is one value of a reference solution:
+results of `model_form/solid_pivot`. A row is one value of a reference solution:
 
     quantity     one of `QUANTITIES`
     at           rotation [rad], mode number or time [s] of the value
@@ -10,14 +10,20 @@ results of the studies; nothing is solved here. A row is one value of a referenc
     scale        the deviation of another code is (its value - value) / scale
 """
 
-import json
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from studies.cases.problem import Problem, named_case
+from studies.answers.adapters import answer_modes
+from studies.answers.metrics import extrapolate
+from studies.answers.reference import MESHES, SWING_MESHES, reference, swing_reference
+from studies.answers.settings import FeSettings
+from studies.cases.design import as_toml
+from studies.cases.problem import named_case
+from studies.paper.formulations import DURATION, INSTANTS
+from studies.published.solids import SOFT, STIFF, VALUES, states_of
 from studies.record.source import ROOT
 from studies.record.store import as_csv
 
@@ -25,85 +31,65 @@ FOLDER, INPUTS = ROOT / "results" / "reference", "benchmark_pivot.toml"
 #: Reference -> its theory.
 THEORIES = {
     "beam": "plane beams without shear, extensible, bending per reference length: limit of refinement",
-    "beam_with_shear": "geometrically exact plane beams with shear, extensible: 160 elements per strip",
+    "beam_with_shear": "geometrically exact plane beams with shear, extensible: limit of refinement",
     "solid": "solids between rigid end faces, St. Venant-Kirchhoff material: limit of refinement",
     "solid_neo_hookean": "solids between rigid end faces, neo-Hookean material: limit of refinement",
 }
+#: References of beams: element, order of the frequencies, and meshes of the free vibration.
+BEAMS: dict[str, tuple[str, float, tuple[int, ...]]] = {
+    "beam": ("corotational", 4.0, SWING_MESHES),
+    "beam_with_shear": ("reissner", 2.0, (40, 60, 90, 135)),
+}
+LAWS = {STIFF: "solid", SOFT: "solid_neo_hookean"}
 #: Quantity -> what `at` is, what `scale` is, and the tolerance. Theories differ by more than 0.1 % in torque:
 #: shear by 0.24 %, the material law and lateral clamping by 0.8 %. Shear changes the vibration by 2 %.
-QUANTITIES: dict[str, tuple[str, str, float]] = {
-    "torque_Nm": ("rotation of the body [rad]", "the torque of the state", 1e-3),
-    "centre_x_m": ("rotation of the body [rad]", "the largest displacement of the centre of mass", 1e-3),
-    "centre_y_m": ("rotation of the body [rad]", "the largest displacement of the centre of mass", 1e-3),
-    "frequency_Hz": ("number of the natural mode at rest", "the frequency", 1e-3),
-    "vibration_rotation_rad": (
-        "time after the release at 90 degrees [s]",
-        "the rotation at the release",
-        5e-3,
-    ),
+ROTATION, TRAVEL = "rotation of the body [rad]", "the largest displacement of the centre of mass"
+QUANTITIES: dict[str, dict[str, Any]] = {
+    "torque_Nm": {"at": ROTATION, "scale": "the torque of the state", "tolerance": 1e-3},
+    "centre_x_m": {"at": ROTATION, "scale": TRAVEL, "tolerance": 1e-3},
+    "centre_y_m": {"at": ROTATION, "scale": TRAVEL, "tolerance": 1e-3},
+    "frequency_Hz": {"at": "number of the natural mode at rest", "scale": "the frequency", "tolerance": 1e-3},
+    "vibration_rotation_rad": {
+        "at": "time after the release at 90 degrees [s]",
+        "scale": "the rotation at the release",
+        "tolerance": 5e-3,
+    },
 }
-#: Digits of the written values, relative.
-WRITTEN = 1e-8
-
-#: Gives a stored table by its study and name.
-Stored = Callable[[str, str], pd.DataFrame]
+#: Number of the modes and the meshes that their limit is taken from; every so many instants of the free
+#: vibration; relative digits of the written values.
+MODES, MODE_MESHES, STORED, WRITTEN = 5, MESHES[:3], 2, 1e-8
 
 
-def package(stored: Stored) -> dict[str, bytes]:
-    """Return the files of the package by their names."""
-    tables = {"beam": _beam(stored), "beam_with_shear": _with_shear(stored)}
-    limits = stored("model_form/solid_pivot", "limits")
-    for name, law in (("solid", "st-venant-kirchhoff"), ("solid_neo_hookean", "neo-hookean")):
-        rows = limits[limits["law"] == law]
-        tables[name] = _states(rows, rows["uncertainty"] * rows["torque_Nm"], rows["uncertainty_m"])
-    return {INPUTS: _inputs(named_case()).encode()} | {
-        f"{name}.csv": as_csv(table) for name, table in tables.items()
-    }
-
-
-def _beam(stored: Stored) -> pd.DataFrame:
-    """Return statics, natural frequencies and free vibration of beams without shear."""
-
-    def refined(study: str, table: str) -> pd.DataFrame:
-        rows = stored(f"paper/{study}", table)
-        return rows[rows["formulation"] == "FE refined"].reset_index()
-
-    def unsure(study: str, quantity: str) -> float:
-        rows = stored(f"paper/{study}", "reference").set_index("quantity")
-        return float(rows["uncertainty"][quantity])
-
-    torque = refined("fig05_stiffness", "curves")["torque_Nm"]
-    states = refined("fig04_trajectory", "paths").assign(torque_Nm=torque).iloc[1:]
-    modes, motion = stored("convergence/frequency", "modes"), refined("fig06_release", "motions").iloc[1:]
-    modes = modes[(modes["model"] == "fe") & (modes["count"] == modes.query("model == 'fe'")["count"].max())]
-    limit, rotation = modes["limit_Hz"], motion["rotation_rad"]
-    return pd.concat(
-        [
-            _states(
-                states,
-                unsure("fig05_stiffness", "torque") * torque.max(),
-                unsure("fig04_trajectory", "trajectory") * _travel(states),
-            ),
-            _rows("frequency_Hz", modes["mode"], limit, modes["uncertainty"] * limit, limit),
-            _rows(
-                "vibration_rotation_rad",
-                motion["time_s"],
-                rotation,
-                unsure("fig06_release", "rotation_rad"),
-                named_case().rotation,
-            ),
-        ]
+def beams(theory: str) -> dict[str, pd.DataFrame]:
+    """Return statics, natural frequencies and free vibration of plane beams: limits of refinement."""
+    pivot, (element, order, meshes) = named_case(), BEAMS[theory]
+    path = reference(pivot, element)
+    torque = path.uncertainty["torque"] * path.torque.max()
+    states = states_of(path).iloc[1:]
+    settings = (FeSettings(elements=count, element=element) for count in MODE_MESHES)
+    modes = [answer_modes(pivot, each, count=MODES).frequency for each in settings]
+    frequency, unsure = extrapolate(modes, order=order)
+    swing = swing_reference(
+        pivot, duration=DURATION, instants=INSTANTS[::STORED], meshes=meshes, element=element
     )
+    time, rotation, late = swing.time[1:], swing.rotation[1:], swing.uncertainty["rotation_rad"]
+    rows = [
+        _states(states, torque, path.uncertainty["trajectory"] * _travel(states)),
+        _rows("frequency_Hz", np.arange(1, MODES + 1), frequency, unsure, frequency),
+        _rows("vibration_rotation_rad", time, rotation, late, pivot.rotation),
+    ]
+    return {"references": pd.concat(rows).assign(theory=theory)}
 
 
-def _with_shear(stored: Stored) -> pd.DataFrame:
-    """Return statics of beams with shear; the study of meshes has the errors of the mesh."""
-    rows = stored("model_form/solid_pivot", "models")
-    rows = rows[rows["model"] == "beam with shear"]
-    meshes = stored("convergence/elements", "meshes").set_index(["element", "elements"])
-    error: Any = meshes.loc[("reissner", 160)]
-    torque, place = (float(error[f"error_{each}"]) for each in ("torque", "trajectory"))
-    return _states(rows, torque * rows["torque_Nm"].max(), place * _travel(rows))
+def package(stored: Callable[[str, str], pd.DataFrame]) -> dict[str, bytes]:
+    """Return the files of the package by their names; `stored` gives a table by its study and name."""
+    known, limits = (stored("model_form/solid_pivot", each) for each in ("references", "limits"))
+    tables = {str(theory): rows.drop(columns="theory") for theory, rows in known.groupby("theory")}
+    for law, rows in limits.groupby("law"):
+        torque = rows["uncertainty"] * rows["torque_Nm"]
+        tables[LAWS[str(law)]] = _states(rows, torque, rows["uncertainty_m"])
+    files = {f"{name}.csv": as_csv(tables[name]) for name in THEORIES}
+    return {INPUTS: _inputs().encode(), **files}
 
 
 def _travel(rows: pd.DataFrame) -> float:
@@ -115,44 +101,36 @@ def _travel(rows: pd.DataFrame) -> float:
 def _states(rows: pd.DataFrame, torque: Any, place: Any) -> pd.DataFrame:
     """Return torque and centre of states, with the uncertainties of torque [N m] and place [m]."""
     at, scales = rows["rotation_rad"], (rows["torque_Nm"], *[_travel(rows)] * 2)
-    names, columns = tuple(QUANTITIES)[:3], ("torque_Nm", "com_x_m", "com_y_m")
-    parts = zip(names, columns, (torque, place, place), scales, strict=True)
+    parts = zip(QUANTITIES, VALUES, (torque, place, place), scales, strict=False)
     return pd.concat([_rows(name, at, rows[column], unsure, scale) for name, column, unsure, scale in parts])
 
 
 def _rows(quantity: str, at: Any, value: Any, uncertainty: Any, scale: Any) -> pd.DataFrame:
     """Return rows of one quantity; the uncertainty is at least that of the written digits."""
     unsure = np.maximum(uncertainty, WRITTEN * np.abs(value))
-    given = {"quantity": quantity, "at": at, "value": value, "uncertainty": unsure, "scale": scale}
-    return pd.DataFrame(given)
+    return pd.DataFrame(
+        {"quantity": quantity, "at": at, "value": value, "uncertainty": unsure, "scale": scale}
+    )
 
 
-def _rounded(place: tuple[float, float]) -> list[float]:
-    """Return a place [m] without round-off."""
-    return [round(each, 15) for each in place]
-
-
-def _inputs(pivot: Problem) -> str:
-    """Return the inputs as TOML, whose values JSON writes in the same way."""
-    given: dict[str, Any] = {
+def _inputs() -> str:
+    """Return the inputs as TOML."""
+    pivot = named_case()
+    given = {
         "strip_length_m": pivot.length,
         "strip_width_m": pivot.width,
         "strip_thickness_m": pivot.thickness,
         "youngs_modulus_Pa": pivot.youngs_modulus,
         "poisson_ratio": pivot.poisson_ratio,
         "density_kg_per_m3": pivot.density,
-        "ground_clamps_m": [_rounded(strip.start) for strip in pivot.strips],
-        "body_clamps_m": [_rounded(strip.end) for strip in pivot.strips],
+        "ground_clamps_m": np.round([strip.start for strip in pivot.strips], 15).tolist(),
+        "body_clamps_m": np.round([strip.end for strip in pivot.strips], 15).tolist(),
         "body_mass_kg": pivot.body_mass,
         "body_moment_of_inertia_kg_m2": pivot.body_moment_of_inertia,
-        "centre_of_mass_m": _rounded(pivot.bodies[0].centre),
+        "centre_of_mass_m": np.round(pivot.bodies[0].centre, 15).tolist(),
         "rotation_rad": pivot.rotation,
     }
-    tables: dict[str, dict[str, Any]] = {"pivot": given}
-    tables |= {f"references.{name}": {"theory": theory} for name, theory in THEORIES.items()}
-    for name, (at, scale, tolerance) in QUANTITIES.items():
-        tables[f"quantities.{name}"] = {"at": at, "scale": scale, "tolerance": tolerance}
-    lines = ["# The benchmark pivot, written by `python -m studies readme`; docs/benchmark.md explains it."]
-    for table, values in tables.items():
-        lines += ["", f"[{table}]", *(f"{key} = {json.dumps(value)}" for key, value in values.items())]
-    return "\n".join([*lines, ""])
+    theories = {name: {"theory": theory} for name, theory in THEORIES.items()}
+    document = {"pivot": given, "references": theories, "quantities": QUANTITIES}
+    remark = "The benchmark pivot, written by `python -m studies readme`; docs/benchmark.md explains it."
+    return as_toml(document, [remark])

@@ -12,27 +12,20 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
+from skfem.io.meshio import HEX_MAPPING
 
 from fe_reference import SolidPath, SolidStrip
-from studies.cases.problem import Problem, named_case
+from studies.cases.problem import Problem
 from studies.engine import Answer, Claim, Part, Study
 from studies.errors import Unanswered
 from studies.kinds import Array
-from studies.published.solid_pivot import STATES
-from studies.published.solids import COARSEST, meshed, turned
+from studies.published.solid_pivot import BENCHMARK
+from studies.published.solids import states_of
 from studies.record.store import Digits
 
 PROGRAM = "ccx"
-#: Corners of the element in its axes, and the pairs of corners with a node between them.
-CORNERS = ((-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1))
-EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 #: Largest residual and correction of a state, relative; the program's own are 5e-3 and 1e-2.
 PRECISION = 1e-6
-STEP = (
-    f"*STEP, NLGEOM, INC=1000\n*CONTROLS, PARAMETERS=FIELD\n{PRECISION}, {PRECISION}\n*STATIC\n1., 1., 1e-3"
-)
 #: Meshes by their fineness, and the largest deviation that the two codes may have.
 MESHES, SMALL = (2, 3), 5e-4
 
@@ -75,8 +68,8 @@ def end_forces(strip: SolidStrip, moves: Array) -> Array:
     with TemporaryDirectory() as folder:
         (Path(folder) / "strip.inp").write_text("\n".join(_deck(strip, moves)), encoding="ascii")
         done = subprocess.run([PROGRAM, "strip"], cwd=folder, capture_output=True, text=True, check=False)
-        found = Path(folder) / "strip.dat"
-        lines = found.read_text(encoding="ascii").splitlines() if found.is_file() else []
+        found = [each.read_text(encoding="ascii") for each in Path(folder).glob("strip.dat")]
+    lines = "".join(found).splitlines()
     rows = np.array([line.split() for line in lines if line[:10].strip().isdigit()], dtype=float)
     if done.returncode or len(rows) != len(moves) * len(strip.tip):
         reached = len(rows) // len(strip.tip)
@@ -89,7 +82,7 @@ def _deck(strip: SolidStrip, moves: Array) -> Iterator[str]:
     yield "*NODE, NSET=ALL"
     yield from (f"{k}, {x:.12e}, {y:.12e}, {z:.12e}" for k, (x, y, z) in enumerate(strip.nodes, 1))
     yield "*ELEMENT, TYPE=C3D20R, ELSET=STRIP"
-    for k, nodes in enumerate(_ordered(strip) + 1, 1):
+    for k, nodes in enumerate(strip.elements[:, ::3][:, HEX_MAPPING[:20]] // 3 + 1, 1):
         yield f"{k}, " + ", ".join(map(str, nodes[:10])) + ",\n" + ", ".join(map(str, nodes[10:]))
     x, _, z = strip.nodes.T
     faces = {"ROOT": np.isclose(x, 0.0), "TIP": np.isclose(x, strip.length), "MIDDLE": np.isclose(z, 0.0)}
@@ -101,39 +94,24 @@ def _deck(strip: SolidStrip, moves: Array) -> Iterator[str]:
     yield "*SOLID SECTION, ELSET=STRIP, MATERIAL=METAL"
     yield "*BOUNDARY\nROOT, 1, 3\nMIDDLE, 3\nTIP, 3"
     for state in moves:
-        yield f"{STEP}\n*BOUNDARY"
+        yield "*STEP, NLGEOM, INC=1000\n*CONTROLS, PARAMETERS=FIELD"
+        yield f"{PRECISION}, {PRECISION}\n*STATIC\n1., 1., 1e-3\n*BOUNDARY"
         for node, move in zip(strip.tip + 1, state, strict=True):
             yield from (f"{node}, {axis}, {axis}, {value:.12e}" for axis, value in enumerate(move, 1))
         yield "*NODE PRINT, NSET=TIP, FREQUENCY=1000\nRF\n*END STEP"
 
 
-def _ordered(strip: SolidStrip) -> NDArray[np.intp]:
-    """Return the nodes of the elements in the order of C3D20R (E, 20), which their places tell."""
-    nodes = strip.elements[:, ::3] // 3
-    places = strip.nodes[nodes]
-    arms = places - 0.5 * (places.min(axis=1) + places.max(axis=1))[:, None]
-    corners, powers = np.array(CORNERS), np.array([1, 3, 9])
-    wanted = np.vstack([corners, corners[np.array(EDGES)].sum(axis=1) // 2]) @ powers
-    keys = np.rint(arms / np.abs(arms).max(axis=1, keepdims=True)) @ powers
-    ordered = np.take_along_axis(nodes, np.argsort(keys, axis=1), axis=1)
-    return np.asarray(ordered[:, np.argsort(np.argsort(wanted))], dtype=np.intp)
-
-
 def _states(fineness: int) -> Answer:
     """Return the states of one mesh."""
-    pivot, element = named_case(), "serendipity"
-    strip = meshed(pivot, (COARSEST[element] * fineness, fineness, fineness), element=element)
-    path = turned(pivot, strip, STATES)
-    torque, force = driven(pivot, strip, path)
-    rows = {
-        "model": "calculix",
-        "fineness": fineness,
-        "rotation_rad": path.rotation,
-        "torque_Nm": torque,
-        "error_torque": torque / path.torque - 1.0,
-        "error_force": force * pivot.length / path.torque,
-    }
-    return {"states": pd.DataFrame(rows)}
+    strip = BENCHMARK.strip(fineness)
+    path = BENCHMARK.solids(strip)
+    torque, force = driven(BENCHMARK.pivot, strip, path)
+    rows = states_of(path, model="calculix", fineness=fineness).assign(
+        torque_Nm=torque,
+        error_torque=torque / path.torque - 1.0,
+        error_force=force * strip.length / path.torque,
+    )
+    return {"states": rows}
 
 
 STUDY = Study(

@@ -1,116 +1,124 @@
 """Pivots as solids and as beams: states, limits of refinement, and deviations of one from the other."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from fe_reference import SolidPath, SolidStrip, solve_solids
-from studies.answers.adapters import answer_static
-from studies.answers.settings import Settings, SplineSettings
-from studies.cases.problem import Problem
+from studies.answers.metrics import relative_error, richardson, trajectory_error
+from studies.cases.problem import TABLE_1, Problem, named_case
+from studies.cases.section import of_sides
+from studies.engine import Tables
 from studies.kinds import Array
 
+STIFF, SOFT = "st-venant-kirchhoff", "neo-hookean"
 #: Elements along the length of the mesh with fineness 1, which has one over thickness and half width. With
 #: 27 nodes and full integration a thin strip needs more of them.
 COARSEST = {"serendipity": 8, "lagrange": 16}
 #: Observed order of the error in the size of the elements, and that of the singularities at the clamps.
 ORDER, SINGULAR = 2.0, 1.5
-#: A fine spline, and the effects that stand for the width of the strips.
-FINE, PLATES = SplineSettings(control_points=12), ("clamped_width", "anticlastic")
-#: What the limits are of.
+#: First rotations [deg], which Newton's method needs. Models are compared beyond them [rad].
+FIRST, COMPARED = (1.0, 2.5, 5.0), math.radians(6.0)
+#: What the limits are of, and what a mesh has of a pivot.
 VALUES = ["torque_Nm", "com_x_m", "com_y_m"]
+SHARED = ("length", "width", "thickness", "youngs_modulus", "poisson_ratio")
 
 
-def meshed(pivot: Problem, mesh: tuple[int, int, int], **how: Any) -> SolidStrip:
-    """Return the strips of a pivot as solids; `how` has law and element."""
-    return SolidStrip(
-        length=pivot.length,
-        width=float(pivot.width or 0.0),
-        thickness=float(pivot.thickness or 0.0),
-        youngs_modulus=pivot.youngs_modulus,
-        poisson_ratio=pivot.poisson_ratio,
-        mesh=mesh,
-        **how,
-    )
+@dataclass(frozen=True, kw_only=True)
+class Design:
+    """A pivot as solids.
 
-
-def turned(pivot: Problem, strip: SolidStrip, degrees: Sequence[float]) -> SolidPath:
-    """Return the path of a pivot on its strips as solids."""
-    ends = [(each.start, each.end) for each in pivot.strips]
-    return solve_solids(strip, ends, np.radians(degrees).tolist(), centre=pivot.bodies[0].centre)
-
-
-def states_of(path: SolidPath, **labels: Any) -> pd.DataFrame:
-    """Return the states of a path of solids behind labels."""
-    values = {
-        "unknowns": path.unknowns,
-        "rotation_rad": path.rotation,
-        "torque_Nm": path.torque,
-        "com_x_m": path.centre[:, 0],
-        "com_y_m": path.centre[:, 1],
-        "strain": path.largest_strain,
-    }
-    return pd.DataFrame(labels | values)
-
-
-def limits_of(
-    rows: pd.DataFrame, orders: tuple[float, float], other: Any = 0.0, **labels: Any
-) -> pd.DataFrame:
-    """Return the limits of the states of meshes for the first order, behind labels, with their uncertainty.
-
-    The uncertainty is the largest of three: the change of the limit without the finest mesh, its change with
-    the second order, and another difference.
+    Attributes:
+        case: name of the case. width: other than that of the case [m]; 0 for its own.
+        blocks: sides of the blocks of the supports over the thickness; 0 for rigid end faces.
+        step: between the rotations that are compared [deg]. states: their number.
+        models: of beams, by name; settings and effects that are added come first.
+        meshes: fineness, law and element of every mesh.
+        orders: of the error of the mesh, that of the limit and the other one of its uncertainty. At the
+            corners between strip and block the stress is more singular than at a rigid face.
     """
-    meshes = refined(rows)
-    found = limit(meshes, orders[0])
-    others = found - limit(meshes[:-1], orders[0]), found - limit(meshes, orders[1]), other + 0.0 * found
-    unsure = np.abs(others).max(axis=0)
-    values = dict(zip(VALUES, found.T, strict=True)) | {
-        "uncertainty": unsure[:, 0] / np.abs(found[:, 0]),
-        "uncertainty_m": np.hypot(unsure[:, 1], unsure[:, 2]),
-    }
-    return pd.DataFrame(labels | {"rotation_rad": np.sort(rows["rotation_rad"].unique())} | values)
+
+    case: str = TABLE_1
+    width: float = 0.0
+    blocks: float = 0.0
+    step: float = 10.0
+    states: int = 6
+    models: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+    meshes: tuple[tuple[int, str, str], ...] = tuple((n, STIFF, "serendipity") for n in (4, 3, 2))
+    orders: tuple[float, float] = (ORDER, SINGULAR)
+
+    @property
+    def pivot(self) -> Problem:
+        """The pivot with the compared rotations."""
+        own = named_case(self.case)
+        sides = {"width": self.width, **of_sides(self.width, float(own.thickness or 0.0))}
+        changed = sides if self.width else {}
+        return replace(own, rotation=np.radians(self.step * self.states), increments=self.states, **changed)
+
+    def strip(self, fineness: int, law: str = STIFF, element: str = "serendipity") -> SolidStrip:
+        """Return the strips as solids."""
+        given: dict[str, Any] = {name: getattr(self.pivot, name) for name in SHARED}
+        mesh = (COARSEST[element] * fineness, fineness, fineness)
+        support = self.blocks * given["thickness"]
+        return SolidStrip(**given, law=law, element=element, mesh=mesh, support=support)
+
+    def solids(self, strip: SolidStrip) -> SolidPath:
+        """Return the path of the pivot on strips as solids."""
+        degrees = (*FIRST, *(self.step * k for k in range(1, self.states + 1)))
+        ends = [(each.start, each.end) for each in self.pivot.strips]
+        return solve_solids(strip, ends, np.radians(degrees).tolist(), centre=self.pivot.bodies[0].centre)
+
+    def limits(self, meshes: pd.DataFrame) -> Iterator[pd.DataFrame]:
+        """Yield the limits of the states of meshes for each law, with their uncertainty.
+
+        The limit is that of the two finest meshes with 20 nodes. The uncertainty is the largest of three: the
+        change of the limit without the finest mesh, its change with the other order, and its difference to
+        the limit of meshes with 27 nodes, where there are any.
+        """
+        first, second = self.orders
+        elements = dict(iter(meshes.groupby("element")))
+        laws = dict(iter(elements["serendipity"].groupby("law")))
+        check = limit(elements["lagrange"], first) if "lagrange" in elements else limit(laws[STIFF], first)
+        for law, rows in laws.items():
+            found = limit(rows, first)
+            others = limit(rows, first, finest=False), limit(rows, second)
+            apart = *(found - each for each in others), limit(laws[STIFF], first) - check
+            unsure = np.abs(apart).max(axis=0)
+            values = dict(zip(VALUES, found.T, strict=True)) | {
+                "uncertainty": unsure[:, 0] / np.abs(found[:, 0]),
+                "uncertainty_m": np.hypot(unsure[:, 1], unsure[:, 2]),
+            }
+            yield pd.DataFrame({"law": law, "rotation_rad": np.sort(rows["rotation_rad"].unique())} | values)
 
 
-def refined(rows: pd.DataFrame) -> list[tuple[float, Array]]:
-    """Return fineness, and torque and place of the states (S, 3), of the meshes from the coarsest on."""
-    ordered = rows.sort_values("rotation_rad").groupby("fineness")
-    return [(float(str(fineness)), mesh[VALUES].to_numpy()) for fineness, mesh in ordered]
+def states_of(path: Any, **labels: Any) -> pd.DataFrame:
+    """Return the states of a path of solids or beams behind labels."""
+    values = dict(zip(VALUES, (path.torque, *path.centre.T), strict=True))
+    return pd.DataFrame(labels | {"rotation_rad": path.rotation} | values)
 
 
-def limit(meshes: list[tuple[float, Array]], order: float = ORDER) -> Array:
-    """Return what the two finest meshes tend to for an order of the error (S, 3)."""
-    (coarse, before), (fine, after) = meshes[-2:]
-    found: Array = after + (after - before) / ((fine / coarse) ** order - 1.0)
-    return found
+def limit(rows: pd.DataFrame, order: float, *, finest: bool = True) -> Array:
+    """Return what the two finest meshes, or the two before the finest, tend to for an order (S, 3)."""
+    meshes = list(rows.sort_values("rotation_rad").groupby("fineness"))
+    (coarse, before), (fine, after) = meshes[-2:] if finest else meshes[-3:-1]
+    ratio = float(str(fine)) / float(str(coarse))
+    return richardson(before[VALUES].to_numpy(), after[VALUES].to_numpy(), order=order, ratio=ratio)
 
 
-def beam_states(
-    case: Problem, settings: Settings, effects: Iterable[str], count: int, **labels: Any
-) -> pd.DataFrame:
-    """Return states at equal rotations, but for that at rest, of a beam model behind labels."""
-    answer = answer_static(replace(case, effects=case.effects.plus(*effects)), settings).whole()
-    chosen = slice(case.increments // count, None, case.increments // count)
-    values = {
-        "rotation_rad": answer.rotation[chosen],
-        "torque_Nm": answer.torque[chosen],
-        "com_x_m": answer.centre[chosen, 0],
-        "com_y_m": answer.centre[chosen, 1],
-    }
-    return pd.DataFrame(labels | values)
+def compared(tables: Tables, design: str) -> dict[str, pd.DataFrame]:
+    """Return the states of a design, of its beam models and of the limits of solids, by model."""
+    solids = tables["limits"].assign(model="solid, " + tables["limits"]["law"])
+    rows = pd.concat([tables["models"], solids])
+    chosen = rows[(rows["design"] == design) & (rows["rotation_rad"] > COMPARED)]
+    return {str(name): own.reset_index(drop=True) for name, own in chosen.groupby("model")}
 
 
-def deviation(own: pd.DataFrame, solid: pd.DataFrame, **labels: Any) -> pd.DataFrame:
-    """Return the deviations of states from those of solids, or of other beams, behind labels."""
-    place, true = (each[["com_x_m", "com_y_m"]].to_numpy() for each in (own, solid))
-    values = {
-        "rotation_rad": solid["rotation_rad"].to_numpy(),
-        "error_torque": own["torque_Nm"].to_numpy() / solid["torque_Nm"].to_numpy() - 1.0,
-        "error_trajectory": np.hypot(*(place - true).T) / math.hypot(*(true[-1] - true[0])),
-        "uncertainty": solid.get("uncertainty", pd.Series(np.nan, solid.index)).to_numpy(),
-    }
-    return pd.DataFrame(labels | values)
+def deviation(own: pd.DataFrame, solid: pd.DataFrame) -> pd.DataFrame:
+    """Return the deviations of states from those of solids, or of other beams."""
+    (torque, *place), (expected, *places) = (each[VALUES].to_numpy().T for each in (own, solid))
+    trajectory = trajectory_error(np.transpose(place), np.transpose(places))
+    return pd.DataFrame({"error_torque": relative_error(torque, expected), "error_trajectory": trajectory})

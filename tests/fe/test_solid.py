@@ -93,10 +93,13 @@ def test_supports_of_one_block_make_the_strip_longer():
     [
         ({"law": "hooke"}, "law: got 'hooke', expected one of st-venant-kirchhoff, neo-hookean"),
         ({"element": "linear"}, "element: got 'linear', expected one of serendipity, lagrange"),
-        ({"thickness": 0.0}, "thickness: got 0.0, expected a positive number"),
-        ({"poisson_ratio": 0.5}, "poisson_ratio: got 0.5, expected a number from 0 to below 0.5"),
-        ({"support": -1.0}, "support: got -1.0, expected a number of at least 0"),
-        ({"mesh": (4, 0, 1)}, "mesh: got (4, 0, 1), expected at least one element in each direction"),
+        ({"thickness": 0.0}, "thickness: got 0.0, expected a number above 0"),
+        (
+            {"poisson_ratio": 0.5},
+            "poisson_ratio: got 0.5, expected a number between -1 and 0.5, both excluded",
+        ),
+        ({"support": -1.0}, "support: got -1.0, expected a number not below 0"),
+        ({"mesh": (4, 0, 1)}, "mesh: got 0, expected an integer of at least 1"),
     ],
 )
 def test_refusals(changed, message):

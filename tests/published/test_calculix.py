@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 
-from studies.cases.problem import named_case
 from studies.errors import Unanswered
 from studies.published import calculix
-from studies.published.solid_pivot import STATES
-from studies.published.solids import meshed, turned
+from studies.published.solids import Design
 from tests.gates import hold
 
 ccx = pytest.mark.skipif(bool(calculix.missing()), reason="ccx is not installed (calculix-ccx)")
-PIVOT = named_case()
+DESIGN = Design(step=9.0, states=10)
 
 
 @ccx
@@ -19,9 +17,9 @@ def test_same_torque_on_the_same_mesh():
     """Torques agree up to 90 degrees; those of another material law do not."""
 
     def error(law="st-venant-kirchhoff"):
-        strip = meshed(PIVOT, (8, 1, 1), law=law)
-        path = turned(PIVOT, strip, STATES)
-        return np.abs(calculix.driven(PIVOT, strip, path)[0] / path.torque - 1.0).max()
+        strip = DESIGN.strip(1, law)
+        path = DESIGN.solids(strip)
+        return np.abs(calculix.driven(DESIGN.pivot, strip, path)[0] / path.torque - 1.0).max()
 
     hold("calculix", error)
 
@@ -29,7 +27,7 @@ def test_same_torque_on_the_same_mesh():
 @ccx
 def test_a_state_that_is_not_reached_is_an_error():
     """Where CalculiX stops, the error has the number of states that it reached."""
-    strip = meshed(PIVOT, (2, 1, 1))
+    strip = DESIGN.strip(1)
     moves = np.full((1, len(strip.tip), 2), np.nan)
     with pytest.raises(Unanswered, match=r"^CalculiX: got 0 states, expected 1: "):
         calculix.end_forces(strip, moves)

@@ -82,7 +82,7 @@ def test_deviations_of_a_coarse_mesh_are_named(judged):
 @pytest.mark.parametrize(("share", "code"), [(0.999, 0), (-0.999, 0), (1.001, 1), (-1.001, 1)])
 def test_uncertainty_is_added_to_the_tolerance(judged, share, code, tmp_path, monkeypatch):
     """A value passes up to the tolerance times the scale plus the uncertainty, on both sides."""
-    _, _, tolerance = benchmark.QUANTITIES["torque_Nm"]
+    tolerance = benchmark.QUANTITIES["torque_Nm"]["tolerance"]
     known = rows("torque_Nm", [0.5], [8.0]).assign(uncertainty=3e-3, scale=4.0)
     known.to_csv(tmp_path / "beam.csv", index=False)
     monkeypatch.setattr("studies.commands.judge.FOLDER", tmp_path)

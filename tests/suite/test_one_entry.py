@@ -15,11 +15,8 @@ from studies.record.source import ROOT
 ENTRY = """QUANTITIES = (
     Quantity(
         key="clamp_moment_Nm",
-        heading="clamp moment",
-        unit="N m",
         meaning="bending moment of the first strip at its root",
         of=lambda path: path.bending_moment[:, 0, 0],
-        floor=FORCE_FLOOR,
     ),
 """
 KEY = "clamp_moment_Nm"

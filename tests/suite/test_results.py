@@ -83,7 +83,7 @@ def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):
     """Without results, or without the marks, nothing is written and the reason is one line."""
     page = readme.ROOT / "README.md"
     with pytest.raises(
-        BadInput, match=r"control_points: got no stored tables, expected those of `make figures`"
+        BadInput, match=r"control_points.*: got no stored table, expected those of `make figures`"
     ):
         readme._rewritten(page, Store(tmp_path))
     bare = tmp_path / "BARE.md"
