@@ -137,10 +137,10 @@ def _euler_load(design: Design, body: str) -> float:
     from scipy.sparse.csgraph import maximum_flow
 
     places = [body, GROUND, *(each.name for each in design.bodies if each.name != body)]
-    strips = [strip for strip in design.strips if strip.tip]
+    strips = design.strips
     loads = np.array([s.youngs_modulus * s.second_moment_of_area / s.length**2 for s in strips])
     shares = np.ceil(loads / loads.max() * FINEST).astype(np.int32)
-    ends = np.array([[places.index(strip.root), places.index(strip.tip or "")] for strip in strips])
+    ends = np.array([[places.index(strip.root), places.index(strip.tip or strip.root)] for strip in strips])
     both = np.concatenate([ends, ends[:, ::-1]]).T
     graph = csr_matrix((np.tile(shares, 2), tuple(both)), shape=2 * (len(places),))
     flow = maximum_flow(graph, 0, 1).flow_value or shares.sum()

@@ -55,6 +55,15 @@ def test_the_former_name_prints_the_new_one(command):
     assert (outcome.code, outcome.err) == (0, warning)
 
 
+@pytest.mark.parametrize("model", ["spline", "fe"])
+@pytest.mark.parametrize("name", ["hub_with_cable", "free_flight"])
+def test_a_body_that_nothing_holds_bears_no_force(name, model, command):
+    """Requirement: a critical load of a body that no strip leads to the ground from is refused in one line."""
+    outcome = command("critical-load", FINDS / f"{name}.toml", "--model", model)
+    assert (outcome.code, outcome.out, outcome.err.count("\n")) == (2, "", 1)
+    assert "nothing holds body" in outcome.err
+
+
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])
 def test_too_few_control_points_are_not_physics(name):
     """Requirement: a path that stops for lack of control points is not resolved, buckles nowhere, is cut."""
