@@ -115,6 +115,7 @@ def _point(control: Control, kind: str, y: Array, parameter: float, inertia: int
         rotation=float(turns[0]) if len(turns) == 1 else np.nan,
         inertia=inertia,
         text=f"{what} at {', '.join(_places(control, y, parameter))}" if what else "",
+        turns=y[control.structure.turns],
         preload=parameter if control.settling else 1.0,
     )
 

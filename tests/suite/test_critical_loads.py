@@ -57,6 +57,24 @@ def test_the_former_name_prints_the_new_one(command):
     assert (outcome.code, outcome.err) == (0, warning)
 
 
+def test_a_limit_point_that_coarse_meshes_do_not_have(answered):
+    """Requirement: meshes of 20 and 40 elements turn past a limit that finer ones have at 4.43734 N; both
+    models find it, and the rotation there."""
+    words = [FINDS / "late_limit_pivot.toml", "--force-direction-deg", -112.145, "--model", "spline,fe"]
+    for answer in answered("critical-load", *words)["answers"]:
+        assert (answer["kind"], answer["critical_load_N"]) == ("limit point", pytest.approx(4.43734, rel=1e-5))
+        assert answer["rotation_rad"] == pytest.approx(-1.592645, rel=1e-3)
+        assert answer["rotation_error_rad"] < 2e-3
+
+
+def test_the_rotation_at_a_critical_load_is_that_of_its_point(answered):
+    """Requirement: both models have the rotation at the critical load itself, not at a state nearby."""
+    found = answered("critical-load", FINDS / "clamped_mechanism.toml", "--model", "spline,fe")
+    spline, fe = (answer["rotation_rad"] for answer in found["answers"])
+    assert spline == pytest.approx(fe, rel=1e-3)
+    assert all(0.0 < answer["rotation_error_rad"] < 1e-3 * abs(fe) for answer in found["answers"])
+
+
 @pytest.mark.parametrize("model", ["spline", "fe"])
 @pytest.mark.parametrize("name", ["hub_with_cable", "free_flight"])
 def test_a_body_that_nothing_holds_bears_no_force(name, model, command):
