@@ -120,6 +120,11 @@ class Control:
         rate: Array = (self.values[1] - self.values[0]) / (self.span[1] - self.span[0])
         return rate
 
+    @property
+    def turning(self) -> bool:
+        """Whether the watched rotation is driven on, not only held."""
+        return self.watched in self.held[self.slope != 0.0]
+
     def prescribed(self, parameter: float) -> Array:
         """Return the values of the held coordinates at p, exact at both ends of the span."""
         part = (parameter - self.span[0]) / (self.span[1] - self.span[0])
@@ -153,8 +158,7 @@ class Control:
         """Return what the parameter stands for, with its value."""
         if self.settling:
             return f"{100.0 * parameter:.6g} % of {self.structure.constant_words}"
-        turning = self.watched in self.held[self.slope != 0.0]
-        if turning and (self.load is None or self.growth == 0.0):
+        if self.turning and (self.load is None or self.growth == 0.0):
             at = self.held.tolist().index(self.watched)
             return f"rotation {np.degrees(self.prescribed(parameter)[at]):.6g} deg"
         return f"load factor {self.share(parameter):.6g}"

@@ -94,7 +94,7 @@ def limit_point(control: Control, last: State) -> list[CriticalPoint]:
     rest = (last.parameter - before) * slow / (fast - slow) if fast > slow else np.inf
     if abs(rest) > NEAR:
         return []
-    kind = "limit point" if control.watched is None else "turning point"
+    kind = "turning point" if control.turning else "limit point"
     what = f"{kind}: {_moves(control, last.rate)}"
     y, parameter = last.y + 2.0 * rest * last.rate, last.parameter + rest
     return [_point(control, kind, y, parameter, last.inertia + 1, what)]
@@ -115,6 +115,7 @@ def _point(control: Control, kind: str, y: Array, parameter: float, inertia: int
         rotation=float(turns[0]) if len(turns) == 1 else np.nan,
         inertia=inertia,
         text=f"{what} at {', '.join(_places(control, y, parameter))}" if what else "",
+        turns=y[control.structure.turns],
         preload=parameter if control.settling else 1.0,
     )
 
@@ -130,7 +131,7 @@ def _places(control: Control, y: Array, parameter: float) -> Iterator[str]:
         x_force, y_force, turn = (float(vector[control.structure.axis == k].sum()) for k in range(3))
         sizes = ((math.hypot(x_force, y_force), "N"), (abs(turn), "N m"))
         yield from (_quantity(size, unit) for size, unit in sizes if size > 0.0)
-    if control.watched in control.held[control.slope != 0.0]:
+    if control.turning:
         yield f"rotation {np.degrees(y[control.watched]):.4g} deg"
     yield f"load factor {control.share(parameter):.4g}"
 

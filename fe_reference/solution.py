@@ -41,8 +41,9 @@ class CriticalPoint:
     kind: "limit point" of the load factor, or where a driven rotation has no stiffness at fixed loads;
     "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
     load_factor [1]; rotation of the driven body [rad], nan without one; inertia: negative eigenvalues after
-    it; preload: share of gravity and natural strains that acts there [1]; text: what happens at which load,
-    "" for the stationary torque of a path without loads, which is not unstable.
+    it; turns (B,) of all bodies [rad]; preload: share of gravity and natural strains that acts there [1];
+    text: what happens at which load, "" for the stationary torque of a path without loads, which is not
+    unstable.
     """
 
     kind: str
@@ -50,6 +51,7 @@ class CriticalPoint:
     rotation: float
     inertia: int
     text: str
+    turns: Array
     preload: float = 1.0
 
 

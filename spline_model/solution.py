@@ -63,8 +63,8 @@ class CriticalPoint:
     back; "bifurcation" otherwise.
     load_factor; rotation of the driven body [rad], nan without one; z (N,) unknowns; mode (Q,)
     change of the coordinates, its largest entry one strip length or 1 rad (for a limit of the
-    torque the turn at fixed loads); inertia: that of the tangent after it; preload: the share of weight and
-    pre-strain that acts.
+    torque the turn at fixed loads); inertia: that of the tangent after it; turns (B,) of all bodies [rad];
+    preload: the share of weight and pre-strain that acts.
     """
 
     kind: str
@@ -73,6 +73,7 @@ class CriticalPoint:
     z: Array
     mode: Array
     inertia: int
+    turns: Array
     preload: float = 1.0
 
 

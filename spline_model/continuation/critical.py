@@ -136,14 +136,15 @@ def _crossing(work: Followed, kind: str, at: Point, mode: Array, inertia: int) -
     """Complete a critical point; ``mode`` in dimensionless coordinates of the system."""
     system, moved = work.system, work.moved(at.z, mode)
     scale = _sense(system, moved) / np.abs(moved).max()
-    turned = system.scene.turned
+    turned, z = system.scene.turned, work.unknowns(at.z)
     told = CriticalPoint(
         kind=kind,
         load_factor=at.load_factor,
         rotation=at.load_factor * turned.angle if turned else np.nan,
-        z=work.unknowns(at.z),
+        z=z,
         mode=scale * moved * system.scales.unit[: len(moved)],
         inertia=inertia,
+        turns=z[system.layout.poses][2::3],
     )
     return Crossing(told=told, z=at.z, mode=scale * mode)
 

@@ -6,6 +6,7 @@ It counts only if two discretisations have it at the same force; their differenc
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,9 @@ FORCE = "applied_force"
 #: Forces that are tried one after another, in what the strips bear as Euler columns, and increments.
 PARTS, INCREMENTS = tuple(2.0**k for k in range(-5, 2)), 10
 #: Discretisations that are tried one after another: control points, then segments; in the given elements.
-POINTS, SEGMENTS, MESHES = tuple(range(8, 15, 2)), (2, 4, 8, 16), (1, 2, 4)
+POINTS, SEGMENTS, MESHES = tuple(range(8, 15, 2)), (2, 4, 8, 16), (1, 2, 4, 8, 16)
+#: How many alike give a limit of meshes, or that there is no critical load: two coarse ones may both miss it.
+ALIKE = 3
 #: Relative difference of two discretisations at which no finer one is tried, and up to which they agree.
 SETTLED, AGREED = 1e-5, 1e-2
 #: Parts of the largest Euler load that those of the strips are added up in.
@@ -46,8 +49,9 @@ class CriticalLoad(Answer):
     Attributes:
         direction: of the force [rad], from x to y; held: whether the body is kept from turning.
         force: at which stability is lost [N], 0 where weight and pre-strain alone lose it; None where none is
-            found up to `reached`, the largest force that was borne [N]; turned: rotation of the body there
-            [rad], NaN where weight alone is too much.
+            found up to `reached`, the largest force that was borne [N].
+        turned: rotation of the body there [rad], NaN where weight alone is too much; turned_error: how far
+            the last two discretisations are apart in it [rad]; NaN where they are not resolved.
         kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
         uncertainty: of force or share, relative [1]; NaN where there is none.
         soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
@@ -64,6 +68,7 @@ class CriticalLoad(Answer):
     kind: str
     preload: float
     uncertainty: float
+    turned_error: float = math.nan
     soft: float | None = None
     yields: float | None = None
     softer: float = math.nan
@@ -137,10 +142,10 @@ def _euler_load(design: Design, body: str) -> float:
     from scipy.sparse.csgraph import maximum_flow
 
     places = [body, GROUND, *(each.name for each in design.bodies if each.name != body)]
-    strips = [strip for strip in design.strips if strip.tip]
+    strips = design.strips
     loads = np.array([s.youngs_modulus * s.second_moment_of_area / s.length**2 for s in strips])
     shares = np.ceil(loads / loads.max() * FINEST).astype(np.int32)
-    ends = np.array([[places.index(strip.root), places.index(strip.tip or "")] for strip in strips])
+    ends = np.array([[places.index(strip.root), places.index(strip.tip or strip.root)] for strip in strips])
     both = np.concatenate([ends, ends[:, ::-1]]).T
     graph = csr_matrix((np.tile(shares, 2), tuple(both)), shape=2 * (len(places),))
     flow = maximum_flow(graph, 0, 1).flow_value or shares.sum()
@@ -154,7 +159,7 @@ def critical_load(
 
     Weight and pre-strain act in full; other loads and drives of the case are removed. The spline takes more
     control points until the force settles, or those of its settings and a few more; the elements are doubled
-    twice and their limit is taken.
+    until three meshes agree and their limit is taken.
 
     Args:
         design: the pivot or mechanism. settings: of the model.
@@ -171,12 +176,32 @@ def critical_load(
     question = _Question(design=design, direction=direction, held=held, body=name)
     found: list[CriticalLoad] = []
     for each in _refined(settings):
-        found.append(_of(question, each))
-        settled = len(found) > 1 and found[-1].apart(found[-2]) <= SETTLED
-        # elements are always doubled twice for their limit, unless there is no force
-        if settled and (found[-1].kind == NONE or isinstance(each, SplineSettings)):
+        try:
+            found.append(_of(question, each))
+        except BadInput:
+            if len(found) < 2:
+                raise
+            break  # a finer one whose stiffnesses are lost in round-off
+        if isinstance(each, FeSettings):
+            settled = _alike(found, ALIKE, AGREED)
+        else:
+            settled = _alike(found, ALIKE if found[-1].kind == NONE else 2, SETTLED)
+        if settled:
             break
-    return _agreed(question, found)
+    return _agreed(question, _above_round_off(found) if isinstance(settings, FeSettings) else found)
+
+
+def _above_round_off(found: Sequence[CriticalLoad]) -> Sequence[CriticalLoad]:
+    """Return the meshes up to the finest two that agree: with strips of disparate stiffness still finer ones
+    are lost in round-off. All of them if no two agree."""
+    ends = (end for end in range(len(found), 1, -1) if _alike(found[:end], 2, AGREED))
+    return found[: next(ends, len(found))]
+
+
+def _alike(found: Sequence[CriticalLoad], count: int, limit: float) -> bool:
+    """Return whether the last so many discretisations have the same, each within a limit of the next."""
+    last = found[-count:]
+    return len(last) == count and all(fine.apart(coarse) <= limit for coarse, fine in pairwise(last))
 
 
 def _refined(settings: Settings) -> Iterator[Settings]:
@@ -202,12 +227,12 @@ def _agreed(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
         said = "; ".join(f"{_fineness(each.asked.settings)[0]}: {each.verdict}" for each in found)
         message = f"not resolved: {said}; {_fineness(last.asked.settings)[1]}"
         return replace(last, status="not_converged", message=message, force=None, kind=NONE)
+    last = replace(last, turned_error=abs(last.turned - found[-2].turned))
     if last.kind == NONE:
-        return _softened(question, found)
+        return _softened(question, (*found[:-1], last))
     value, error = last.value, apart * last.value
-    elements = isinstance(last.asked.settings, FeSettings) and len(found) == len(MESHES)
-    if elements and found[0].apart(found[1]) <= AGREED:
-        limit = extrapolate([np.array([each.value]) for each in found])
+    if isinstance(last.asked.settings, FeSettings) and _alike(found, ALIKE, AGREED):
+        limit = extrapolate([np.array([each.value]) for each in found[-ALIKE:]])
         value, error = float(limit.value[0]), float(limit.uncertainty[0])
     known: dict[str, Any] = {"preload" if last.kind == UNSTABLE else "force": value}
     return replace(last, uncertainty=error / value, **known)
@@ -228,21 +253,20 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
         lost = [each for each in path.critical_points if each.inertia > 0]
         if lost or path.status.value != "converged":
             break
-    last, there = float(path.load_factor[-1]), float(path.bodies[question.body][-1, 2])
+    last, place = float(path.load_factor[-1]), list(path.bodies).index(question.body)
     found: dict[str, Any] = {
         "status": str(path.status.value),
         "message": "" if last == 1.0 else str(path.message),
         "reached": size * last,
         "force": None,
-        "turned": there,
+        "turned": float(path.bodies[question.body][-1, 2]),
         "kind": NONE,
         "preload": 1.0,
     }
     for point in lost[:1]:
-        turned = float(point.rotation) if math.isfinite(point.rotation) else there
         unstable, force = point.preload < 1.0, size * float(point.load_factor)
         found = {"status": "converged", "message": "", "reached": force, "force": force} | {
-            "turned": math.nan if unstable else turned,
+            "turned": math.nan if unstable else float(point.turns[place]),
             "kind": UNSTABLE if unstable else str(point.kind),
             "preload": float(point.preload),
         }

@@ -90,7 +90,7 @@ def document_of(design: Design) -> dict[str, Any]:
         for section in dict.fromkeys(key.section for key in KEYS):
             found[section] = _table([key for key in KEYS if key.section == section], design)
     else:
-        found["strips"] = [_table((*STRIP, *OWN), strip) for strip in design.strips]
+        found["strips"] = [{"tip": FREE} | _table((*STRIP, *OWN), strip) for strip in design.strips]
         found |= {"bodies": [_table(BODY, body) for body in design.bodies], "drive": _table(DRIVE, design)}
     found["scene"] = {"effects": design.effects.names}
     found["points"] = [_table(POINT, point) for point in design.points]
@@ -126,7 +126,7 @@ def _text(value: Any) -> str:
     """Return a number, a text or a list as it stands in a TOML file."""
     if value is None:
         return f'"{FREE}"'
-    if isinstance(value, str):
+    if isinstance(value, str | bool):
         return json.dumps(value)
     if isinstance(value, Sequence):
         return f"[{', '.join(map(_text, value))}]"

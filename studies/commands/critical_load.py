@@ -11,10 +11,11 @@ Weight and pre-strain of the case act in full. Its other loads and drives are re
 and pre-strain alone is checked first.
 
 A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
-error. Without --control-points the spline takes more control points until the force settles; elements are
-doubled twice and their limit is taken. If no critical load is found, the force at which the rotation passes
-5 degrees and the force at first yield are printed. Exit code 0: a critical load, or none up to the largest
-force; 2: bad input; 3: not resolved, the discretisations disagree.
+error, as that of the rotation. Without --control-points the spline takes more control points until the force
+settles; elements are doubled until three meshes agree, and their limit is taken. If three discretisations find
+no critical load, the force at which the rotation passes 5 degrees and the force at first yield are printed.
+Exit code 0: a critical load, or none up to the largest force; 2: bad input; 3: not resolved, the
+discretisations disagree.
 """
 
 import argparse
@@ -73,6 +74,7 @@ def _document(found: CriticalLoad) -> dict[str, Any]:
         "weight_share": found.preload,
         "borne_N": found.reached,
         "rotation_rad": found.turned,
+        "rotation_error_rad": found.turned_error,
         "rotation_5_deg_N": found.soft,
         "yield_N": found.yields,
         "soft_relative_error": found.softer,
@@ -95,7 +97,8 @@ def _readable(found: list[CriticalLoad]) -> Iterator[str]:
 def _verdict(found: CriticalLoad) -> str:
     """Return what was found, with the rotation there and the estimated error."""
     angle = math.degrees(found.turned) if math.isfinite(found.turned) else 0.0
-    turned = f", turned {angle:.4g} deg" if abs(angle) > NO_TURN else ""
+    error = f"{math.degrees(found.turned_error):.1g}"
+    turned = f", turned {angle:.4g} deg within {error} deg" if abs(angle) > NO_TURN else ""
     if not found.converged:
         return "not resolved"
     if found.kind == UNSTABLE:

@@ -12,7 +12,7 @@ import pytest
 from studies.cases.design import as_toml, document_of, read_design
 from studies.cases.effects import Effects
 from studies.cases.keys import EFFECT_KEYS, EFFECTS, MATERIALS, OWN
-from studies.cases.mechanism import Mechanism
+from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.cases.problem import FOLDER, CaseError, Problem, named_case
 from studies.commands.case import MECHANISM, PIVOT
 
@@ -189,3 +189,25 @@ def test_a_pivot_that_is_written_is_read_as_it_was(design, tmp_path):
         if name != "effects":
             exact = value is None or isinstance(value, str)
             assert getattr(found, name) == (value if exact else pytest.approx(value, rel=1e-14))
+
+
+def test_a_mechanism_that_is_written_is_read_as_it_was(tmp_path):
+    """Free ends, hinges, followers and lists of loads survive a case file."""
+    force = {"body": "platform", "force": (0.0, -2.5), "follower": True}
+    loads = ({"force": (1.0, 2.0), "body": "platform", "follower": False}, force)
+    rod = {"area": 2e-6, "second_moment_of_area": 2e-12, "youngs_modulus": 2e11}
+    rod |= {"poisson_ratio": 0.3, "density": 7800.0}
+    design = Mechanism(
+        strips=(
+            Strip(name="leg", start=(0.0, 0.0), end=(0.0, 0.1), tip="platform", root_joint="hinge", **rod),
+            Strip(name="arm", start=(0.0, 0.1), end=(0.1, 0.1), root="platform", tip=None, **rod),
+        ),
+        bodies=(Body(name="platform", centre=(0.0, 0.1), mass=0.1, moment_of_inertia=1e-4),),
+        body="platform",
+        rotation=None,
+        increments=4,
+        effects=Effects(names=("bending", "applied_force"), tables={"applied_force": loads}),
+    )
+    path = tmp_path / "written.toml"
+    path.write_text(as_toml(document_of(design)), encoding="utf-8")
+    assert read_design(path) == design

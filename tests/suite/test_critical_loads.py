@@ -17,9 +17,11 @@ FINDS = Path(__file__).parent / "finds"
 SHALLOW_ARCH = 6.281928
 
 
-def test_a_limit_point_is_a_critical_load(answered):
-    """Requirement: the snap-through of a shallow arch is a critical load, exit 0, in both models."""
-    found = answered("critical-load", FINDS / "shallow_arch.toml", "--model", "spline,fe")
+@pytest.mark.parametrize("held", [[], ["--held"]])
+def test_a_limit_point_is_a_critical_load(held, answered):
+    """Requirement: the snap-through of a shallow arch is a critical load, exit 0, in both models; it is of the
+    same kind where the crown's rotation, which it does not use, is held."""
+    found = answered("critical-load", FINDS / "shallow_arch.toml", "--model", "spline,fe", *held)
     for answer in found["answers"]:
         assert (answer["kind"], answer["status"]) == ("limit point", "converged")
         assert answer["critical_load_N"] == pytest.approx(SHALLOW_ARCH, rel=1e-6)
@@ -53,6 +55,33 @@ def test_the_former_name_prints_the_new_one(command):
     outcome = command("capacity", FINDS / "heavy_pivot.toml")
     warning = "studies: warning: capacity is now called critical-load; version 0.3 ends capacity\n"
     assert (outcome.code, outcome.err) == (0, warning)
+
+
+def test_a_limit_point_that_coarse_meshes_do_not_have(answered):
+    """Requirement: meshes of 20 and 40 elements turn past a limit that finer ones have at 4.43734 N; both
+    models find it, and the rotation there."""
+    words = [FINDS / "late_limit_pivot.toml", "--force-direction-deg", -112.145, "--model", "spline,fe"]
+    for answer in answered("critical-load", *words)["answers"]:
+        assert (answer["kind"], answer["critical_load_N"]) == ("limit point", pytest.approx(4.43734, rel=1e-5))
+        assert answer["rotation_rad"] == pytest.approx(-1.592645, rel=1e-3)
+        assert answer["rotation_error_rad"] < 2e-3
+
+
+def test_the_rotation_at_a_critical_load_is_that_of_its_point(answered):
+    """Requirement: both models have the rotation at the critical load itself, not at a state nearby."""
+    found = answered("critical-load", FINDS / "clamped_mechanism.toml", "--model", "spline,fe")
+    spline, fe = (answer["rotation_rad"] for answer in found["answers"])
+    assert spline == pytest.approx(fe, rel=1e-3)
+    assert all(0.0 < answer["rotation_error_rad"] < 1e-3 * abs(fe) for answer in found["answers"])
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+@pytest.mark.parametrize("name", ["hub_with_cable", "free_flight"])
+def test_a_body_that_nothing_holds_bears_no_force(name, model, command):
+    """Requirement: a critical load of a body that no strip leads to the ground from is refused in one line."""
+    outcome = command("critical-load", FINDS / f"{name}.toml", "--model", model)
+    assert (outcome.code, outcome.out, outcome.err.count("\n")) == (2, "", 1)
+    assert "nothing holds body" in outcome.err
 
 
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])
