@@ -13,7 +13,7 @@ from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
-from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
+from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
 
@@ -35,16 +35,6 @@ def both(k: int) -> list[Marker]:
     return [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=truth(k))]
 
 
-class Kept(Film):
-    """A film whose pictures are kept for the next test that asks for the same."""
-
-    def picture(self, k):
-        """A copy of the picture, so that no test spoils another's."""
-        number = k % self.frames
-        markers, fingers = self.scene(number)
-        return drawn(self.painter, tuple(markers), number, fingers).copy()
-
-
 #: One for all films of the same optics.
 painter = cache(Painter)
 
@@ -64,7 +54,7 @@ def film(
 ) -> Film:
     """A film of these markers and fingers."""
     own = painter(optics or Optics(), samples=samples)
-    return Kept(painter=own, frames=frames, scene=lambda k: (markers(k), fingers(k)))
+    return Film(draw=lambda k: drawn(own, tuple(markers(k)), k, fingers(k)).copy(), frames=frames)
 
 
 def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
@@ -113,7 +103,11 @@ def errors(events):
 def detected_corners():
     """Corners as the detector gives them, none refused."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tracker.squares, "refine", lambda picture, quads, gamma: (quads, np.ones((2, 4))))
+        patch.setattr(
+            tracker.squares,
+            "refine",
+            lambda picture, quads, gamma: (quads, np.tile([1.0, 0.0, 1.0], (2, 4, 1))),
+        )
         patch.setattr(tracker, "REFUSE_PX", 10.0)
         yield
 

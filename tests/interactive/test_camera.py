@@ -15,7 +15,7 @@ from studies.errors import BadInput
 from studies.interactive.design import PRINTED
 from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.painter import Marker, Optics
+from tests.interactive.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates

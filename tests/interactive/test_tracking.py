@@ -10,7 +10,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking.causes import MODELS, Causes
-from studies.interactive.tracking.painter import SKIN, WHITEST, Marker, Optics
+from tests.interactive.painter import SKIN, WHITEST, Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
 from studies.interactive.tracking.tracker import Tracker

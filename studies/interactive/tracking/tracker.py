@@ -1,6 +1,7 @@
 """From pictures to the events of a session: find, follow where a corner is covered, fit, and say what is
 wrong."""
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -34,6 +35,8 @@ BLIND = 1.0
 POWERS = 3
 #: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
 CLEAR, KEPT = 0.6, 0.5
+#: Share below which an edge is left out where the others fit without it.
+WHOLE = 0.9
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -41,6 +44,9 @@ MARGIN = np.array(
     + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
 )
 WHITEST, CLIPPED = 254, 0.5
+#: Distance of the pixels by which a picture is told from others [px], and how many pictures are kept in mind: of
+#: a film that is repeated, noise would look like a systematic error.
+COARSE, KEPT_IN_MIND = 7, 5000
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
 
@@ -74,6 +80,7 @@ class Tracker:
         self._blind_since: float | None = None
         self._mirrored = False
         self._tries = 0
+        self._pictures: deque[int] = deque(maxlen=KEPT_IN_MIND)
 
     def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
         """Return the corners (4, 2) [px], in the markers' order, of the squares of the family 36h11 in a grey
@@ -127,13 +134,13 @@ class Tracker:
     ) -> dict[str, Any]:
         for _ in range(POWERS):  # the first pictures tell the power that their values are of light
             gamma = self._shrinkage.gamma
-            refined, share = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
-            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and share[n].min() >= KEPT}
+            refined, good = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
+            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and good[n, :, 0].min() >= KEPT}
             corners = self._shrinkage.taken_out(picture, refined, lit)
             if self._shrinkage.gamma == gamma:
                 break
         size = (picture.shape[1], picture.shape[0])
-        found = self._fit_to(corners, share, size, time)
+        found = self._fit_to(corners, good, size, time)
         torn = found is None or self._left(found[1]) > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
             for number, predicted in self._predicted(time).items():
@@ -141,7 +148,7 @@ class Tracker:
                 again, kept = squares.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
                 second = self._fit_to(self._shrinkage.taken_out(picture, again, {}), kept, size, time)
                 if second is not None and self._left(second[1]) <= REFUSE_PX:
-                    refined, share, found, followed, torn = again, kept, second, {number}, False
+                    refined, good, found, followed, torn = again, kept, second, {number}, False
                     break
         if followed and torn:
             return _unseen(_lost(followed))
@@ -151,29 +158,45 @@ class Tracker:
         if torn:
             alone = Causes()
             alone.add(seen)
-            self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
+            if self._is_new(picture):
+                self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
             return _unseen("sizes" if alone.name(0.0) == "sizes" else "refused")
-        if not followed:
-            self._causes.add(seen)
+        spread = self._causes.spread_of(seen, own=bool(followed))
+        if self._is_new(picture):
+            self._causes.add(seen, self._causes.variance / spread)
+        share = good[..., 0]
         for number, corner in np.argwhere((share < KEPT) | np.roll(share < KEPT, 1, axis=1)):
             refined[number, corner] = self._drawn(fit)[number, corner]  # on an edge that is not seen
         self._remember(picture, refined, followed, time)
         self._fit = fit
         return self._seen(picture, fit, seen, refined, share, followed)
 
+    def _is_new(self, picture: Picture) -> bool:
+        """Return whether a picture, its noise included, was not seen before."""
+        number = hash(picture[::COARSE, ::COARSE].tobytes())
+        known = number in self._pictures
+        self._pictures.append(number)
+        return not known
+
     def _fit_to(
-        self, corners: Array, share: Array, size: tuple[int, int], time: float
+        self, corners: Array, good: Array, size: tuple[int, int], time: float
     ) -> tuple[planar.Fit, View] | None:
         """Return the fit to corners (2, 4, 2) [px] of a picture of a `size` [px], and its view; None where
         there is none."""
-        if ((share >= KEPT).sum(axis=1) < EDGES).any():
+        if ((good[..., 0] >= KEPT).sum(axis=1) < EDGES).any():
             return None
         try:
-            fit = planar.fit(corners, self.camera, self._fit, share >= KEPT)
+            fit = planar.fit(corners, self.camera, self._fit, planar.trusted(good, KEPT))
             seen = view(fit, size, self._velocity(corners, time), self.camera)
         except (np.linalg.LinAlgError, ValueError):
             return None
-        return (fit, seen) if np.isfinite(fit.pose).all() and np.isfinite(seen.error).all() else None
+        if not (np.isfinite(fit.pose).all() and np.isfinite(seen.error).all()):
+            return None
+        worst = np.unravel_index(np.where(good[..., 0] < KEPT, 1.0, good[..., 0]).argmin(), (2, 4))
+        if self._left(seen) > REFUSE_PX and good[worst][0] < WHOLE:  # it may be that of a finger
+            good[worst] = 0.0
+            return self._fit_to(corners, good, size, time) or (fit, seen)
+        return fit, seen
 
     def _left(self, seen: View) -> float:
         """Return the residual [px] of the corners, or that which known causes do not explain."""

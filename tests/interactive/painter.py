@@ -15,11 +15,9 @@ from scipy.spatial.transform import Rotation
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.planar import BITS, Camera, cells, project
+from studies.interactive.tracking.planar import BITS, MARGIN, Camera, cells, project
 from studies.kinds import Array
 
-#: White margin around a marker in its cells.
-MARGIN = 1.5
 WHITE, BLACK, TABLE, SKIN, WHITEST = 225.0, 25.0, 150.0, 105.0, 255.0
 #: Iterations to the points of a raised marker.
 RAISED = 8
