@@ -46,8 +46,8 @@ class Mechanics:
     Attributes:
         control_points: of a strip; doubt: what is to be said of the error that they leave, empty if nothing.
         length: the longest strip [m]; scale: sizes of moment [N m], force [N], energy [J] and stress [Pa] of
-            the design's bending. placing: of its markers. begun: energy [J] of strips, body and load at the release, or where the
-            solver was changed.
+            the design's bending. placing: of its markers. begun: energy [J] of strips, body and load at the
+            release, or where the solver was changed.
     """
 
     def __init__(self, piece: Piece, rest: Any = PRINTED) -> None:

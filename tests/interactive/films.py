@@ -13,9 +13,9 @@ from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
-from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
+from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 
 #: Frames of a period of the moving marker's turn.
 PERIOD = 40
@@ -85,7 +85,7 @@ def rms(values: list[float]) -> float:
 def watch(made, camera=None, **more):
     """Events of a tracker over a film, one a frame."""
     follower = Tracker(camera=camera, **more)
-    return [follower.see(picture, k / made.rate) for k, picture in enumerate(made)]
+    return [follower.see(picture, k / 25) for k, picture in enumerate(made)]
 
 
 def names(event):

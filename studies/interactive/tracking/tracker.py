@@ -14,7 +14,7 @@ from studies.interactive.tracking import planar, squares
 from studies.interactive.tracking.causes import STILL_PX, Causes, View, view
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera
-from studies.interactive.tracking.squares import Shrinkage
+from studies.interactive.tracking.squares import KEPT, Shrinkage
 from studies.kinds import Array
 
 #: Residuals of the fit [px] from which it is doubted, and, less that of known causes, refused.
@@ -33,10 +33,9 @@ FOLLOW = 1.0
 BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
-#: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
-CLEAR, KEPT = 0.6, 0.5
-#: Share below which an edge is left out where the others fit without it.
-WHOLE = 0.9
+#: Share of good stations of an edge below which it is called blurred, and below which it is left out where
+#: the others fit without it.
+CLEAR, WHOLE = 0.6, 0.9
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -44,9 +43,9 @@ MARGIN = np.array(
     + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
 )
 WHITEST, CLIPPED = 254, 0.5
-#: Distance of the pixels by which a picture is told from others [px], and how many pictures are kept in mind: of
-#: a film that is repeated, noise would look like a systematic error.
-COARSE, KEPT_IN_MIND = 7, 5000
+#: Distance of the pixels by which a picture is told from others [px], and how many pictures are known: of a
+#: film that is repeated, noise would look like a systematic error.
+COARSE, PICTURES = 7, 5000
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
 
@@ -80,7 +79,7 @@ class Tracker:
         self._blind_since: float | None = None
         self._mirrored = False
         self._tries = 0
-        self._pictures: deque[int] = deque(maxlen=KEPT_IN_MIND)
+        self._pictures: deque[int] = deque(maxlen=PICTURES)
 
     def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
         """Return the corners (4, 2) [px], in the markers' order, of the squares of the family 36h11 in a grey
@@ -164,12 +163,12 @@ class Tracker:
         spread = self._causes.spread_of(seen, own=bool(followed))
         if self._is_new(picture):
             self._causes.add(seen, self._causes.variance / spread)
-        share = good[..., 0]
-        for number, corner in np.argwhere((share < KEPT) | np.roll(share < KEPT, 1, axis=1)):
-            refined[number, corner] = self._drawn(fit)[number, corner]  # on an edge that is not seen
+        hidden = ~fit.trust.any(axis=(1, 2)).reshape(2, 4)
+        hidden |= np.roll(hidden, 1, axis=1)
+        refined = np.where(hidden[..., None], self._drawn(fit), refined)
         self._remember(picture, refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, seen, refined, share, followed)
+        return self._seen(picture, fit, seen, refined, good[..., 0], followed)
 
     def _is_new(self, picture: Picture) -> bool:
         """Return whether a picture, its noise included, was not seen before."""
@@ -194,8 +193,11 @@ class Tracker:
             return None
         worst = np.unravel_index(np.where(good[..., 0] < KEPT, 1.0, good[..., 0]).argmin(), (2, 4))
         if self._left(seen) > REFUSE_PX and good[worst][0] < WHOLE:  # it may be that of a finger
-            good[worst] = 0.0
-            return self._fit_to(corners, good, size, time) or (fit, seen)
+            fewer = good.copy()
+            fewer[worst] = 0.0
+            without = self._fit_to(corners, fewer, size, time)
+            if without is not None and self._left(without[1]) <= DOUBT_PX:
+                return without
         return fit, seen
 
     def _left(self, seen: View) -> float:
@@ -282,13 +284,11 @@ def _clipped(picture: Picture, fit: planar.Fit) -> float:
 
 def _reads(picture: Picture, corners: Array, number: int) -> bool:
     """Return whether the cells between corners (4, 2) [px] are those of a marker, as far as they are seen."""
-    middle = (np.arange(1, planar.BITS - 1) + 0.5) / planar.BITS - 0.5
-    places = np.stack(np.meshgrid(middle, -middle), axis=-1)
-    at = np.rint(planar.project(planar.homography(corners), places)).astype(int)
-    height, width = picture.shape
-    grey = picture[np.clip(at[..., 1], 0, height - 1), np.clip(at[..., 0], 0, width - 1)].astype(float)
+    cells = planar.BITS * (planar.CORNERS * [1.0, -1.0] + 0.5) - 0.5  # a pixel each
+    back = cv2.getPerspectiveTransform(corners.astype(np.float32), cells.astype(np.float32))
+    grey = cv2.warpPerspective(picture, back, (planar.BITS, planar.BITS)).astype(float)
     light = grey > 0.5 * (grey.min() + grey.max())
-    return float(np.mean(light == planar.cells(number)[1:-1, 1:-1])) >= READ
+    return float(np.mean((light == planar.cells(number))[1:-1, 1:-1])) >= READ
 
 
 def _lost(numbers: set[int]) -> str:
