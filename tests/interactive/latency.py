@@ -3,8 +3,8 @@
     python -m tests.interactive.latency [PICTURES]
     python -m tests.interactive.latency browser
 
-The first sends one picture at a time over the loopback, each as soon as the state of the last has come, of 640 x 480
-px. The second is the whole way in Chromium: from when its camera, a film, takes a picture until it is
+The first sends one picture of 640 x 480 px at a time over the loopback, each as soon as the state of the last
+has come. The second is the whole way in Chromium: from when its camera, a film, takes a picture until it is
 drawn with its state; and the pictures a second of the demo film in its first pass.
 """
 
