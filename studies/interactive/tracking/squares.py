@@ -26,7 +26,7 @@ Cells = NDArray[np.bool_]
 REACHES = (4.5, 3.0, 3.5)
 SHARE = 0.095
 LEAST_REACH = 1.5
-#: Share of good stations below which an edge is that of something else, and stays where it was looked for.
+#: Share of good stations below which an edge is not seen.
 KEPT = 0.5
 #: Places of the corners after and before those of a square.
 AFTER, BEFORE = [1, 2, 3, 0], [3, 0, 1, 2]
@@ -74,11 +74,14 @@ def _pass(
     normal = -_normal(corners, end, corners.mean(axis=1, keepdims=True))
     lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
     found = edges(picture, lines, half.repeat(4), gamma, first=first, last=last).reshape(-1, 4, 5)
-    found[found[..., 2] < KEPT, :2] = 0.0
-    p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
-    crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
-    gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
-    lost = ~(gap <= 2.0 * reach)
+    for _ in range(2):
+        p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
+        crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
+        gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
+        lost = ~(gap <= 2.0 * reach)
+        # of two edges that meet far away, the one with less good stations is something else's: it stays
+        weaker = found[..., 2] <= found[:, BEFORE, 2]
+        found[(lost & weaker) | (lost & ~weaker)[:, AFTER]] = 0.0
     good = np.where((lost | lost[:, AFTER])[..., None], 0.0, found[..., 2:])
     return np.where(lost[..., None], corners, crossing), good
 

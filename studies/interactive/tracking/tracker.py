@@ -160,7 +160,8 @@ class Tracker:
             if self._is_new(picture):
                 self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
             return _unseen("sizes" if alone.name(0.0) == "sizes" else "refused")
-        spread = self._causes.spread_of(seen, own=bool(followed))
+        covered = bool(followed) or bool((good[..., 0] < WHOLE).any())
+        spread = self._causes.spread_of(seen, own=covered)
         if self._is_new(picture):
             self._causes.add(seen, self._causes.variance / spread)
         hidden = ~fit.trust.any(axis=(1, 2)).reshape(2, 4)
@@ -168,7 +169,7 @@ class Tracker:
         refined = np.where(hidden[..., None], self._drawn(fit), refined)
         self._remember(picture, refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, seen, refined, good[..., 0], followed)
+        return self._seen(picture, fit, seen, refined, good[..., 0], followed, covered)
 
     def _is_new(self, picture: Picture) -> bool:
         """Return whether a picture, its noise included, was not seen before."""
@@ -196,7 +197,7 @@ class Tracker:
             fewer = good.copy()
             fewer[worst] = 0.0
             without = self._fit_to(corners, fewer, size, time)
-            if without is not None and self._left(without[1]) <= DOUBT_PX:
+            if without is not None and without[0].rms <= DOUBT_PX:
                 return without
         return fit, seen
 
@@ -229,9 +230,16 @@ class Tracker:
             self._known[number] = _Known(corners=now, velocity=velocity[number], time=time, read=read)
 
     def _seen(
-        self, picture: Picture, fit: planar.Fit, seen: View, refined: Array, share: Array, followed: set[int]
+        self,
+        picture: Picture,
+        fit: planar.Fit,
+        seen: View,
+        refined: Array,
+        share: Array,
+        followed: set[int],
+        covered: bool,
     ) -> dict[str, Any]:
-        noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=bool(followed)) + STILL_PX**2)
+        noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=covered) + STILL_PX**2)
         error = self._causes.error(seen)
         doubt = fit.rms > DOUBT_PX or (self._causes.none < UNLIKELY and bool((error > noise).any()))
         faults = {
