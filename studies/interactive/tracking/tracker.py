@@ -33,9 +33,9 @@ FOLLOW = 1.0
 BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
-#: Share of good stations of an edge below which it is called blurred, and below which it is left out where
-#: the others fit without it.
-CLEAR, WHOLE = 0.6, 0.9
+#: Share of good stations of an edge below which it is called blurred, may be left out where the others fit
+#: without it, and is not taken for whole.
+CLEAR, PART, WHOLE = 0.6, 0.75, 0.9
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -160,16 +160,15 @@ class Tracker:
             if self._is_new(picture):
                 self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
             return _unseen("sizes" if alone.name(0.0) == "sizes" else "refused")
-        covered = bool(followed) or bool((good[..., 0] < WHOLE).any())
-        spread = self._causes.spread_of(seen, own=covered)
         if self._is_new(picture):
+            spread = self._causes.spread_of(seen, own=bool(followed))
             self._causes.add(seen, self._causes.variance / spread)
         hidden = ~fit.trust.any(axis=(1, 2)).reshape(2, 4)
         hidden |= np.roll(hidden, 1, axis=1)
         refined = np.where(hidden[..., None], self._drawn(fit), refined)
         self._remember(picture, refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, seen, refined, good[..., 0], followed, covered)
+        return self._seen(picture, fit, seen, refined, good[..., 0], followed)
 
     def _is_new(self, picture: Picture) -> bool:
         """Return whether a picture, its noise included, was not seen before."""
@@ -193,7 +192,7 @@ class Tracker:
         if not (np.isfinite(fit.pose).all() and np.isfinite(seen.error).all()):
             return None
         worst = np.unravel_index(np.where(good[..., 0] < KEPT, 1.0, good[..., 0]).argmin(), (2, 4))
-        if self._left(seen) > REFUSE_PX and good[worst][0] < WHOLE:  # it may be that of a finger
+        if self._left(seen) > REFUSE_PX and good[worst][0] < PART:  # it may be that of a finger
             fewer = good.copy()
             fewer[worst] = 0.0
             without = self._fit_to(corners, fewer, size, time)
@@ -230,15 +229,9 @@ class Tracker:
             self._known[number] = _Known(corners=now, velocity=velocity[number], time=time, read=read)
 
     def _seen(
-        self,
-        picture: Picture,
-        fit: planar.Fit,
-        seen: View,
-        refined: Array,
-        share: Array,
-        followed: set[int],
-        covered: bool,
+        self, picture: Picture, fit: planar.Fit, seen: View, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
+        covered = bool(followed) or bool((share < WHOLE).any())
         noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=covered) + STILL_PX**2)
         error = self._causes.error(seen)
         doubt = fit.rms > DOUBT_PX or (self._causes.none < UNLIKELY and bool((error > noise).any()))
