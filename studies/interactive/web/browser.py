@@ -15,7 +15,7 @@ from websockets.sync.client import connect
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 #: How long a browser may take to start, and a script or a condition to be answered [s].
-PATIENCE = 30.0
+PATIENCE = 60.0
 OPTIONS = (
     "--headless=new",
     "--no-first-run",
