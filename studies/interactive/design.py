@@ -1,22 +1,18 @@
-"""The geometry of a design at work: where its markers sit, shape and stress of its strips, and the curve of a
-moment alone."""
+"""What is known of a design at work: of one instant, of the curve of a moment alone, and where its markers
+sit."""
 
 import math
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import legendre
 
-from spline_model.basis import Bezier
-from studies.cases.design import Design, flexural_scale
+from studies.cases.design import Design
 from studies.cases.keys import GROUND
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
-#: Places along a strip where its shape and stress are given, as fractions of its length.
-STATIONS = np.linspace(0.0, 1.0, 25)
 #: Distance of the ground's marker from the clamped plate it is glued to [m], as on the printed sheet.
 STANDOFF = 0.045
 #: Side of the black square [m], as printed.
@@ -25,68 +21,13 @@ SIDE = 0.06
 PRINTED = (0.0, 0.15, 0.0)
 
 
-@cache
-def _tables(control_points: int) -> tuple[list[Array], Array, Array]:
-    """Tables of a strip's shape and its derivatives at the stations, of its slope at Gauss points, and from
-    the stretch there to the axial modes' at the stations."""
-    basis = Bezier(control_points=control_points)
-    u, weight = legendre.leggauss(control_points + 3)
-    modes = legendre.legvander(u, control_points - 3)
-    project = (modes * (weight / 2.0)[:, None]) * (2 * np.arange(control_points - 2) + 1)
-    spread = legendre.legvander(2.0 * STATIONS - 1.0, control_points - 3) @ project.T
-    shapes = [basis.evaluate(STATIONS, order) for order in range(3)]
-    return shapes, basis.evaluate((u + 1.0) / 2.0, 1), spread
-
-
-def _strained(points: Array) -> tuple[Array, Array, Array]:
-    """Return shape (S, P, 2) [m], curvature times speed (S, P) and speed (S, Q) of strips (S, n, 2) [m]."""
-    shapes, slope, _ = _tables(points.shape[1])
-    shape, tangent, bend = (table @ points for table in shapes)
-    cross = tangent[..., 0] * bend[..., 1] - tangent[..., 1] * bend[..., 0]
-    turn = cross / np.einsum("spi,spi->sp", tangent, tangent)
-    return shape, turn, np.linalg.norm(slope @ points, axis=-1)
-
-
-class Strips:
-    """The strips of a design: their sections, and what their control points say.
-
-    Attributes:
-        length: the longest strip [m]; scale: sizes of moment [N m], force [N], energy [J] and stress [Pa] of
-            the design's bending; depth (S,): of the sections [m].
-    """
-
-    def __init__(self, design: Design, rest: Array) -> None:
-        strips = design.strips
-        self.length = max(strip.length for strip in strips)
-        self.depth, self._modulus = (
-            np.array([[getattr(strip, name)] for strip in strips]) for name in ("depth", "youngs_modulus")
-        )
-        bending, strain = flexural_scale(design), self.depth / self.length
-        self.scale = {"moment": bending, "force": bending / self.length, "energy": bending}
-        self.scale["stress"] = float((self._modulus * strain).max())
-        _, self._turn, self._speed = _strained(rest)
-
-    def read(self, points: Array) -> tuple[Array, Array]:
-        """Return shape (S, P, 2) [m] and stress (S, P), largest in the section [Pa], |N| / A + |M| / W, at P
-        stations of strips with control points (S, n, 2) [m], by the constitutive laws of both models.
-
-        Exact for the discretised strip: change of the material curvature times E h / 2, and the stretch
-        projected on the axial modes times E; leaves out what the clamps' fillets add.
-        """
-        shape, turn, speed = _strained(points)
-        spread = _tables(points.shape[1])[2]
-        axial = (speed / self._speed - 1.0) @ spread.T
-        curvature = (turn - self._turn) / self._speed.mean(axis=1, keepdims=True)
-        return shape, self._modulus * (np.abs(axial) + np.abs(curvature) * self.depth / 2.0)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Snapshot:
     """All that is shown of one instant, in SI units.
 
     Attributes:
         pose: x, y, theta of the body (3,); velocity (3,), zero while held; poses (B, 3) of all bodies.
-        shape (S, P, 2) [m], stress (S, P) [Pa]: of the strips, as `Strips.read` says.
+        shape (S, P, 2) [m], stress (S, P), largest in the section [Pa]: of the strips, evenly along each.
         force: what holds the body (3,) [N, N, N m], zero when released; tangent (3, 3) its derivative or
             None.
         energy: by what has it [J]: strain, kinetic, potential of the load from rest on, and dissipated since

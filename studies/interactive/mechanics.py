@@ -11,10 +11,11 @@ from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
+from spline_model.section_forces import StripFields, mode_fields, moving_fields
 from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
-from studies.interactive.design import PRINTED, Curve, Placing, Snapshot, Strips
+from studies.interactive.design import PRINTED, Curve, Placing, Snapshot
 from studies.interactive.motion import Motion, Pull, motion
 from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
@@ -24,6 +25,8 @@ from studies.kinds import Array
 REACH, PLACES, INCREMENTS = 1.8, 25, 4
 #: The same of a mechanism that its case does not turn [rad].
 LITTLE = 1e-3
+#: Of the stations along a strip, every how many-th is shown.
+EVERY = 2
 #: Load in EI/L^2 above which they are chosen without it: a path that loses its stability takes seconds.
 HEAVY = 10.0
 #: Time over which strips follow the hand's velocity at a release [s]: short enough that no pose leaves its
@@ -42,8 +45,9 @@ class Mechanics:
 
     Attributes:
         control_points: of a strip; doubt: what is to be said of the error that they leave, empty if nothing.
-        strips, placing: its geometry. begun: energy [J] of strips, body and load at the release, or where the
-            solver was changed.
+        length: the longest strip [m]; scale: sizes of moment [N m], force [N], energy [J] and stress [Pa] of
+            the design's bending. placing: of its markers. begun: energy [J] of strips, body and load at the
+            release, or where the solver was changed.
     """
 
     def __init__(self, piece: Piece, rest: Any = PRINTED) -> None:
@@ -53,7 +57,10 @@ class Mechanics:
         self.control_points, self.doubt = self._chosen()
         free = piece.modelled(self.control_points, loaded=False)
         self._held = HeldPivot(free, self._body)
-        self.strips = Strips(piece.design, self._held.control_points)
+        bending, strips = flexural_scale(piece.design), piece.design.strips
+        self.length = max(strip.length for strip in strips)
+        self.scale = {"moment": bending, "force": bending / self.length, "energy": bending}
+        self.scale["stress"] = max(strip.youngs_modulus * strip.depth for strip in strips) / self.length
         self._acting = piece.modelled(self.control_points) if self._load.any() else free
         self._system = compile_scene(self._acting.released())
         self._motion: Motion | None = None
@@ -153,8 +160,8 @@ class Mechanics:
             held.restore(known)
             return state.reached
         self._unheld = held.unknowns
-        pull = Pull(pose, stiffness, self.strips.length, turns, self._load)
-        found, work = pull.balanced(held, state, self.strips.scale["force"])
+        pull = Pull(pose, stiffness, self.length, turns, self._load)
+        found, work = pull.balanced(held, state, self.scale["force"])
         if found is None or self.grounded(found.pose):
             held.restore(known)
             return 0.0
@@ -255,9 +262,9 @@ class Mechanics:
         return float(self._load[:2] @ (self.placing.centre - pose[:2]))
 
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
+        along = mode_fields(self._acting, self._held.full_state(self._system)[None])
         return Snapshot(
-            **self._shown(state.pose, self._held.control_points, state.bending_energy + state.axial_energy),
-            poses=self._held.poses.copy(),
+            **self._shown(along, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
             tangent=state.tangent,
             centre=Snapshot.pole(state.pose, Snapshot.free_turn(state.tangent), 0.0),
@@ -265,19 +272,30 @@ class Mechanics:
         )
 
     def _dynamic(self, moving: Motion) -> Snapshot:
-        now, layout = moving.state(), self._system.layout
-        pose, velocity = (each[layout.body(self._body)].copy() for each in (now.z, now.v))
-        points = np.stack(
-            [now.z[layout.strip(each.name)].reshape(-1, 2) for each in self.piece.design.strips]
-        )
-        known = self._shown(pose, points, now.strain, now.kinetic)
+        now = moving.state()
+        known = self._shown(moving_fields(self._acting, now.z[None]), now.strain, now.kinetic)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
-        centre = Snapshot.pole(pose, velocity, LEAST_TURN / self.step)
-        poses = np.array([now.z[layout.body(body.name)] for body in self.piece.design.bodies])
-        return Snapshot(**known, poses=poses, velocity=velocity, centre=centre, iterations=now.iterations)
+        velocity = now.v[self._system.layout.body(self._body)].copy()
+        centre = Snapshot.pole(known["pose"], velocity, LEAST_TURN / self.step)
+        return Snapshot(**known, velocity=velocity, centre=centre, iterations=now.iterations)
 
-    def _shown(self, pose: Array, points: Array, strain: float, kinetic: float = 0.0) -> dict[str, Any]:
-        """Return what follows from the pose, the control points of the strips (S, n, 2) and the energies."""
-        shape, stress = self.strips.read(points)
+    def _shown(self, along: StripFields, strain: float, kinetic: float = 0.0) -> dict[str, Any]:
+        """Return what follows from the poses of the bodies, what is along the strips, and the energies."""
+        poses, strips = along.bodies[0], self.piece.design.strips
+        pose = poses[self.placing.number]
+        area, modulus = (
+            np.array([[each] for each in values])
+            for values in zip(
+                *((s.area, 2.0 * s.second_moment_of_area / s.depth) for s in strips), strict=True
+            )
+        )
+        axial, moment = (np.abs(each[0, :, ::EVERY]) for each in (along.axial_force, along.bending_moment))
         energy = {"strain": strain, "kinetic": kinetic, "potential": self._potential(pose), "dissipated": 0.0}
-        return {"pose": pose, "shape": shape, "stress": stress, "energy": energy}
+        stress = axial / area + moment / modulus
+        return {
+            "pose": pose,
+            "poses": poses,
+            "shape": along.shape[0, :, ::EVERY],
+            "stress": stress,
+            "energy": energy,
+        }

@@ -80,7 +80,7 @@ class Session:
         if mechanics.moving and not self.paused and self.clock.pace < SLOWED:
             real = "real time" if mechanics.step == STEP else "the time scale"
             self._warn("slowed", f"runs at {self.clock.pace:.1g} of {real}")
-        if mechanics.piece.values["load"] and not mechanics.snapshot.stable(mechanics.strips.length):
+        if mechanics.piece.values["load"] and not mechanics.snapshot.stable(mechanics.length):
             self._warn("unstable", unstable(self))
         return shown(self)
 
@@ -92,7 +92,7 @@ class Session:
     @property
     def grip(self) -> float:
         """Stiffness of the hand's spring [N/m]."""
-        return softness(self.spread, self.mechanics.strips.scale["force"])
+        return softness(self.spread, self.mechanics.scale["force"])
 
     def _setup(self, event: dict[str, Any]) -> None:
         """Begin anew with these settings; the first event of a session file."""
@@ -144,7 +144,7 @@ class Session:
         """Drive the body to `pose` (3,), displacement from rest and turn."""
         if self.mechanics.moving:
             return
-        far = math.hypot(pose[0], pose[1]) / self.mechanics.strips.length
+        far = math.hypot(pose[0], pose[1]) / self.mechanics.length
         if far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN:
             self.wanted = pose
             self._hold()
@@ -168,7 +168,7 @@ class Session:
             self._hand_is_here(turn=self.wanted[2])
         elif self.sight["state"] != "none":
             gap = mechanics.curve.gap(self.wanted)
-            if gap > OFF_PATH * mechanics.strips.length:
+            if gap > OFF_PATH * mechanics.length:
                 self._warn("off-path", f"{1e3 * gap:.1f} mm")
 
     def _settle(self) -> None:
@@ -273,7 +273,7 @@ class Session:
         if piece.body.name != before.piece.body.name:
             self.wanted = np.zeros(3)
         elif piece.name != before.piece.name:
-            self.wanted[:2] *= self.mechanics.strips.length / before.strips.length
+            self.wanted[:2] *= self.mechanics.length / before.length
         if piece.design.rotation is None and self.drive == "rotation":
             self.drive = "pull"  # its case turns no body
         if before.moving and self.mechanics.hold(before.snapshot.pose) == 1.0:

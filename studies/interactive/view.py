@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from studies.answers.quantities import PREFIXES, fixed, power_of
+from studies.cases.document import parsed
 from studies.interactive.presets import OWN
 from studies.kinds import Array
 
@@ -89,47 +91,7 @@ def _sentence(state: Mapping[str, Any]) -> str:
 
 
 #: Fault -> the sentence that explains it and says what to do.
-SENTENCES = {
-    "lost": "A marker is not seen: show both markers whole, flat and lit.",
-    "lost-0": "The ground marker (0) is not seen: uncover it.",
-    "lost-1": "The moving marker (1) is not seen: uncover it.",
-    "lost-both": "No marker is seen: show both markers whole, flat and lit.",
-    "duplicate-0": "Two copies of marker 0 are in view: cover one.",
-    "duplicate-1": "Two copies of marker 1 are in view: cover one.",
-    "other-ids": "Other markers are seen than 0 and 1: use the printed sheet.",
-    "mirrored": "The camera picture is mirrored: switch off mirroring in the camera's settings.",
-    "swapped": "The markers look swapped: marker 0 belongs on the ground, marker 1 on the moving body.",
-    "jump": "The pose jumped: waiting for a second picture that agrees.",
-    "absurd": "The pose is out of reach and was left out.",
-    "no-equilibrium": "No equilibrium was found for this pose: the last good state is kept.",
-    "unstable": "Unstable under this load: only the hand holds the body. Contact with the ground is not "
-    "modelled.",
-    "grounded": "The body fell to the ground: time is paused. Contact with the ground is not modelled.",
-    "off-path": "The markers are not where the pivot turns by itself: check their printed size with "
-    "the ruler, or take the pose of the unloaded pivot as rest.",
-    "swing-ended": "This design cannot take the swing over: it is held.",
-    "slowed": "Slowed down: the solver needs longer than the motion takes.",
-    "no-catch": "The moving body could not be held here: try again.",
-    "stopped": "The solver stopped: the last good state is kept and time is paused.",
-    "under-resolved": "The step is too long for this swing, which it damps: take a slower time scale.",
-    "coarse": "The numbers are not known to a ten-thousandth.",
-    "no-rest": "Both markers must be seen to take their pose as rest.",
-    "empty": "There is nothing.",
-    "not-flat": "Systematic error, included in ±: glue both markers flat in one plane, or calibrate the "
-    "camera (python -m studies calibrate).",
-    "lens": "The lens distorts the picture, included in ±: calibrate the camera "
-    "(python -m studies calibrate).",
-    "tilted": "The moving marker is tilted or lies higher than the ground marker, included in ±: glue both "
-    "in one plane.",
-    "curled": "A marker is curled, included in ±: glue it to a flat plate.",
-    "shutter": "The camera reads its rows one after the other, included in ±: move slower, or more light.",
-    "refused": "The markers do not lie in one plane: this pose was rejected.",
-    "sizes": "The two markers have different sizes: print both at 100 % and measure the ruler.",
-    "blurred": "The edges are blurred or dark: hold still, more light.",
-    "over-exposed": "The paper's white is over-exposed: less light, or a shorter exposure.",
-    "followed": "A corner is covered: the marker is followed by its edges.",
-    "no-picture": "A picture could not be read.",
-}
+SENTENCES = parsed(Path(__file__).parent / "sentences.toml")
 
 
 def unstable(session: Any) -> str:
@@ -175,7 +137,7 @@ def shown(session: Any) -> dict[str, Any]:
         "preset": piece.name,
         "values": piece.values,
         "control_points": mechanics.control_points,
-        "scale": mechanics.strips.scale,
+        "scale": mechanics.scale,
         "displacement": [*(now.pose[:2] - placing.centre), now.pose[2]],
         "centre_shift": placing.crossing_shift(now.pose),
         "grip": session.grip if session.drive in ("grip", "pull") and not moving else None,
@@ -192,8 +154,8 @@ def shown(session: Any) -> dict[str, Any]:
             "centres": placing.centres,
             "bodies": placing.names,
             "body": placing.number,
-            "depth": mechanics.strips.depth[:, 0],
-            "length": mechanics.strips.length,
+            "depth": [strip.depth for strip in piece.design.strips],
+            "length": mechanics.length,
         },
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.items()],
     }

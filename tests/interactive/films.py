@@ -13,9 +13,9 @@ from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
 from studies.interactive.tracking.films import Film
-from studies.interactive.tracking.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 from studies.interactive.tracking.planar import CORNERS, project
 from studies.interactive.tracking.tracker import Tracker
+from tests.interactive.painter import BLOCK, COUNTER_BITS, SKIN, Finger, Marker, Optics, Painter
 
 #: Frames of a period of the moving marker's turn.
 PERIOD = 40
@@ -33,16 +33,6 @@ def truth(k: int) -> tuple[float, float, float]:
 def both(k: int) -> list[Marker]:
     """Both markers as they should be in frame k."""
     return [Marker(number=0, pose=(0.0, 0.0, 0.0)), Marker(number=1, pose=truth(k))]
-
-
-class Kept(Film):
-    """A film whose pictures are kept for the next test that asks for the same."""
-
-    def picture(self, k):
-        """A copy of the picture, so that no test spoils another's."""
-        number = k % self.frames
-        markers, fingers = self.scene(number)
-        return drawn(self.painter, tuple(markers), number, fingers).copy()
 
 
 #: One for all films of the same optics.
@@ -64,7 +54,7 @@ def film(
 ) -> Film:
     """A film of these markers and fingers."""
     own = painter(optics or Optics(), samples=samples)
-    return Kept(painter=own, frames=frames, scene=lambda k: (markers(k), fingers(k)))
+    return Film(draw=lambda k: drawn(own, tuple(markers(k)), k, fingers(k)).copy(), frames=frames)
 
 
 def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
@@ -95,7 +85,7 @@ def rms(values: list[float]) -> float:
 def watch(made, camera=None, **more):
     """Events of a tracker over a film, one a frame."""
     follower = Tracker(camera=camera, **more)
-    return [follower.see(picture, k / made.rate) for k, picture in enumerate(made)]
+    return [follower.see(picture, k / 25) for k, picture in enumerate(made)]
 
 
 def names(event):
@@ -113,7 +103,11 @@ def errors(events):
 def detected_corners():
     """Corners as the detector gives them, none refused."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tracker.squares, "refine", lambda picture, quads, gamma: (quads, np.ones((2, 4))))
+        patch.setattr(
+            tracker.squares,
+            "refine",
+            lambda picture, quads, gamma: (quads, np.tile([1.0, 0.0, 1.0], (2, 4, 1))),
+        )
         patch.setattr(tracker, "REFUSE_PX", 10.0)
         yield
 

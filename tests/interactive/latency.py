@@ -1,25 +1,54 @@
-"""How long a picture of the page takes to become a state of the pivot, and which part of it how much.
+"""How long a picture takes to become a state of the pivot, and which part of it how much.
 
     python -m tests.interactive.latency [PICTURES]
+    python -m tests.interactive.latency browser
 
-One picture is under way at a time, each new one as soon as the state of the last has come, of 640 x 480
-px over the loopback; the camera, the page's reading and the drawing come on top in a browser.
+The first sends one picture of 640 x 480 px at a time over the loopback, each as soon as the state of the last
+has come. The second is the whole way in Chromium: from when its camera, a film, takes a picture until it is
+drawn with its state; and the pictures a second of the demo film in its first pass.
 """
 
 import sys
+import tempfile
 import time
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
+from studies.interactive.tracking.films import demo_film, encoded
 from studies.interactive.web import protocol
+from studies.interactive.web.browser import Browser
 from studies.interactive.web.server import Server, Settings, warm_up
 from tests.interactive.films import PERIOD, film
+from tests.interactive.pages import load
 from tests.interactive.sockets import answer, opened
 
 #: Parts of the way through the server that it times itself; the rest is the loopback's, the threads' and this
 #: client's.
 PARTS = ("track", "solve", "send")
+#: Keeps in the page the milliseconds from each picture's capture until it is drawn with its state.
+WATCH = """
+window.ways = [];
+const captured = new Map();
+window.WebSocket = class extends WebSocket {
+  send(data) {
+    if (data instanceof Uint8Array) {
+      const head = new DataView(data.buffer);
+      captured.set(head.getUint32(4, true), head.getFloat64(12, true));
+    }
+    super.send(data);
+  }
+};
+let last = null;
+const watch = () => {
+  const seq = window.studio?.drawn?.seq;
+  if (seq !== last && captured.has(seq)) window.ways.push(performance.now() - captured.get(seq));
+  last = seq;
+  requestAnimationFrame(watch);
+};
+watch();
+"""
 
 
 def measured(count):
@@ -41,14 +70,39 @@ def measured(count):
     return np.column_stack((parts, whole - np.sum(parts, axis=1), whole))
 
 
-def main(count=250):
-    """Print the median and the 95th percentile of each part."""
+def browsed(seconds=20.0):
+    """Milliseconds (P,) of the whole way of pictures in a browser, and times (F,) [s] at which frames of the
+    demo film are drawn in its first pass."""
+    with tempfile.TemporaryDirectory() as folder:
+        camera = Path(folder) / "film.mjpeg"
+        camera.write_bytes(b"".join(map(encoded, film(frames=PERIOD, samples=3))))
+        with Server(Settings(camera="browser")) as hosted, Browser(film=camera) as browser:
+            browser.call("Page.addScriptToEvaluateOnNewDocument", source=WATCH)
+            load(browser, hosted)
+            time.sleep(seconds)
+            ways = browser.ask("window.ways")
+    with Server(Settings(camera="film", source=demo_film())) as hosted, Browser() as browser:
+        load(browser, hosted)
+        browser.wait("studio.state.seq >= 290", 60.0)
+        shown = browser.ask("studio.ring.states.filter((s) => s.track_ms !== undefined).map((s) => s.at)")
+    return np.array(ways), np.array(shown)
+
+
+def main(*words):
+    """Print the median and the 95th percentile of each part, or of the whole way in a browser."""
     warm_up()
-    rows = measured(count)
-    print(f"{count} pictures [ms]: median and 95th percentile")
+    if words == ("browser",):
+        ways, shown = browsed()
+        rate = (len(shown) - 1) / (shown[-1] - shown[0])
+        print(
+            f"{len(ways)} pictures [ms]: {np.median(ways):.1f}, {np.percentile(ways, 95):.1f}; {rate:.1f} Hz"
+        )
+        return
+    rows = measured(*map(int, words or ("250",)))
+    print(f"{len(rows)} pictures [ms]: median and 95th percentile")
     for name, column in zip((*PARTS, "rest", "whole"), rows.T, strict=True):
         print(f"{name:8}{np.median(column):8.2f}{np.percentile(column, 95):8.2f}")
 
 
 if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+    main(*sys.argv[1:])

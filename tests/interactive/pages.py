@@ -33,6 +33,13 @@ def load(browser, server):
     return time.monotonic() - begin
 
 
+def reloaded(browser):
+    """Load the page again and wait for the first state of the new one."""
+    browser.ask("window.former = true")
+    browser.call("Page.reload")
+    browser.wait("!window.former && window.studio?.drawn ? true : false")
+
+
 def chosen(browser, name, value):
     """Choose a value of the list, or type it into the box, of that id."""
     browser.ask(

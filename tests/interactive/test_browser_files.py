@@ -10,7 +10,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from tests.interactive.pages import COUNT_SOCKETS, load
+from tests.interactive.pages import COUNT_SOCKETS, load, reloaded
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(executable() is None, reason="no Chromium on the PATH")]
 
@@ -33,9 +33,8 @@ def test_design_is_saved_opened_and_kept(page):
     page.wait("studio.state.preset === 'own' && studio.state.values.width === 0.02")
     page.key("ArrowUp")
     page.wait("studio.state.pose[2] > 0.08 && JSON.parse(sessionStorage.design ?? 'null')?.pose[2] > 0.08")
-    page.call("Page.reload")
-    time.sleep(0.5)
-    page.wait("window.studio?.state?.values.width === 0.02 && studio.state.pose[2] > 0.08")
+    reloaded(page)
+    page.wait("studio.state.values.width === 0.02 && studio.state.pose[2] > 0.08")
 
 
 def test_video_is_recorded(page):
@@ -58,9 +57,11 @@ def test_design_that_is_refused_ends_the_calls(hand):
     hand.ask(f"window.sessionStorage.setItem('design', {json.dumps(json.dumps(design))})")
     stop = "Storage.prototype.setItem = () => {};"
     counted = hand.call("Page.addScriptToEvaluateOnNewDocument", source=COUNT_SOCKETS + stop)
+    hand.ask("window.former = true")
     hand.call("Page.reload")
+    hand.wait("!window.former && window.sockets >= 1")
     time.sleep(5.0)
-    assert 1 <= hand.ask("window.sockets") <= 3
+    assert hand.ask("window.sockets") <= 3
     hand.ask("sessionStorage.removeItem('design')")
     hand.call("Page.removeScriptToEvaluateOnNewDocument", **counted)
 

@@ -15,12 +15,12 @@ from studies.errors import BadInput
 from studies.interactive.design import PRINTED
 from studies.interactive.session import Session
 from studies.interactive.tracking import tracker as tracking
-from studies.interactive.tracking.painter import Marker, Optics
 from studies.interactive.tracking.planar import Camera
 from studies.interactive.tracking.tracker import Tracker
 from tests import gates
 from tests.interactive.events import session, turned
 from tests.interactive.films import detected_corners, error, errors, film, names, rms, truth, watch
+from tests.interactive.painter import Marker, Optics
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ def test_a_pulled_body_turns_until_no_moment_is_left(preset):
         spring = state["grip"] * np.subtract([x, 0.0], state["displacement"][:2])
         scale = np.hypot(*spring) + state["scale"]["force"]
         assert np.abs(state["force"][:2] - spring).max() < 1e-6 * scale
-        assert abs(state["force"][2]) < 1e-6 * scale * made.mechanics.strips.length
+        assert abs(state["force"][2]) < 1e-6 * scale * made.mechanics.length
         assert state["pose"][2] * x < 0.0
     assert abs(made.feed({"do": "pose", "pose": [0.0, 0.0, 0.0], "t": 1.0})["pose"][2]) < 1e-6
 

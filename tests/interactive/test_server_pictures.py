@@ -12,11 +12,11 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
 from studies.interactive.tracking.films import Video
-from studies.interactive.tracking.painter import Optics
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.films import counter, film, truth
 from tests.interactive.latency import measured
+from tests.interactive.painter import Optics
 from tests.interactive.sockets import answer, closing, emptied, frame, opened, say
 
 

@@ -68,7 +68,7 @@ def test_every_case_opens(case):
     the same design; no number is infinite, and the strength is that of the case or unknown."""
     made = Session(case)
     made.feed({"do": "drive", "by": "pull" if case == "parallel_strip_guide" else "rotation", "t": 0.0})
-    length = made.mechanics.strips.length
+    length = made.mechanics.length
     states = [made.feed({"do": "pose", "pose": [0.01 * length, 0.0, 0.05], "t": 0.1})]
     states.append(made.feed({"do": "release", "t": 0.2}))
     states += [made.feed({"do": "tick", "t": 0.2 + k * FRAME}) for k in range(1, 6)]

@@ -10,7 +10,6 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking.causes import MODELS, Causes
-from studies.interactive.tracking.painter import SKIN, WHITEST, Marker, Optics
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
 from studies.interactive.tracking.tracker import Tracker
@@ -27,6 +26,7 @@ from tests.interactive.films import (
     truth,
     watch,
 )
+from tests.interactive.painter import SKIN, WHITEST, Marker, Optics
 
 HARD = Optics(blur=1.6, noise=8.0, light=0.4, gamma=1.0)
 
@@ -152,7 +152,7 @@ def test_wrong_markers_are_named_at_once(said):
 
 def test_mirrored_picture_is_named():
     """Requirement: within 1.5 s of a mirrored film it is said, and no pose is given."""
-    picture = film(Optics(mirrored=True), frames=1).picture(0)
+    picture = np.ascontiguousarray(film(frames=1).picture(0)[:, ::-1])
     follower = Tracker()
     events = [follower.see(picture, k / 25) for k in range(38)]
     assert {event["do"] for event in events} == {"unseen"}
@@ -224,14 +224,27 @@ COVERED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", COVERED)
-def test_covered_marker_is_followed(name):
+def test_covered_marker_is_followed():
     """Requirement: a thumb on an edge, a finger on a corner, and glare for two seconds leave a pose in all
-    pictures, in 98 % within three times its uncertainty."""
-    place, *how = COVERED[name]
-    events = watch(film(frames=55, fingers=lambda k: over(k, place, *how) if k >= 3 else (), samples=3))
-    gaps = [np.subtract(event["marker"], truth(k)) / event["sd"] for k, event in enumerate(events)]
-    assert np.mean((np.abs(gaps) <= 3.0).all(axis=1)) >= 0.98
+    pictures, in 99 % within three times its uncertainty."""
+    within = []
+    for place, *how in COVERED.values():
+        covered = film(
+            frames=55, fingers=lambda k, to=(place, *how): over(k, *to) if k >= 3 else (), samples=5
+        )
+        events = watch(covered)
+        gaps = [np.subtract(event["marker"], truth(k)) / event["sd"] for k, event in enumerate(events)]
+        within.append((np.abs(gaps) <= 3.0).all(axis=1))
+    assert np.mean(within) >= 0.99
+
+
+def test_film_that_is_repeated_tells_nothing_new(monkeypatch):
+    """Requirement: a short film that is shown again and again, as a browser does with one that stands for its
+    camera, is not warned of, though its noise, were it new each time, would look like a systematic error."""
+    pictures = list(film(frames=12)) * 12
+    assert {names(event) for event in watch(pictures)[12:]} == {"found"}
+    monkeypatch.setattr(Tracker, "_is_new", lambda self, picture: True)
+    assert {names(event) for event in watch(pictures)[12:]} != {"found"}
 
 
 def test_foreign_square_is_not_followed():

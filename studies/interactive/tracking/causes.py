@@ -40,8 +40,6 @@ _LIKELY = np.array([-math.log(max(1.0, _NAMES.count(name) / CURLED)) for name in
 EXPECTED_PX, WORTH = 0.006, 1.5
 #: Part of it that comes back in every picture, of a marker that stands still on the grid of pixels [px].
 STILL_PX = 0.003
-#: Difference of all residuals below which a picture is the last one, shown again [px].
-SAME_PX = 0.001
 #: Pictures after which the weight of a residual has decreased to 1/e; iterations for the variance. After
 #: MEMORY pictures, the models are computed in one picture of EVERY: they take a tenth of its time.
 MEMORY, ROUNDS, EVERY = 50, 2, 5
@@ -61,7 +59,7 @@ class View:
     """One picture's residuals, and what causes of unit size do to them.
 
     Attributes:
-        gap (R,): residual of the edges [px]; pattern (R, K): by the causes; error (3, K): of the pose.
+        gap (16,): residual of the edges [px]; pattern (16, K): by the causes; error (3, K): of the pose.
         spare: residuals less unknowns of the fit.
     """
 
@@ -85,10 +83,10 @@ def view(fit: Fit, size: tuple[int, int], velocity: Array, camera: Camera | None
     across = np.einsum("ksepi,sei->sepk", moved, normal)
     spread = SPREAD
     tables = np.stack((_WEIGHTS, _WEIGHTS * _NODES / spread))
-    pattern = np.einsum("sepk,tp->setk", across, tables).reshape(16, -1)[fit.rows]
+    pattern = (fit.trust @ np.einsum("sepk,tp->setk", across, tables).reshape(8, 2, -1)).reshape(16, -1)
     taken = np.linalg.lstsq(fit.jacobian, pattern)[0]
     left = pattern - fit.jacobian @ taken
-    return View(gap=fit.gap, pattern=left, error=taken[-3:], spare=fit.gap.size - len(taken))
+    return View(gap=fit.gap, pattern=left, error=taken[-3:], spare=fit.spare)
 
 
 def _seen(fit: Fit, size: tuple[int, int], velocity: Array, camera: Camera | None, causes: Array) -> Array:
@@ -129,15 +127,10 @@ class Causes:
         self._matrix, self._vector = np.zeros((count, count)), np.zeros(count)
         self.sizes, self._moment = np.zeros(count), np.zeros((count, count))
         self.variance, self.none, self._views = EXPECTED_PX**2, 1.0, 0
-        self._last = np.zeros(0)
         self.weights = {"": 1.0}
 
     def add(self, seen: View, weight: float = 1.0) -> None:
-        """Take one more view into account, unless it is the last one once more, whose noise would look like a
-        cause."""
-        if seen.gap.shape == self._last.shape and np.abs(seen.gap - self._last).max() < SAME_PX:
-            return
-        self._last = seen.gap
+        """Take one more view into account, of a picture that was not seen before."""
         kept = 1.0 - 1.0 / MEMORY
         self._square = kept * self._square + weight * float(seen.gap @ seen.gap)
         self._count = kept * self._count + weight * seen.spare
@@ -162,11 +155,13 @@ class Causes:
             mean = np.einsum("mij,mj->mi", inverse, vector) / variance[:, None]
             explained = np.einsum("mi,mi->m", mean, 2.0 * vector - np.einsum("mij,mj->mi", matrix, mean))
             variance = np.maximum(self._square - explained, 1e-6 * self._square) / self._count
+        # a few residuals tell the variance badly: the mean of what it may be is larger (inverse gamma)
+        expected = variance * self._count / max(self._count - 2.0, 1.0)
         penalty = np.sum(mean**2, axis=1) - np.linalg.slogdet(inverse)[1]
         evidence = -0.5 * (self._count * np.log(variance) + penalty) + _LIKELY
         share = np.exp(evidence - evidence.max())
         moments = both * (inverse + mean[:, :, None] * mean[:, None])
-        return share / share.sum(), _SIZES * mean, moments, variance
+        return share / share.sum(), _SIZES * mean, moments, expected
 
     def name(self, least: float = SURE) -> str:
         """Return the cause of the largest weight, empty where that is below `least`."""
@@ -174,7 +169,7 @@ class Causes:
         return best if self.weights[best] > least else ""
 
     def unexplained(self, seen: View) -> Array:
-        """Return the residual (R,) [px] less what the causes leave."""
+        """Return the residual (16,) [px] less what the causes leave."""
         return np.asarray(seen.gap + seen.pattern @ self.sizes)
 
     def spread_of(self, seen: View, *, own: bool) -> float:

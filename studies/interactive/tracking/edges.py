@@ -267,7 +267,7 @@ def _edges(
     stations: int,
 ) -> Array:
     """One edge after another; see `edges`."""
-    u, found = np.linspace(INSET, 1.0 - INSET, stations), np.zeros((len(half), 3))
+    u, found = np.linspace(INSET, 1.0 - INSET, stations), np.zeros((len(half), 5))
     beside, place = round(NEIGHBOURS * stations), np.empty(stations)
     for e in range(len(half)):
         level = _profiles(picture, lines[:, e], u, half[e])
@@ -284,7 +284,9 @@ def _edges(
             for _ in range(FITS):
                 _by_step(level, good, half[e], a + b * u, place, trust_of)
                 a, b, kept = _line(u, place, good, a, b, OUTLIER_PX, beside)
-        found[e] = a, a + b, kept.sum() / stations
+        found[e, :3] = a, a + b, kept.sum() / stations
+        if kept.any():
+            found[e, 3:] = (u[kept].mean() - u.mean()) / u.std(), u[kept].std() / u.std()
     return found
 
 
@@ -298,7 +300,8 @@ def edges(
     last: bool = True,
     stations: int = STATIONS,
 ) -> Array:
-    """Return (E, 3) of the edges near lines: offsets along the normal at both ends, share of good stations.
+    """Return (E, 5) of the edges near lines: offsets along the normal at both ends, share of good stations,
+    their mean place from the middle and their spread, both over the spread of all stations.
 
     Args:
         lines: both ends and the unit normal (3, E, 2) of each; half: half lengths (E,) of the profiles [px].

@@ -9,13 +9,15 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from studies.errors import BadInput
-from studies.interactive.design import turned
+from studies.interactive.design import SIDE, turned
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.painter import Finger, Marker, Optics, Painter
+from studies.interactive.tracking.planar import BITS, cells, project, turn
+from studies.interactive.tracking.squares import GAMMA
 from studies.kinds import Array
 
 #: Pictures a second of films that do not say.
@@ -25,6 +27,10 @@ FRAMES = 300
 TURN = math.radians(52)
 FINGER = range(150, 168)
 HIDDEN = range(235, 247)
+#: Its camera: size and focal length [px], distance [m] and angles to the plane, and places that it draws in a
+#: pixel, in each direction; light of the table, of ink, paper and skin, over that of white.
+WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.radians(20), math.radians(3), 3
+TABLE, BLACK, WHITE, SKIN = 0.31, 0.006, 0.76, 0.14
 
 
 def _decoded(data: bytes) -> Picture:
@@ -55,21 +61,19 @@ class Film:
     """Frames by number, drawn when they are first shown, and kept as JPEG.
 
     Attributes:
-        scene: gives the markers and fingers of frame k.
+        draw: gives the picture of frame k.
         rate: of frames [1/s]; lock_step: each stands for a frame of the session, whatever the clock says.
     """
 
-    painter: Painter
+    draw: Callable[[int], Picture]
     frames: int
-    scene: Callable[[int], tuple[list[Marker], tuple[Finger, ...]]]
     rate: float = RATE
     lock_step: bool = True
     _kept: dict[int, bytes] = field(default_factory=dict, init=False)
 
     def picture(self, k: int) -> Picture:
         """Return frame k, from 0."""
-        markers, fingers = self.scene(k % self.frames)
-        return self.painter.draw(markers, k % self.frames, fingers)
+        return self.draw(k % self.frames)
 
     def __iter__(self) -> Iterator[Picture]:
         return (self.picture(k) for k in range(self.frames))
@@ -85,17 +89,44 @@ class Film:
 
 
 def demo_film() -> Film:
-    """Return the demo film with its truth: the body follows the pivot's own path, the hand pushes nothing
-    else."""
+    """Return the demo film: the body follows the pivot's own path, the hand pushes nothing else."""
     mechanics = Mechanics(PRESETS["polymer"])
     poses = [mechanics.marker_at(rotation(k)) for k in range(FRAMES)]
+    turn = Rotation.from_euler("xz", (math.pi - TILT, ROLL)).as_matrix()
+    place = np.array([0.0, 0.0, DISTANCE]) - 0.075 * turn[:, 1]
+    lens = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0 / FINE]])
+    plane = FINE * lens @ np.column_stack((turn[:, :2], place))
+    table = TABLE * (1.0 + 0.05 * np.random.default_rng(1).standard_normal((HEIGHT // 40, WIDTH // 40)))
+    ground = cv2.resize(table, (FINE * WIDTH, FINE * HEIGHT), interpolation=cv2.INTER_LINEAR)
+    shade = 1.0 - 0.4 * np.arange(WIDTH) / WIDTH
 
-    def scene(k: int) -> tuple[list[Marker], tuple[Finger, ...]]:
-        moving = Marker(number=1, pose=tuple(poses[k]))
-        markers = [Marker(number=0, pose=(0.0, 0.0, 0.0)), moving]
-        return (markers[:1] if k in HIDDEN else markers), (_finger(poses[k]),) if k in FINGER else ()
+    def draw(k: int) -> Picture:
+        light = ground.copy()
+        for number in (0,) if k in HIDDEN else (0, 1):
+            _lay(light, plane, number, poses[k] if number else np.zeros(3))
+        if k in FINGER:
+            corner = poses[k][:2] + turned(poses[k][2], np.array([0.5, 0.5]) * SIDE)
+            x, y = project(plane, corner).tolist()
+            cv2.circle(light, (round(x), round(y)), round(FINE * FOCAL * 0.012 / DISTANCE), SKIN, -1)
+        light = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
+        seen = 255.0 * (shade * cv2.GaussianBlur(light, (0, 0), 0.8)) ** (1.0 / GAMMA)
+        noise = np.random.default_rng(k).standard_normal(seen.shape, dtype=np.float32)
+        return np.clip(np.rint(seen + 4.0 * noise), 0, 255).astype(np.uint8)
 
-    return Film(painter=Painter(Optics(), samples=2, numbered=False), frames=FRAMES, scene=scene)
+    return Film(draw=draw, frames=FRAMES)
+
+
+def _lay(light: Array, plane: Array, number: int, pose: Array) -> None:
+    """Lay a marker with its white margin at `pose` (3,) into the picture of the plane."""
+    paper = np.where(
+        np.pad(cells(number).repeat(2, axis=0).repeat(2, axis=1), 3, constant_values=True), WHITE, BLACK
+    )
+    size, middle = SIDE / (2 * BITS), (paper.shape[0] - 1) / 2
+    own = size * np.array([[1.0, 0.0, -middle], [0.0, -1.0, middle], [0.0, 0.0, 1.0 / size]])
+    laid = np.column_stack((np.vstack((turn(pose[2]), np.zeros(2))), (*pose[:2], 1.0)))
+    place = plane @ laid @ own
+    how = {"flags": cv2.INTER_NEAREST, "borderMode": cv2.BORDER_TRANSPARENT}
+    cv2.warpPerspective(paper, place, light.shape[::-1], light, **how)
 
 
 def rotation(k: int) -> float:
@@ -103,11 +134,6 @@ def rotation(k: int) -> float:
     second."""
     u = min(1.0, k / (FRAMES - 25))
     return TURN * math.sin(2.0 * math.pi * u) * math.sin(math.pi * u) ** 2 * 1.3
-
-
-def _finger(pose: Array) -> Finger:
-    corner = pose[:2] + turned(pose[2], np.array([0.03, 0.03]))
-    return Finger(centre=(float(corner[0]), float(corner[1])))
 
 
 class Video:

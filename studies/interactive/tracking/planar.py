@@ -24,8 +24,8 @@ from studies.kinds import Array
 #: Corners of a square of side 1 in its own frame (x right, y up), in the detector's order: from the upper
 #: left on, clockwise as seen from the front.
 CORNERS = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
-#: Cells of a marker's side with its black border.
-BITS = 8
+#: Cells of a marker's side with its black border, and of the white margin around it.
+BITS, MARGIN = 8, 1.5
 ITERATIONS = 12
 #: Steps of the central differences in the unknowns of a plane, of sides and radians.
 STEP = 1e-6
@@ -89,8 +89,8 @@ class Fit:
         pose: x, y, theta (3,) of the second square's centre in the first one's frame, lengths in sides.
         plane: homography (3, 3) from that frame, in sides, to pixels.
         rms: of the corners' residuals [px].
-        gap (R,): residuals of the edges' offsets and turns [px]; jacobian (R, K): by the unknowns, those of
-            the pose last; rows (R,): which of the 16 they are.
+        gap (16,): residuals of the edges' offsets and turns [px], by their trust; jacobian (16, K): by the
+            unknowns, those of the pose last; trust (8, 2, 2): in an edge's offset and turn, see `trusted`.
     """
 
     pose: Array
@@ -98,7 +98,12 @@ class Fit:
     rms: float
     gap: Array
     jacobian: Array
-    rows: NDArray[np.intp]
+    trust: Array
+
+    @property
+    def spare(self) -> int:
+        """Residuals less unknowns."""
+        return int(2 * self.trust.any(axis=(1, 2)).sum()) - self.jacobian.shape[1]
 
     @property
     def spread(self) -> Array:
@@ -124,18 +129,26 @@ def homography(picture: Array) -> Array:
     return np.asarray(cv2.getPerspectiveTransform(CORNERS.astype(np.float32), picture.astype(np.float32)))
 
 
+def trusted(good: Array, least: float) -> Array:
+    """Return the trust (8, 2, 2) in the offsets and turns of edges with `good` stations (2, 4, 3), as
+    `squares.refine` tells them: that in all stations is one, that in a share below `least` nought.
+
+    A line through some stations has independent errors of its offset at their mean place and of its turn.
+    """
+    share, middle, spread = np.moveaxis(good.reshape(8, 3), 1, 0)
+    rows = np.stack((np.ones(8), middle, np.zeros(8), spread), axis=-1).reshape(8, 2, 2)
+    return np.asarray(np.sqrt(np.where(share >= least, share, 0.0))[:, None, None] * rows)
+
+
 def fit(
-    corners: Array,
-    camera: Camera | None = None,
-    start: Fit | None = None,
-    seen: NDArray[np.bool_] | None = None,
+    corners: Array, camera: Camera | None = None, start: Fit | None = None, trust: Array | None = None
 ) -> Fit:
     """Return the fit to corners (2, 4, 2) [px] of both squares.
 
     Args:
         camera: if it is known; its lens is taken out of the corners first.
         start: a fit of a picture shortly before.
-        seen: which edges (2, 4) are seen; the others do not count.
+        trust: (8, 2, 2) in each edge, in all alike if it is not given.
 
     Raises:
         np.linalg.LinAlgError: corners that are no picture of two squares.
@@ -150,18 +163,19 @@ def fit(
         plane, pose = start.plane, start.pose.copy()
     chart, known = (_free, (plane / plane[2, 2]).ravel()[:8]) if camera is None else _seen_by(camera, plane)
     known = np.concatenate((known, pose))
-    rows = np.arange(16) if seen is None else np.flatnonzero(seen.ravel().repeat(2))
-    solved, jacobian, gap = _least_squares(chart, known, data, _independent(data)[rows])
+    trust = np.tile(np.eye(2), (8, 1, 1)) if trust is None else trust
+    weigh = (trust @ _independent(data).reshape(8, 2, 16)).reshape(16, 16)
+    solved, jacobian, gap = _least_squares(chart, known, data, weigh)
     if start is not None and rms(gap) > 1.0:
-        return fit(corners, camera, seen=seen)
-    return Fit(
-        pose=solved[-3:], plane=chart(solved[:-3]), rms=rms(gap), gap=gap, jacobian=jacobian, rows=rows
-    )
+        return fit(corners, camera, trust=trust)
+    plane = chart(solved[:-3])
+    return Fit(pose=solved[-3:], plane=plane, rms=rms(gap), gap=gap, jacobian=jacobian, trust=trust)
 
 
 def rms(gap: Array) -> float:
-    """Return the root mean square distance [px] of corners whose edges have residuals `gap` (R,)."""
-    return math.sqrt(4.0 / (1.0 + 4.0 * SPREAD**2) * float(gap @ gap) / (0.5 * gap.size))
+    """Return the root mean square distance [px] of corners whose edges have residuals `gap` (16,)."""
+    edges = max(1, np.count_nonzero(gap) // 2)
+    return math.sqrt(4.0 / (1.0 + 4.0 * SPREAD**2) * float(gap @ gap) / edges)
 
 
 #: From the unknowns (..., K) of a plane to its homographies (..., 3, 3).

@@ -14,8 +14,7 @@ from studies.errors import BadInput
 from studies.interactive.design import PRINTED, SIDE, Placing
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.painter import MARGIN
-from studies.interactive.tracking.planar import BITS, CORNERS, Camera, cells
+from studies.interactive.tracking.planar import BITS, CORNERS, MARGIN, Camera, cells
 from studies.interactive.tracking.tracker import Tracker
 from studies.kinds import Array
 

@@ -26,6 +26,8 @@ Cells = NDArray[np.bool_]
 REACHES = (4.5, 3.0, 3.5)
 SHARE = 0.095
 LEAST_REACH = 1.5
+#: Share of good stations below which an edge is not seen.
+KEPT = 0.5
 #: Places of the corners after and before those of a square.
 AFTER, BEFORE = [1, 2, 3, 0], [3, 0, 1, 2]
 #: Power of a camera's values that light is: of those that encode it, as nearly all do.
@@ -49,17 +51,17 @@ PICTURES, EVERY = 50, 5
 
 
 def refine(picture: Picture, quads: Array, gamma: float = GAMMA) -> tuple[Array, Array]:
-    """Return the corners (Q, 4, 2) [px] of the squares near `quads`, in their order, and the share (Q, 4) of
-    good stations of their edges, of a lost one 0.
+    """Return the corners (Q, 4, 2) [px] of the squares near `quads`, in their order, and the good stations
+    (Q, 4, 3) of their edges as `edges` tells them: share, of a lost one 0, mean place and spread.
 
     Args:
         gamma: power of the picture's values that light is.
     """
     corners = np.array(quads, dtype=float)
-    share, last = np.zeros(corners.shape[:2]), len(REACHES) - 1
+    good, last = np.zeros((*corners.shape[:2], 3)), len(REACHES) - 1
     for k, reach in enumerate(REACHES):
-        corners, share = _pass(picture, corners, reach, k == 0, k == last, gamma)
-    return corners, share
+        corners, good = _pass(picture, corners, reach, k == 0, k == last, gamma)
+    return corners, good
 
 
 def _pass(
@@ -71,13 +73,17 @@ def _pass(
     half = np.minimum(reach, np.maximum(LEAST_REACH, SHARE * side.min(axis=1)))
     normal = -_normal(corners, end, corners.mean(axis=1, keepdims=True))
     lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
-    found = edges(picture, lines, half.repeat(4), gamma, first=first, last=last).reshape(-1, 4, 3)
-    p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
-    crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
-    gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
-    lost = ~(gap <= 2.0 * reach)
-    share = np.where(lost | lost[:, AFTER], 0.0, found[..., 2])
-    return np.where(lost[..., None], corners, crossing), share
+    found = edges(picture, lines, half.repeat(4), gamma, first=first, last=last).reshape(-1, 4, 5)
+    for _ in range(2):
+        p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
+        crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
+        gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
+        lost = ~(gap <= 2.0 * reach)
+        # of two edges that meet far away, the one with less good stations is something else's: it stays
+        weaker = found[..., 2] <= found[:, BEFORE, 2]
+        found[(lost & weaker) | (lost & ~weaker)[:, AFTER]] = 0.0
+    good = np.where((lost | lost[:, AFTER])[..., None], 0.0, found[..., 2:])
+    return np.where(lost[..., None], corners, crossing), good
 
 
 def _normal(p: Array, q: Array, place: Array) -> Array:

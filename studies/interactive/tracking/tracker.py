@@ -1,6 +1,7 @@
 """From pictures to the events of a session: find, follow where a corner is covered, fit, and say what is
 wrong."""
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +14,7 @@ from studies.interactive.tracking import planar, squares
 from studies.interactive.tracking.causes import STILL_PX, Causes, View, view
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.planar import Camera
-from studies.interactive.tracking.squares import Shrinkage
+from studies.interactive.tracking.squares import KEPT, Shrinkage
 from studies.kinds import Array
 
 #: Residuals of the fit [px] from which it is doubted, and, less that of known causes, refused.
@@ -32,8 +33,9 @@ FOLLOW = 1.0
 BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
-#: Share of good stations below which an edge is called blurred, and least that a followed one keeps.
-CLEAR, KEPT = 0.6, 0.5
+#: Share of good stations of an edge below which it is called blurred, may be left out where the others fit
+#: without it, and is not taken for whole.
+CLEAR, PART, WHOLE = 0.6, 0.75, 0.9
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
 #: is named.
 MARGIN = np.array(
@@ -41,6 +43,9 @@ MARGIN = np.array(
     + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
 )
 WHITEST, CLIPPED = 254, 0.5
+#: Distance of the pixels by which a picture is told from others [px], and how many pictures are known: of a
+#: film that is repeated, noise would look like a systematic error.
+COARSE, PICTURES = 7, 5000
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
 
@@ -74,6 +79,7 @@ class Tracker:
         self._blind_since: float | None = None
         self._mirrored = False
         self._tries = 0
+        self._pictures: deque[int] = deque(maxlen=PICTURES)
 
     def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
         """Return the corners (4, 2) [px], in the markers' order, of the squares of the family 36h11 in a grey
@@ -127,13 +133,13 @@ class Tracker:
     ) -> dict[str, Any]:
         for _ in range(POWERS):  # the first pictures tell the power that their values are of light
             gamma = self._shrinkage.gamma
-            refined, share = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
-            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and share[n].min() >= KEPT}
+            refined, good = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
+            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and good[n, :, 0].min() >= KEPT}
             corners = self._shrinkage.taken_out(picture, refined, lit)
             if self._shrinkage.gamma == gamma:
                 break
         size = (picture.shape[1], picture.shape[0])
-        found = self._fit_to(corners, share, size, time)
+        found = self._fit_to(corners, good, size, time)
         torn = found is None or self._left(found[1]) > REFUSE_PX
         if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
             for number, predicted in self._predicted(time).items():
@@ -141,7 +147,7 @@ class Tracker:
                 again, kept = squares.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
                 second = self._fit_to(self._shrinkage.taken_out(picture, again, {}), kept, size, time)
                 if second is not None and self._left(second[1]) <= REFUSE_PX:
-                    refined, share, found, followed, torn = again, kept, second, {number}, False
+                    refined, good, found, followed, torn = again, kept, second, {number}, False
                     break
         if followed and torn:
             return _unseen(_lost(followed))
@@ -151,29 +157,48 @@ class Tracker:
         if torn:
             alone = Causes()
             alone.add(seen)
-            self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
+            if self._is_new(picture):
+                self._causes.add(seen, min(1.0, (REFUSE_PX / fit.rms) ** 2))
             return _unseen("sizes" if alone.name(0.0) == "sizes" else "refused")
-        if not followed:
-            self._causes.add(seen)
-        for number, corner in np.argwhere((share < KEPT) | np.roll(share < KEPT, 1, axis=1)):
-            refined[number, corner] = self._drawn(fit)[number, corner]  # on an edge that is not seen
+        if self._is_new(picture):
+            spread = self._causes.spread_of(seen, own=bool(followed))
+            self._causes.add(seen, self._causes.variance / spread)
+        hidden = ~fit.trust.any(axis=(1, 2)).reshape(2, 4)
+        hidden |= np.roll(hidden, 1, axis=1)
+        refined = np.where(hidden[..., None], self._drawn(fit), refined)
         self._remember(picture, refined, followed, time)
         self._fit = fit
-        return self._seen(picture, fit, seen, refined, share, followed)
+        return self._seen(picture, fit, seen, refined, good[..., 0], followed)
+
+    def _is_new(self, picture: Picture) -> bool:
+        """Return whether a picture, its noise included, was not seen before."""
+        number = hash(picture[::COARSE, ::COARSE].tobytes())
+        known = number in self._pictures
+        self._pictures.append(number)
+        return not known
 
     def _fit_to(
-        self, corners: Array, share: Array, size: tuple[int, int], time: float
+        self, corners: Array, good: Array, size: tuple[int, int], time: float
     ) -> tuple[planar.Fit, View] | None:
         """Return the fit to corners (2, 4, 2) [px] of a picture of a `size` [px], and its view; None where
         there is none."""
-        if ((share >= KEPT).sum(axis=1) < EDGES).any():
+        if ((good[..., 0] >= KEPT).sum(axis=1) < EDGES).any():
             return None
         try:
-            fit = planar.fit(corners, self.camera, self._fit, share >= KEPT)
+            fit = planar.fit(corners, self.camera, self._fit, planar.trusted(good, KEPT))
             seen = view(fit, size, self._velocity(corners, time), self.camera)
         except (np.linalg.LinAlgError, ValueError):
             return None
-        return (fit, seen) if np.isfinite(fit.pose).all() and np.isfinite(seen.error).all() else None
+        if not (np.isfinite(fit.pose).all() and np.isfinite(seen.error).all()):
+            return None
+        worst = np.unravel_index(np.where(good[..., 0] < KEPT, 1.0, good[..., 0]).argmin(), (2, 4))
+        if self._left(seen) > REFUSE_PX and good[worst][0] < PART:  # it may be that of a finger
+            fewer = good.copy()
+            fewer[worst] = 0.0
+            without = self._fit_to(corners, fewer, size, time)
+            if without is not None and without[0].rms <= DOUBT_PX:
+                return without
+        return fit, seen
 
     def _left(self, seen: View) -> float:
         """Return the residual [px] of the corners, or that which known causes do not explain."""
@@ -206,7 +231,8 @@ class Tracker:
     def _seen(
         self, picture: Picture, fit: planar.Fit, seen: View, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
-        noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=bool(followed)) + STILL_PX**2)
+        covered = bool(followed) or bool((share < WHOLE).any())
+        noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=covered) + STILL_PX**2)
         error = self._causes.error(seen)
         doubt = fit.rms > DOUBT_PX or (self._causes.none < UNLIKELY and bool((error > noise).any()))
         faults = {
@@ -259,13 +285,11 @@ def _clipped(picture: Picture, fit: planar.Fit) -> float:
 
 def _reads(picture: Picture, corners: Array, number: int) -> bool:
     """Return whether the cells between corners (4, 2) [px] are those of a marker, as far as they are seen."""
-    middle = (np.arange(1, planar.BITS - 1) + 0.5) / planar.BITS - 0.5
-    places = np.stack(np.meshgrid(middle, -middle), axis=-1)
-    at = np.rint(planar.project(planar.homography(corners), places)).astype(int)
-    height, width = picture.shape
-    grey = picture[np.clip(at[..., 1], 0, height - 1), np.clip(at[..., 0], 0, width - 1)].astype(float)
+    cells = planar.BITS * (planar.CORNERS * [1.0, -1.0] + 0.5) - 0.5  # a pixel each
+    back = cv2.getPerspectiveTransform(corners.astype(np.float32), cells.astype(np.float32))
+    grey = cv2.warpPerspective(picture, back, (planar.BITS, planar.BITS)).astype(float)
     light = grey > 0.5 * (grey.min() + grey.max())
-    return float(np.mean(light == planar.cells(number)[1:-1, 1:-1])) >= READ
+    return float(np.mean((light == planar.cells(number))[1:-1, 1:-1])) >= READ
 
 
 def _lost(numbers: set[int]) -> str:

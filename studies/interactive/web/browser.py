@@ -15,7 +15,7 @@ from websockets.sync.client import connect
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 #: How long a browser may take to start, and a script or a condition to be answered [s].
-PATIENCE = 30.0
+PATIENCE = 60.0
 OPTIONS = (
     "--headless=new",
     "--no-first-run",
@@ -121,13 +121,15 @@ class Browser:
 
     def wait(self, script: str, patience: float = PATIENCE) -> Any:
         """Return the script's value once it is true; TimeoutError after `patience` seconds."""
-        end = time.monotonic() + patience
+        end, said = time.monotonic() + patience, self.console
         while time.monotonic() < end:
-            value = self.ask(script)
-            if value:
-                return value
+            try:
+                if value := self.ask(script):
+                    return value
+            except RuntimeError as error:  # a page that is being loaded has not what the script asks for
+                said = [str(error)]
             time.sleep(0.03)
-        raise TimeoutError(f"page: {script} did not come true in {patience:g} s; console: {self.console[:3]}")
+        raise TimeoutError(f"page: {script} did not come true in {patience:g} s; it said {said[:3]}")
 
     def key(self, key: str, *, shift: bool = False) -> None:
         """Press and let go of a key, by its name as events have it."""

@@ -15,11 +15,9 @@ from scipy.spatial.transform import Rotation
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.planar import BITS, Camera, cells, project
+from studies.interactive.tracking.planar import BITS, MARGIN, Camera, cells, project
 from studies.kinds import Array
 
-#: White margin around a marker in its cells.
-MARGIN = 1.5
 WHITE, BLACK, TABLE, SKIN, WHITEST = 225.0, 25.0, 150.0, 105.0, 255.0
 #: Iterations to the points of a raised marker.
 RAISED = 8
@@ -34,8 +32,8 @@ class Optics:
     Attributes:
         width, height, focal [px]; distance [m] to the point `target` (2,) [m] of the plane; tilt, roll [rad].
         blur, noise: standard deviations [px], [grey levels]; light: change of brightness across the picture;
-        k1: of the lens; mirrored: left and right exchanged; gamma: light, blurred by the lens, becomes a
-        value by the power 1/gamma; exposure: of light, what is brighter than the largest value being clipped.
+        k1: of the lens; gamma: light, blurred by the lens, becomes a value by the power 1/gamma;
+        exposure: of light, what is brighter than the largest value being clipped.
         shutter: time [s] from the first row of a picture to the last; the middle row is at the frame's time.
     """
 
@@ -50,7 +48,6 @@ class Optics:
     noise: float = 4.0
     light: float = 0.25
     k1: float = 0.0
-    mirrored: bool = False
     gamma: float = 2.2
     exposure: float = 1.0
     shutter: float = 0.0
@@ -120,13 +117,12 @@ class Finger:
 class Painter:
     """Draws pictures of markers through fixed optics; noise follows from `seed` and the frame's number.
 
-    samples: in each direction of a pixel, whose mean it becomes; numbered: whether the number is burned in.
+    samples: in each direction of a pixel, whose mean it becomes.
     """
 
     optics: Optics
     seed: int = 1
     samples: int = 5
-    numbered: bool = True
     _ground: Array = field(init=False)
 
     def __post_init__(self) -> None:
@@ -153,10 +149,7 @@ class Painter:
         rng = np.random.default_rng((self.seed, number))
         noise = rng.standard_normal(picture.shape, dtype=np.float32) * np.float32(optics.noise)
         done = np.clip(np.rint(seen + noise), 0, 255).astype(np.uint8)
-        if optics.mirrored:
-            done = np.ascontiguousarray(done[:, ::-1])
-        if self.numbered:
-            _burn_in(done, number)
+        _burn_in(done, number)
         return done
 
     def _marker(self, picture: Array, marker: Marker) -> None:
