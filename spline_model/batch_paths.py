@@ -187,7 +187,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     """
     scene = mechanism.driven(1.0, body)
     system = compile_scene(steady(scene) if first and has_loads(scene) else scene)
-    system.require_plain("designs")
+    system.require_dead("designs")
     model = reduced(system)
     if model is None:
         raise InvalidParameter("discretisation", "printed forces", "what the elements know")
@@ -210,7 +210,8 @@ def _solve_share(
     """
     strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
-    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")})
+    kept = {k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")}
+    bodies = bodies._replace(**kept, frames=bodies.frames._replace(lever=bodies.frames.lever.copy()))
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
     factors, held = np.linspace(0.0, 1.0, batch.torque.shape[1]), len(bodies.held)
     route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)

@@ -15,7 +15,6 @@ from spline_model.effects import (
     Bending,
     BodyDamper,
     BodyInertia,
-    Carried,
     Clamp,
     Driven,
     MixedStretching,
@@ -28,7 +27,7 @@ from spline_model.effects import (
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.followers import NO_FOLLOWERS, Followers
-from spline_model.frames import NO_FRAMES, Frames
+from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
@@ -106,26 +105,21 @@ class System:
         made: Array = self.once("springs", _stiffness) if self.scene.of(Spring) else NO_SPRINGS
         return made
 
-    @property
+    @cached_property
     def frames(self) -> Frames:
         """Frames that bodies carry."""
-        made: Frames = self.once("frames", _frames) if self.scene.of(Carried) else NO_FRAMES
-        return made
+        return Frames.of(self.scene)
 
     @property
     def prescribed(self) -> NDArray[np.int64]:
-        """Rows of the drives that hold coordinates of bodies, without props and frames."""
-        own = self.layout.poses.start + 3 * len(self.scene.own_bodies)
-        return np.flatnonzero((self.drives.prop == 0) & (self.drives.coordinate < own))
+        """Rows of the drives that are no props."""
+        return np.flatnonzero(self.drives.prop == 0)
 
-    def require_plain(self, what: str) -> None:
-        """Refuse frames that bodies carry, and followers."""
-        for has, got in (
-            (self.frames.place.size, "a hinge on a body or a load beside its centre"),
-            (self.followers.place.size, "a load that follows its body"),
-        ):
-            if has:
-                raise InvalidParameter(what, got, "none, but in statics and the motion by default")
+    def require_dead(self, what: str) -> None:
+        """Refuse followers."""
+        if self.followers.place.size:
+            expected = "dead ones, but in statics and the motion by default"
+            raise InvalidParameter(what, "a load that follows its body", expected)
 
     def spring_energy(self, poses: Array) -> Array:
         """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
@@ -221,10 +215,6 @@ class System:
         return rest
 
 
-def _frames(system: System) -> Frames:
-    return Frames.of(system.scene)
-
-
 def _followers(system: System) -> Followers:
     return Followers.of(system.scene, system.acting)
 
@@ -274,8 +264,8 @@ class _Scales:
         for start, count in layout.modes:
             unit[start : start + count] = force
         for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
-            if isinstance(constraint, Clamp | Carried):
-                unit[row : row + count] = (force, force, moment)[:count]
+            if isinstance(constraint, Clamp):
+                unit[row : row + count] = force, force, moment
             elif isinstance(constraint, Driven):
                 unit[row : row + count] = [(force, force, moment)[axis] for axis in constraint.parts]
         return unit

@@ -12,9 +12,9 @@ import numpy as np
 
 from spline_model.design import HINGE, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
-from spline_model.effects import GROUND, Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import STEADY, Sized
+from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import (
     DEFAULT_EFFECTS,
@@ -195,14 +195,11 @@ def compliant_mechanism(
     )
     built = build(names, given, design)
     frames = {each.name: each for each in built if isinstance(each, Body)}
-    # nothing else keeps the frame where a load acts from turning
-    held = [DrivenRotation(body=name, angle=0.0, beside=True) for name, each in frames.items() if each.on]
     ends: tuple[Literal["start", "end"], ...] = ("start", "end")
     clamps: list[Effect] = []
     for strip, whole, _ in design.pieces:
         for end in ends:
             clamps += _joined(strip, whole, end, frames)
-    carried = [_carried(frame) for frame in frames.values() if frame.on]
     scene = Scene(
         strips=tuple(
             Strip(
@@ -222,7 +219,7 @@ def compliant_mechanism(
             ),
             *frames.values(),
         ),
-        effects=(*(each for each in built if not isinstance(each, Body)), *held, *clamps, *carried),
+        effects=(*(each for each in built if not isinstance(each, Body)), *clamps),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
 
@@ -241,13 +238,6 @@ def _joined(
         frames[frame] = Body(name=frame, centre=np.array(place, dtype=float), joint=True, on=to)
         return [Clamp(strip=strip.name, end=end, to=frame)]
     return [Clamp(strip=strip.name, end=end, to=frame, free=True)] if frame in frames else []
-
-
-def _carried(frame: Body) -> Effect:
-    """What holds the centre of a frame where it lies at rest, on the ground or on a body."""
-    if frame.on == GROUND:
-        return DrivenDisplacement(body=frame.name, displacement=(0.0, 0.0), history=STEADY)
-    return Carried(body=frame.name, by=str(frame.on))
 
 
 def require_mechanism(value: Any) -> None:

@@ -80,13 +80,14 @@ class Body:
     """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero.
 
     joint: whether it is a frame without mass, between two pieces of a strip or at its end, or where a load
-    acts, behind all bodies; on: what carries its centre, if it is not free.
+    acts, behind all bodies; on: what carries its centre, if it is not free, and whether it then turns freely.
     """
 
     name: str
     centre: NDArray[np.float64]
     joint: bool = False
     on: str | None = None
+    turns: bool = True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -264,10 +264,10 @@ def _body_stiffness(model: Reduced, states: Array, load: Array, body: str) -> Ar
     """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
     on a body's coordinates."""
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
-    own, held = np.arange(at, at + 3), [*model.bodies.held, *model.frames.coordinates]
+    own = np.arange(at, at + 3)
     tangents = model.energy * body_tangents(model, from_unknowns(model, states), load)
     other = np.ones(tangents.shape[1], dtype=bool)
-    other[own] = other[held] = False
+    other[own] = other[model.fixed] = False
     rest = np.flatnonzero(other)
     found = tangents[:, own[:, None], own]
     if rest.size:

@@ -22,6 +22,8 @@ from __future__ import annotations
 
 import math
 
+from spline_model.frames import carry, fold, fold_tangent, spread
+from spline_model.reduced.arrays import ARMS
 from spline_model.reduced.assembly import place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
@@ -264,11 +266,32 @@ def _solve_bodies(poses, tangent, load, push):
 
 
 @part()
+def _fold(w, frames, tangent, load, arms):
+    """Fold the equations of frames, upper ones, on their bodies, whose turns draw them to their centres."""
+    for i in range(load.size):
+        for j in range(i):
+            tangent[i, j] = tangent[j, i]
+    for f in range(frames.place.shape[0]):
+        at, by = frames.place[f, 0], frames.place[f, 1]
+        for k in range(2 * (by >= 0)):
+            drawn = -w[by + 2] * w[by + 2] * arms[at + k]
+            for i in range(load.size):
+                load[i] -= tangent[i, at + k] * drawn
+    fold(load, frames, arms)
+    for f in range(frames.place.shape[0]):
+        arms[frames.place[f, 0] + 2] = 0.0  # masses have no part that forces turn
+    fold_tangent(tangent, 1.0, frames, arms)
+
+
+@part()
 def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     """Fill the accelerations (Y,) and the axial forces in y at y with rates w; sharpness: O [1/s]."""
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
     own, tangent, load = 2 * n - 6, room.tangent, room.load
+    arms = arrays.space.vectors[ARMS]
+    carry(y, bodies.frames, arms)
+    spread(w, bodies.frames, arms)
     for b in range(poses // 3):
         room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
     for i in range(load.size):
@@ -297,7 +320,14 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
         size, first = _strip_system(s, tied, grid, strips, local, room), 2 + max(tied - 1, 0)
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
+    if bodies.frames.place.size > 0:
+        _fold(w, bodies.frames, tangent, load, arms)
     _solve_bodies(poses, tangent, load, push)
+    spread(push, bodies.frames, arms)
+    for f in range(bodies.frames.place.shape[0]):
+        at, by = bodies.frames.place[f, 0], bodies.frames.place[f, 1]
+        for k in range(2 * (by >= 0)):
+            push[at + k] -= w[by + 2] * w[by + 2] * arms[at + k]
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import StripDamping
+from spline_model.frames import Frames
 from spline_model.motion.start import Motion
 from spline_model.reduced.model import Reduced, in_units
 from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
@@ -33,8 +34,7 @@ class Masses(NamedTuple):
     along x as along y, in the order of elimination; relaxation (S,) [s]; pairs (G, 4, n n): products d1 d1,
     d1 d2, d2 d1, d2 d2 of the basis. loads (F) and drives (D) of the motion, at the coordinates load_at and
     drive_at of the bodies. gain (S, K): stiffness by which axial forces are condensed, of which the
-    first ``outer`` stay beside the bodies; frames, lever: as in ``Frames``, among y; free_from: first free
-    end.
+    first ``outer`` stay beside the bodies; frames: as in ``Bodies``; free_from: first free end.
     """
 
     inertia: Array
@@ -49,8 +49,7 @@ class Masses(NamedTuple):
     drive_at: Places
     gain: Array
     across: Array
-    frames: Places
-    lever: Array
+    frames: Frames
     outer: int
     free_from: int
 
@@ -93,8 +92,7 @@ class Masses(NamedTuple):
             drive_at=drives.coordinate - begin,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
             across=across if across.any() else across[:0, :0],
-            frames=model.frames.place,
-            lever=model.frames.lever,
+            frames=model.bodies.frames,
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
@@ -205,7 +203,7 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
-    sizes |= {"C": len(masses.frames), "F": len(masses.load_at)}
+    sizes |= {"C": len(masses.frames.place), "F": len(masses.load_at)}
     return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
 
 
@@ -235,9 +233,10 @@ class Poses(NamedTuple):
     still: Annotated[Places, "0"]
 
     @classmethod
-    def of(cls, y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
-        """A state with these coordinates and velocities; inertia (Q,)."""
-        still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
+    def of(cls, y: Array, rate: Array, masses: Masses, all_bodies: int) -> Poses:
+        """A state with these coordinates and velocities."""
+        light = np.flatnonzero(masses.inertia == 0.0)
+        still = [*np.setdiff1d(light, masses.frames.carried), *range(len(rate), all_bodies)]
         poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
         return poses._replace(
             y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)

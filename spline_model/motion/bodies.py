@@ -72,10 +72,15 @@ def carry_frames(state, masses, work):
 
     arms: derivative of a frame's change, over the step and at its end, and its lever at the end.
     """
-    dy = work.dy
-    for f in range(masses.frames.shape[0]):
-        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
-        x, y, c = masses.lever[f, 0], masses.lever[f, 1], dy[body + 2]
+    dy, frames = work.dy, masses.frames
+    for f in range(frames.place.shape[0]):
+        frame, body, arm = frames.place[f, 0], frames.place[f, 1], work.arms[f]
+        if body < 0:
+            dy[frame] = dy[frame + 1] = 0.0
+            continue
+        if frames.place[f, 2] == 3:
+            dy[frame + 2] = dy[body + 2]
+        x, y, c = frames.lever[f, 0], frames.lever[f, 1], dy[body + 2]
         before, after = state.y[body + 2], state.y[body + 2] + 2.0 * math.atan(0.5 * c)
         cos, sin, slope = math.cos(before), math.sin(before), 1.0 / (1.0 + 0.25 * c * c)
         x0, y0 = cos * x - sin * y, sin * x + cos * y
@@ -90,8 +95,10 @@ def carry_frames(state, masses, work):
 def fold_frames(masses, work):
     """Add what acts on carried frames, and its derivatives, to their bodies."""
     raw, reduced, tangent = work.residual, work.reduced, work.tangent
-    for f in range(masses.frames.shape[0]):
-        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
+    for f in range(masses.frames.place.shape[0]):
+        frame, body, arm = masses.frames.place[f, 0], masses.frames.place[f, 1], work.arms[f]
+        if body < 0:
+            continue
         turn, fx, fy = body + 2, raw[frame], raw[frame + 1]
         for k in range(2):
             raw[body + k] += raw[frame + k]

@@ -185,9 +185,9 @@ def improve(strips, masses, local, work):
         if free[i] < poses:
             dy[free[i]] += x[i]
             size = max(size, abs(x[i]))
-    for f in range(masses.frames.shape[0]):
-        frame, body = masses.frames[f, 0], masses.frames[f, 1]
-        for k in range(2):
+    for f in range(masses.frames.place.shape[0]):
+        frame, body = masses.frames.place[f, 0], masses.frames.place[f, 1]
+        for k in range(2 * (body >= 0)):
             moved = work.reduced[body + k] + work.arms[f, k + 2] * work.reduced[body + 2]
             work.reduced[frame + k] = moved
     for s in range(strips.roots.size):

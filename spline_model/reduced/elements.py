@@ -15,7 +15,7 @@ from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.resolution import SMALLEST_MOMENT
 from spline_model.followers import Followers
-from spline_model.frames import Frames
+from spline_model.frames import Frames, fold, fold_tangent
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
     AXIAL,
@@ -76,27 +76,21 @@ def _defect_of(y, arrays):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
-    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives, forces on carried frames.
+    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives.
 
-    All is dimensionless. arrays, out (5,): the model to kernels, and energies as ``_gather`` left them;
-    frames: among these unknowns.
+    All is dimensionless. arrays, out (5,): the model to kernels, and energies as ``_gather`` left them.
     """
 
     model: Reduced
     arrays: Arrays
     out: Array
-    frames: Frames
 
     @classmethod
     def of(cls, system: System) -> Self:
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        size, frames = model.size + len(model.bodies.held), model.frames
-        if frames.place.size:
-            place = frames.place.copy()
-            place[:, 2] = size + 2 * np.arange(len(place))
-            size, frames = size + 2 * len(place), frames._replace(place=place)
+        size = model.size + len(model.bodies.held)
         return cls(
             system=system,
             gradient=np.empty(size),
@@ -104,13 +98,17 @@ class Elements(Followed):
             model=model,
             arrays=model.arrays(),
             out=np.zeros(5),
-            frames=frames,
         )
 
     @property
     def compiled(self) -> bool:
         """Whether a path is followed by kernels where nothing happens on it."""
-        return not (self.frames.place.size or self.followers.place.size)
+        return not self.followers.place.size
+
+    @property
+    def frames(self) -> Frames:
+        """Frames that bodies carry, among these unknowns as among y."""
+        return self.model.bodies.frames
 
     @property
     def followers(self) -> Followers:
@@ -205,13 +203,16 @@ class Elements(Followed):
         if share != 1.0:
             act(share, self.preload, arrays.bodies, arrays.strips)
         origin, target = model.drives
+        arms = self._arms(z)
         given = self.y(z), z[self.held], origin + load_factor * target, load_factor
         _gather(*given, arrays, self.out, self.gradient, self.hessian)
         if (springs := model.bodies.springs).size:
             own = slice(0, len(springs))
             self.gradient[own] += springs @ (z[own] - model.bodies.rest[own])
             self.hessian[own, own] += springs
-        self.frames.subtract(z, self.gradient, self.hessian)
+        if self.frames.place.size:
+            fold(self.gradient, self.frames, arms)
+            fold_tangent(self.hessian, 1.0, self.frames, arms)
         self.followers.subtract(z, load_factor, self.gradient, self.hessian)
         return float(self.out[BENDING]), float(self.out[AXIAL])
 
@@ -256,17 +257,12 @@ class Elements(Followed):
         drives, z = self.system.drives, np.zeros(len(self.gradient))
         z[self.place] = from_unknowns(self.model, unknowns)
         z[self.held] = unknowns[drives.row] * self.model.drive_length / self.model.energy
-        z[self.frames.rows] = unknowns[self.system.frames.rows] * self.model.length / self.model.energy
         return z
 
     def unknowns(self, z: Array) -> Array:
         """The scene's unknowns at z (N,) or (S, N)."""
         states = np.atleast_2d(z)
-        found = unknowns_of(self.model, self.y(states), states[:, self.held])
-        if self.frames.place.size:
-            force = self.model.energy / self.model.length
-            found[:, self.system.frames.rows] = states[:, self.frames.rows] * force
-        return found.reshape(*z.shape[:-1], -1)
+        return unknowns_of(self.model, self.y(states), states[:, self.held]).reshape(*z.shape[:-1], -1)
 
     def moved(self, z: Array, direction: Array) -> Array:
         """Change (Q,) of the scene's coordinates, dimensionless, with that of poses and w."""
