@@ -155,19 +155,15 @@ class Many:
 
     def empty(self, control_points: int, accuracy: float | None) -> Batch:
         """A batch of which nothing is solved yet."""
-        designs, increments = len(self.turned), self.increments
-        shape = (designs, increments + 1)
-        paths = np.linspace(0.0, self.turned, increments + 1, axis=1)
+        designs = len(self.turned)
+        paths = np.linspace(0.0, self.turned, self.increments + 1, axis=1)
+        by_state = ("torque", "stiffness", "energy", "strain", "moment_defect")
         return Batch(
             states=np.zeros(designs, dtype=np.int64),
             rotation=paths[0] if self.shared else paths,
-            centre=np.full((*shape, 2), np.nan),
-            torque=np.full(shape, np.nan),
-            stiffness=np.full(shape, np.nan),
-            energy=np.full(shape, np.nan),
-            strain=np.full(shape, np.nan),
-            inertia=np.full(shape, -1, dtype=np.int64),
-            moment_defect=np.full(shape, np.nan),
+            centre=np.full((*paths.shape, 2), np.nan),
+            **{name: np.full(paths.shape, np.nan) for name in by_state},
+            inertia=np.full(paths.shape, -1, dtype=np.int64),
             iterations=np.zeros(designs, dtype=np.int64),
             control_points=np.full(designs, control_points),
             accuracy=accuracy,

@@ -64,7 +64,7 @@ def evaluate(
         hessian[at, at] += system.springs
     if frames.place.size:
         fold(gradient, frames, arms)
-        fold_tangent(hessian, system.scales.energy / system.scales.length**2, frames, arms)
+        fold_tangent(hessian, system.scales.energy / system.scales.length**2, frames, arms, arms)
     return bending, axial
 
 

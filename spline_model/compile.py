@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -19,7 +19,6 @@ from spline_model.effects import (
     Driven,
     MixedStretching,
     SectionRotaryInertia,
-    Spring,
     Stretching,
     StripDrag,
     StripInertia,
@@ -31,7 +30,7 @@ from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import NO_SPRINGS, ClampTable, DriveTable, LoadTable, Tables, between_bodies, weight
+from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, between_bodies, frames_of, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -79,13 +78,13 @@ class System:
     @property
     def acting(self) -> LoadTable:
         """All loads that grow."""
-        return self._table("acting", LoadTable.of_all) if self.scene.followers else self.loads
+        whole = partial(LoadTable.of, followers=True)
+        return self._table("acting", whole) if self.scene.followers else self.loads
 
-    @property
+    @cached_property
     def followers(self) -> Followers:
         """Forces that turn with bodies, growing and steady."""
-        made: Followers = self.once("followers", _followers) if self.scene.followers else NO_FOLLOWERS
-        return made
+        return Followers.of(self.scene, self.acting) if self.scene.followers else NO_FOLLOWERS
 
     @property
     def has_potential(self) -> bool:
@@ -99,16 +98,15 @@ class System:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
         return self._table("weight", weight)
 
-    @property
+    @cached_property
     def springs(self) -> Array:
         """Stiffness of springs over all poses (3 B, 3 B) [N/m, N, N m]; empty where there are none."""
-        made: Array = self.once("springs", _stiffness) if self.scene.of(Spring) else NO_SPRINGS
-        return made
+        return between_bodies(self.scene, "stiffness")
 
     @cached_property
     def frames(self) -> Frames:
         """Frames that bodies carry."""
-        return Frames.of(self.scene)
+        return frames_of(self.scene)
 
     @property
     def prescribed(self) -> NDArray[np.int64]:
@@ -124,11 +122,8 @@ class System:
     def spring_energy(self, poses: Array) -> Array:
         """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
         moved = poses - self.rest[self.layout.poses]
-        return np.asarray(
-            0.5 * ((moved @ self.springs) * moved).sum(axis=-1)
-            if self.springs.size
-            else 0.0 * moved.sum(axis=-1)
-        )
+        force = moved @ self.springs if self.springs.size else 0.0 * moved
+        return np.asarray(0.5 * (force * moved).sum(axis=-1))
 
     @cached_property
     def tables(self) -> Tables:
@@ -197,11 +192,9 @@ class System:
     def is_preloaded(self) -> bool:
         """Whether weight or pre-strain act."""
         scene = self.scene
-        strains = (
-            *(e.natural_curvature for e in scene.of(Bending)),
-            *(e.natural_strain for e in scene.of(Stretching)),
-            *(e.natural_strain for e in scene.of(MixedStretching)),
-        )
+        stretching: tuple[Stretching | MixedStretching, ...] = scene.of(Stretching)
+        stretching += scene.of(MixedStretching)
+        strains = (*(e.natural_curvature for e in scene.of(Bending)), *(e.natural_strain for e in stretching))
         return any(strains) or bool(self.weight.any())
 
     @cached_property
@@ -213,14 +206,6 @@ class System:
         for body in self.scene.bodies:
             rest[self.layout.body(body.name)][:2] = body.centre
         return rest
-
-
-def _followers(system: System) -> Followers:
-    return Followers.of(system.scene, system.acting)
-
-
-def _stiffness(system: System) -> Array:
-    return between_bodies(system.scene, "stiffness")
 
 
 def compile_scene(scene: Scene) -> System:

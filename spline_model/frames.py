@@ -1,7 +1,7 @@
 """Frames that bodies carry: points at which strips are hinged to bodies or to the ground, or where loads act.
 
-Their coordinates follow from those of their bodies, r_frame = r + R(theta) o, and are no unknowns: kernels that
-are given coordinates place them, and what acts on them is folded on their bodies by the chain rule.
+Their coordinates follow from those of their bodies, r_frame = r + R(theta) o, and are no unknowns: kernels
+that are given coordinates place them, and what acts on them is folded on their bodies by the chain rule.
 """
 
 from __future__ import annotations
@@ -11,9 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.effects.boundary import GROUND
-from spline_model.scene import Scene
-from spline_model.strip.compiled import called
+from spline_model.strip.compiled import called, part
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -28,18 +26,6 @@ class Frames(NamedTuple):
 
     place: Places
     lever: Array
-
-    @classmethod
-    def of(cls, scene: Scene) -> Frames:
-        """Those of a scene, among its unknowns [m]."""
-        places, levers = [], []
-        for frame in scene.bodies:
-            if frame.on is not None:
-                on = None if frame.on == GROUND else scene.body(frame.on)
-                carrier = -1 if on is None else scene.layout.bodies[on.name]
-                places.append((scene.layout.bodies[frame.name], carrier, 2 if frame.turns else 3))
-                levers.append(frame.centre if on is None else frame.centre - on.centre)
-        return cls(np.array(places, dtype=np.int64), np.array(levers)) if places else NO_FRAMES
 
     @property
     def carried(self) -> list[int]:
@@ -57,7 +43,7 @@ class Frames(NamedTuple):
 
 @called(entered=True)
 def carry(y, frames, arms):
-    """Put frames where coordinates y have their carriers; arms: R o, at their places, for the other kernels."""
+    """Put frames where coordinates y have their carriers; arms: R o at their places, for other kernels."""
     for f in range(frames.place.shape[0]):
         at, by, x, z = frames.place[f, 0], frames.place[f, 1], frames.lever[f, 0], frames.lever[f, 1]
         if by < 0:
@@ -78,7 +64,10 @@ def spread(rate, frames, arms):
         if by < 0:
             rate[at] = rate[at + 1] = 0.0
             continue
-        rate[at], rate[at + 1] = rate[by] - arms[at + 1] * rate[by + 2], rate[by + 1] + arms[at] * rate[by + 2]
+        rate[at], rate[at + 1] = (
+            rate[by] - arms[at + 1] * rate[by + 2],
+            rate[by + 1] + arms[at] * rate[by + 2],
+        )
         if frames.place[f, 2] == 3:
             rate[at + 2] = rate[by + 2]
 
@@ -101,25 +90,55 @@ def fold(force, frames, arms):
 
 
 @called(entered=True)
-def fold_tangent(tangent, unit, frames, arms):
-    """The same of a symmetric tangent (N, N), behind that of its gradient; unit: left on the diagonal."""
+def fold_tangent(tangent, unit, frames, arms, ends):
+    """The same of a tangent (N, N), behind that of its gradient; unit: left on the diagonal.
+
+    arms, ends: of its rows and columns, the same ones but over a time step.
+    """
     for f in range(frames.place.shape[0]):
         at, by, count = frames.place[f, 0], frames.place[f, 1], frames.place[f, 2]
         for k in range(count):
-            across = 1.0 if k == 2 else arms[at] if k == 1 else -arms[at + 1]
+            row = 1.0 if k == 2 else arms[at] if k == 1 else -arms[at + 1]
+            column = 1.0 if k == 2 else ends[at] if k == 1 else -ends[at + 1]
             for j in range(tangent.shape[0] * (by >= 0)):
                 if k < 2:
                     tangent[by + k, j] += tangent[at + k, j]
-                tangent[by + 2, j] += across * tangent[at + k, j]
+                tangent[by + 2, j] += row * tangent[at + k, j]
             for j in range(tangent.shape[0] * (by >= 0)):
                 if k < 2:
                     tangent[j, by + k] += tangent[j, at + k]
-                tangent[j, by + 2] += across * tangent[j, at + k]
+                tangent[j, by + 2] += column * tangent[j, at + k]
             for j in range(tangent.shape[0]):
                 tangent[at + k, j] = tangent[j, at + k] = 0.0
             tangent[at + k, at + k] = unit
         if by >= 0:
-            tangent[by + 2, by + 2] -= arms[at + 2]
+            tangent[by + 2, by + 2] -= ends[at + 2]
+
+
+@part()
+def draw(rate, change, frames, arms):
+    """Draw frames to the centres that they turn about: add this to their accelerations, which were spread."""
+    for f in range(frames.place.shape[0]):
+        at, by = frames.place[f, 0], frames.place[f, 1]
+        for k in range(2 * (by >= 0)):
+            change[at + k] -= rate[by + 2] * rate[by + 2] * arms[at + k]
+
+
+@part()
+def fold_moving(rate, mass, force, frames, arms):
+    """Fold masses (N, N), upper ones, and forces on frames at rates."""
+    for i in range(force.size):
+        for j in range(i):
+            mass[i, j] = mass[j, i]
+    for f in range(frames.place.shape[0]):
+        at, by = frames.place[f, 0], frames.place[f, 1]
+        for k in range(2 * (by >= 0)):
+            for i in range(force.size):
+                force[i] += mass[i, at + k] * rate[by + 2] * rate[by + 2] * arms[at + k]
+    fold(force, frames, arms)
+    for f in range(frames.place.shape[0]):
+        arms[frames.place[f, 0] + 2] = 0.0  # masses have no part that forces turn
+    fold_tangent(mass, 1.0, frames, arms, arms)
 
 
 NO_FRAMES = Frames(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 2)))

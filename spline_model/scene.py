@@ -149,13 +149,8 @@ class Scene:
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""
         if kind not in self._sorted:
-            kinds = {each for each in self._kinds if issubclass(each, kind)}
-            self._sorted[kind] = tuple(effect for effect in self.effects if type(effect) in kinds)
+            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
         return self._sorted[kind]
-
-    @cached_property
-    def _kinds(self) -> set[type]:
-        return {type(effect) for effect in self.effects}
 
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:

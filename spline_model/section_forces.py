@@ -15,7 +15,7 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.scene import Scene
-from spline_model.sections import ENDS, STATIONS, Sections, by_piece, clamp_reactions, sections
+from spline_model.sections import STATIONS, Sections, by_piece, reactions, sections
 
 Array = NDArray[np.float64]
 
@@ -162,10 +162,9 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
     _stretch(mechanism, system.scene, along.axial_force, stretch)
     if moving:
         direction = rotation + np.arctan2(rest[..., 1], rest[..., 0])
-        force, reactions = _by_moments(arc, along, stretch, direction)
+        force, borne = _by_moments(arc, along, stretch, direction)
     else:
-        ends = [[clamp_reactions(system, states, name, end) for end in ENDS] for name in scene.whole]
-        force, reactions = along.shear_force, np.array(ends).transpose(2, 0, 1, 3)
+        force, borne = along.shear_force, reactions(system, states)
     return StripFields(
         arc_length=arc,
         rest_shape=rest_shape,
@@ -176,7 +175,7 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
         axial_force=along.axial_force,
         shear_force=force,
         bending_moment=along.bending_moment,
-        reactions=reactions,
+        reactions=borne,
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
         bodies=states[:, layout.poses].reshape(len(states), -1, 3)[:, : len(scene.own_bodies)],
     )

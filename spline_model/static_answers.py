@@ -18,7 +18,7 @@ from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
 from spline_model.scene import AXES
-from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, free_tips, sections
+from spline_model.sections import STATIONS, Sections, free_tips, reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,
     ErrorEstimate,
@@ -172,9 +172,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def clamp_reactions(self) -> Array:
         """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
-        names = self.system.scene.whole
-        ends = [[clamp_reactions(self.system, self.states, name, end) for end in ENDS] for name in names]
-        return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
+        return reactions(self.system, self.states)
 
     @property
     def stations(self) -> Array:

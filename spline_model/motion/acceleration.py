@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 
-from spline_model.frames import carry, fold, fold_tangent, spread
+from spline_model.frames import carry, draw, fold_moving, spread
 from spline_model.reduced.arrays import ARMS
 from spline_model.reduced.assembly import place_of, scatter
 from spline_model.strip.compiled import part
@@ -266,24 +266,6 @@ def _solve_bodies(poses, tangent, load, push):
 
 
 @part()
-def _fold(w, frames, tangent, load, arms):
-    """Fold the equations of frames, upper ones, on their bodies, whose turns draw them to their centres."""
-    for i in range(load.size):
-        for j in range(i):
-            tangent[i, j] = tangent[j, i]
-    for f in range(frames.place.shape[0]):
-        at, by = frames.place[f, 0], frames.place[f, 1]
-        for k in range(2 * (by >= 0)):
-            drawn = -w[by + 2] * w[by + 2] * arms[at + k]
-            for i in range(load.size):
-                load[i] -= tangent[i, at + k] * drawn
-    fold(load, frames, arms)
-    for f in range(frames.place.shape[0]):
-        arms[frames.place[f, 0] + 2] = 0.0  # masses have no part that forces turn
-    fold_tangent(tangent, 1.0, frames, arms)
-
-
-@part()
 def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     """Fill the accelerations (Y,) and the axial forces in y at y with rates w; sharpness: O [1/s]."""
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
@@ -321,13 +303,10 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
     if bodies.frames.place.size > 0:
-        _fold(w, bodies.frames, tangent, load, arms)
+        fold_moving(w, tangent, load, bodies.frames, arms)
     _solve_bodies(poses, tangent, load, push)
     spread(push, bodies.frames, arms)
-    for f in range(bodies.frames.place.shape[0]):
-        at, by = bodies.frames.place[f, 0], bodies.frames.place[f, 1]
-        for k in range(2 * (by >= 0)):
-            push[at + k] -= w[by + 2] * w[by + 2] * arms[at + k]
+    draw(w, push, bodies.frames, arms)
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]

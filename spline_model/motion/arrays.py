@@ -141,7 +141,7 @@ class Scratch(NamedTuple):
     of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
     and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
     along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
-    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms: of carried
+    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of
     frames, see ``spline_model.motion.bodies``; follow: values of followers.
     """
 
@@ -172,7 +172,8 @@ class Scratch(NamedTuple):
     energies: Annotated[Array, "5"]
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
-    arms: Annotated[Array, "C 6"]
+    arms: Annotated[Array, "Q"]
+    ends: Annotated[Array, "Q"]
     follow: Annotated[Array, "F"]
 
 
@@ -203,8 +204,8 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
-    sizes |= {"C": len(masses.frames.place), "F": len(masses.load_at)}
-    return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
+    sizes |= {"F": len(masses.load_at), "Y": model.size, "E": 2 * n + masses.outer}
+    return sizes | {"Q'": q + s * masses.outer}
 
 
 class Poses(NamedTuple):

@@ -52,7 +52,8 @@ def stepper(start: Start) -> Moves:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
     own = len(motion.system.scene.own_bodies)
     if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
-        raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
+        expected = "loads at centres of bodies only, with massless strips"
+        raise InvalidParameter("effects", "a load at a tip or point", expected)
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:
         raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia")

@@ -132,7 +132,7 @@ class Motion:
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
         frames, arms = self.system.frames, np.zeros(size)
         carry(z, frames, arms)
-        fold_tangent(hessian, 0.0, frames, arms)
+        fold_tangent(hessian, 0.0, frames, arms, arms)
         clamped = clamps.place[:, ROW, None] + np.arange(3)
         rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0

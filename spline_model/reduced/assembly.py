@@ -179,9 +179,10 @@ def _fold(bodies, space):
     for i in range(bodies.load.size):
         for j in range(i):
             space.tangent[i, j] = space.tangent[j, i]
-    fold(space.vectors[FORCE], bodies.frames, space.vectors[ARMS])
-    fold(space.vectors[RAW], bodies.frames, space.vectors[ARMS])
-    fold_tangent(space.tangent, 0.0, bodies.frames, space.vectors[ARMS])
+    arms = space.vectors[ARMS]
+    fold(space.vectors[FORCE], bodies.frames, arms)
+    fold(space.vectors[RAW], bodies.frames, arms)
+    fold_tangent(space.tangent, 0.0, bodies.frames, arms, arms)
 
 
 @called()

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from spline_model.newton import FLOOR, LAST, ROUND_OFF
 from spline_model.frames import fold
+from spline_model.newton import FLOOR, LAST, ROUND_OFF
 from spline_model.reduced.arrays import (
     ARMS,
     CHANGE,

@@ -111,8 +111,6 @@ def reduced(system: System) -> Reduced | None:
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
     or the spatial measure. It is made once a system.
     """
-    if not _known(system.scene):
-        return None
     made: Reduced | None = system.once("reduced", _reduced)
     return made
 
@@ -128,8 +126,10 @@ def require_reduced(system: System) -> Reduced:
     return model
 
 
-def _reduced(system: System) -> Reduced:
+def _reduced(system: System) -> Reduced | None:
     scene = system.scene
+    if not _known(scene):
+        return None
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy

@@ -16,7 +16,7 @@ from spline_model.reduced.arrays import ARMS, AXIAL, BENDING, FORCE, RAW
 from spline_model.reduced.assembly import assemble, begin, place_of
 from spline_model.reduced.beside import take_product, take_residual
 from spline_model.reduced.model import Reduced
-from spline_model.strip.compiled import called, copy, kernel
+from spline_model.strip.compiled import called, copy, kernel, part
 from spline_model.strip.element import (
     FORCE_AT,
     GRADIENT,
@@ -32,10 +32,10 @@ Array = NDArray[Any]
 
 @kernel()
 def _place_all(y, arms, bodies, shape, strips, local, out, points, forces):
-    """Frames in y, control points (S, G, 2 n) and, from the gradient, what the clamps do to the strips (S, G, 2, 3).
+    """Frames in y, control points (S, G, 2 n) and what the clamps do to the strips (S, G, 2, 3).
 
-    A clamp's force is what its two control points ask for, its moment what the inner one asks for
-    across its direction.
+    A clamp's force is what the gradient asks for at its two control points, its moment what it asks for at
+    the inner one across its direction.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
@@ -127,27 +127,28 @@ def whole_tangents(model: Reduced, y: Array, load: Array) -> tuple[Array, Array]
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
-    _assemble(y, load, model.arrays(), gradient, hessian)
+    gather(y, load, model.arrays(), gradient, hessian)
     return gradient, hessian
 
 
 @kernel()
-def _assemble(y, load, arrays, gradient, hessian):
-    bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
-    local, space = arrays.local, arrays.space
+def gather(y, load, arrays, gradient, hessian):
+    """``whole_tangents`` into zeros; energies of the last state in ``space``."""
+    bodies, strips, shape, space = arrays.bodies, arrays.strips, arrays.shape, arrays.space
     modes, own, springs = strips.compliance.shape[1], 2 * shape.order.size - 6, bodies.springs.shape[0]
+    arms = space.vectors[ARMS]
     for row in range(y.shape[0]):
+        g, h = gradient[row], hessian[row]
         begin(y[row], load[row], bodies, space)
         for i in range(bodies.rest.size):
-            gradient[row, i] = space.vectors[RAW, i]
+            g[i] = space.vectors[RAW, i]
         for i in range(springs * springs):
-            hessian[row, i // springs, i % springs] = bodies.springs[i // springs, i % springs]
+            h[i // springs, i % springs] = bodies.springs[i // springs, i % springs]
         for s in range(strips.roots.size):
             at = bodies.rest.size + s * (own + modes)
-            g, h = gradient[row], hessian[row]
-            add_strip(s, at, at, at + own, y[row], strips, shape, local, space.out, g, h)
-        fold(gradient[row], bodies.frames, space.vectors[ARMS])
-        fold_tangent(hessian[row], 0.0, bodies.frames, space.vectors[ARMS])
+            _add_strip(s, at, y[row], strips, shape, arrays.local, space.out, g, h)
+        fold(g, bodies.frames, arms)
+        fold_tangent(h, 0.0, bodies.frames, arms, arms)
 
 
 def products(model: Reduced, y: Array, load: Array, rate: Array) -> tuple[Array, Array, Array]:
@@ -188,25 +189,26 @@ def _add_strips(ends, arrays, total):
         fold(total, arrays.bodies.frames, arrays.space.vectors[ARMS])
 
 
-@called()
-def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
-    """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
+@part()
+def _add_strip(s, at, y, strips, shape, local, out, gradient, hessian):
+    """Add strip s, with w and a from y[at] on, to gradient and tangent.
 
     The axial energy is int (N eps - 1/2 c N^2) J0 du, whose derivatives these are.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
-    a = y[at + own : at + own + modes]
+    axial = at + own
+    a = y[axial : axial + modes]
     place_points(s, y[at : at + own], y, strips, local)
     evaluate_points(s, a, n, shape, strips, local, out)
     size, h, gap = to_element(s, n, 0, strips, local), local.reduced[s], local.gap[s]
     g, width = h[LAST], h.shape[1]
     for i in range(size):
-        row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
+        row = at + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
         gradient[row] += g[i]
         hessian[row, row] += h[i, i]
         for j in range(i + 1, size):
-            column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
+            column = at + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
             hessian[row, column] += h[i, j]
             hessian[column, row] += h[i, j]
         for k in range(modes):
@@ -246,8 +248,10 @@ def coordinates_by(model: Reduced, y: Array) -> Array:
 
 
 def _stepped(model: Reduced) -> Reduced:
-    """The same with strips of complex numbers, for states with a complex step."""
+    """The same with strips and frames of complex numbers, for states with a complex step."""
     own = {name: getattr(model.strips, name) + 0j for name in ("along", "numbers", "compliance")}
-    rest, frames = model.bodies.rest + 0j, model.bodies.frames
-    bodies = model.bodies._replace(rest=rest, frames=frames._replace(lever=frames.lever + 0j))
+    rest: Array = model.bodies.rest + 0j
+    lever: Array = model.bodies.frames.lever + 0j
+    frames = model.bodies.frames
+    bodies = model.bodies._replace(rest=rest, frames=frames._replace(lever=lever))
     return replace(model, bodies=bodies, strips=model.strips._replace(**own))
