@@ -119,7 +119,7 @@ class Many:
 
     def solve(self, batch: Batch, rows: NDArray[np.int64]) -> None:
         """Solve some of the designs with the control points of a batch, and write them into it."""
-        base = self.base.with_control_points(int(batch.control_points[0]))
+        base = self.base.on(1, int(batch.control_points[0]))
         model, place = _model(base, self.body, self.first), self._place
         split, small = model.strips.split, (self.given.compliance[rows] < LEAST_COMPLIANCE).any(axis=1)
         slender_ones = (small | ~model.strips.compliance[:, :split].all()) & (split > 0)

@@ -16,6 +16,7 @@ from spline_model.frames import Frames
 from spline_model.motion.start import Motion
 from spline_model.reduced.model import Reduced, in_units
 from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
+from spline_model.strip.element import FIRST, SECOND
 from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
@@ -71,7 +72,7 @@ class Masses(NamedTuple):
             np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
             for whole in (motion.mass, damped)
         )
-        basis = model.shape.d1, model.shape.d2
+        basis = model.shape.tables[FIRST : SECOND + 1]
         pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
         time = {e.strip: e.relaxation_time for e in model.system.scene.of(StripDamping)}
         c = strips.compliance
