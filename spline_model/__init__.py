@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from spline_model.modes import natural_frequencies as natural_frequencies
     from spline_model.pivot import Pivot as Pivot
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
-    from spline_model.section_forces import moving_fields as moving_fields
-    from spline_model.section_forces import static_fields as static_fields
+    from spline_model.section_forces import strip_fields as strip_fields
     from spline_model.sensitivity import sensitivities as sensitivities
     from spline_model.sequential_impulse import impulse_solver as impulse_solver
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
@@ -58,7 +57,6 @@ _HOMES = {
     "compliant_mechanism": "mechanism",
     "cross_axis_pivot": "pivot",
     "impulse_solver": "sequential_impulse",
-    "moving_fields": "section_forces",
     "natural_frequencies": "modes",
     "plate_factors": "effects.plate",
     "sensitivities": "sensitivity",
@@ -68,7 +66,7 @@ _HOMES = {
     "solve_motion": "dynamics",
     "solve_release": "dynamics",
     "solve_statics": "statics",
-    "static_fields": "section_forces",
+    "strip_fields": "section_forces",
     "swinging_slide_stiffness": "discretisation",
 }
 

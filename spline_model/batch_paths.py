@@ -119,7 +119,7 @@ class Many:
 
     def solve(self, batch: Batch, rows: NDArray[np.int64]) -> None:
         """Solve some of the designs with the control points of a batch, and write them into it."""
-        base = self.base.with_control_points(int(batch.control_points[0]))
+        base = self.base.on(1, int(batch.control_points[0]))
         model, place = _model(base, self.body, self.first), self._place
         split, small = model.strips.split, (self.given.compliance[rows] < LEAST_COMPLIANCE).any(axis=1)
         slender_ones = (small | ~model.strips.compliance[:, :split].all()) & (split > 0)
@@ -155,19 +155,15 @@ class Many:
 
     def empty(self, control_points: int, accuracy: float | None) -> Batch:
         """A batch of which nothing is solved yet."""
-        designs, increments = len(self.turned), self.increments
-        shape = (designs, increments + 1)
-        paths = np.linspace(0.0, self.turned, increments + 1, axis=1)
+        designs = len(self.turned)
+        paths = np.linspace(0.0, self.turned, self.increments + 1, axis=1)
+        by_state = ("torque", "stiffness", "energy", "strain", "moment_defect")
         return Batch(
             states=np.zeros(designs, dtype=np.int64),
             rotation=paths[0] if self.shared else paths,
-            centre=np.full((*shape, 2), np.nan),
-            torque=np.full(shape, np.nan),
-            stiffness=np.full(shape, np.nan),
-            energy=np.full(shape, np.nan),
-            strain=np.full(shape, np.nan),
-            inertia=np.full(shape, -1, dtype=np.int64),
-            moment_defect=np.full(shape, np.nan),
+            centre=np.full((*paths.shape, 2), np.nan),
+            **{name: np.full(paths.shape, np.nan) for name in by_state},
+            inertia=np.full(paths.shape, -1, dtype=np.int64),
             iterations=np.zeros(designs, dtype=np.int64),
             control_points=np.full(designs, control_points),
             accuracy=accuracy,
@@ -187,7 +183,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     """
     scene = mechanism.driven(1.0, body)
     system = compile_scene(steady(scene) if first and has_loads(scene) else scene)
-    system.require_plain("designs")
+    system.require_dead("designs")
     model = reduced(system)
     if model is None:
         raise InvalidParameter("discretisation", "printed forces", "what the elements know")
@@ -210,7 +206,8 @@ def _solve_share(
     """
     strips, bodies, preload = model.strips, model.bodies, Preload.of(model)
     own = {name: getattr(strips, name).copy() for name in ("along", "numbers", "compliance", "gain")}
-    bodies = bodies._replace(**{k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")})
+    kept = {k: getattr(bodies, k).copy() for k in ("rest", "load", "weight", "springs")}
+    bodies = bodies._replace(**kept, frames=bodies.frames._replace(lever=bodies.frames.lever.copy()))
     copies = {k: getattr(preload, k).copy() for k in ("curvature", "numbers", "bodies")}
     factors, held = np.linspace(0.0, 1.0, batch.torque.shape[1]), len(bodies.held)
     route = Route(factor=factors, origin=np.zeros(held), target=np.zeros(held), growth=1.0, passes=True)

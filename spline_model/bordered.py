@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
+from spline_model.frames import carry, fold, fold_tangent
 from spline_model.quadrature import (
     COMPLIANCE,
     CURL,
@@ -44,9 +45,11 @@ def evaluate(
     """Fill gradient (N,) and hessian (N, N) at z (N,); returns bending and axial energy [J].
 
     Equilibrium is gradient = 0: its rows are force balance, axial compatibility and, with a minus sign, the
-    constraints.
+    constraints. Frames are put into z where their bodies carry them.
     """
-    tables = system.tables
+    tables, frames, arms = system.tables, system.frames, np.empty_like(z)
+    if frames.place.size:
+        carry(z, frames, arms)
     bending, axial, _ = assemble(z, tables.points, tables.clamps, gradient, hessian, np.empty((5, 4)))
     drives, loads = tables.drives, tables.loads
     gradient[drives.row] -= z[drives.coordinate] - drives.origin - load_factor * drives.target
@@ -54,12 +57,14 @@ def evaluate(
     hessian[drives.row, drives.coordinate] = hessian[drives.coordinate, drives.row] = -1.0
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
     gradient[: tables.weight.size] -= tables.weight
-    system.frames.subtract(z, gradient, hessian)
     system.followers.subtract(z, load_factor, gradient, hessian)
     if system.springs.size:
         at = system.layout.poses
         gradient[at] += system.springs @ (z[at] - system.rest[at])
         hessian[at, at] += system.springs
+    if frames.place.size:
+        fold(gradient, frames, arms)
+        fold_tangent(hessian, system.scales.energy / system.scales.length**2, frames, arms, arms)
     return bending, axial
 
 

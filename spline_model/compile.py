@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Self, TypeVar
 
 import numpy as np
@@ -15,12 +15,10 @@ from spline_model.effects import (
     Bending,
     BodyDamper,
     BodyInertia,
-    Carried,
     Clamp,
     Driven,
     MixedStretching,
     SectionRotaryInertia,
-    Spring,
     Stretching,
     StripDrag,
     StripInertia,
@@ -28,11 +26,11 @@ from spline_model.effects import (
 from spline_model.effects.base import Constraint
 from spline_model.errors import InvalidParameter
 from spline_model.followers import NO_FOLLOWERS, Followers
-from spline_model.frames import NO_FRAMES, Frames
+from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import NO_SPRINGS, ClampTable, DriveTable, LoadTable, Tables, between_bodies, weight
+from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, between_bodies, frames_of, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -80,13 +78,13 @@ class System:
     @property
     def acting(self) -> LoadTable:
         """All loads that grow."""
-        return self._table("acting", LoadTable.of_all) if self.scene.followers else self.loads
+        whole = partial(LoadTable.of, followers=True)
+        return self._table("acting", whole) if self.scene.followers else self.loads
 
-    @property
+    @cached_property
     def followers(self) -> Followers:
         """Forces that turn with bodies, growing and steady."""
-        made: Followers = self.once("followers", _followers) if self.scene.followers else NO_FOLLOWERS
-        return made
+        return Followers.of(self.scene, self.acting) if self.scene.followers else NO_FOLLOWERS
 
     @property
     def has_potential(self) -> bool:
@@ -100,41 +98,32 @@ class System:
         """Generalised force of gravity and steady loads (Q,) [N, N m]; empty where no effect names any."""
         return self._table("weight", weight)
 
-    @property
+    @cached_property
     def springs(self) -> Array:
         """Stiffness of springs over all poses (3 B, 3 B) [N/m, N, N m]; empty where there are none."""
-        made: Array = self.once("springs", _stiffness) if self.scene.of(Spring) else NO_SPRINGS
-        return made
+        return between_bodies(self.scene, "stiffness")
 
-    @property
+    @cached_property
     def frames(self) -> Frames:
         """Frames that bodies carry."""
-        made: Frames = self.once("frames", _frames) if self.scene.of(Carried) else NO_FRAMES
-        return made
+        return frames_of(self.scene)
 
     @property
     def prescribed(self) -> NDArray[np.int64]:
-        """Rows of the drives that hold coordinates of bodies, without props and frames."""
-        own = self.layout.poses.start + 3 * len(self.scene.own_bodies)
-        return np.flatnonzero((self.drives.prop == 0) & (self.drives.coordinate < own))
+        """Rows of the drives that are no props."""
+        return np.flatnonzero(self.drives.prop == 0)
 
-    def require_plain(self, what: str) -> None:
-        """Refuse frames that bodies carry, and followers."""
-        for has, got in (
-            (self.frames.place.size, "a hinge on a body or a load beside its centre"),
-            (self.followers.place.size, "a load that follows its body"),
-        ):
-            if has:
-                raise InvalidParameter(what, got, "none, but in statics and the motion by default")
+    def require_dead(self, what: str) -> None:
+        """Refuse followers."""
+        if self.followers.place.size:
+            expected = "dead ones, but in statics and the motion by default"
+            raise InvalidParameter(what, "a load that follows its body", expected)
 
     def spring_energy(self, poses: Array) -> Array:
         """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
         moved = poses - self.rest[self.layout.poses]
-        return np.asarray(
-            0.5 * ((moved @ self.springs) * moved).sum(axis=-1)
-            if self.springs.size
-            else 0.0 * moved.sum(axis=-1)
-        )
+        force = moved @ self.springs if self.springs.size else 0.0 * moved
+        return np.asarray(0.5 * (force * moved).sum(axis=-1))
 
     @cached_property
     def tables(self) -> Tables:
@@ -203,11 +192,9 @@ class System:
     def is_preloaded(self) -> bool:
         """Whether weight or pre-strain act."""
         scene = self.scene
-        strains = (
-            *(e.natural_curvature for e in scene.of(Bending)),
-            *(e.natural_strain for e in scene.of(Stretching)),
-            *(e.natural_strain for e in scene.of(MixedStretching)),
-        )
+        stretching: tuple[Stretching | MixedStretching, ...] = scene.of(Stretching)
+        stretching += scene.of(MixedStretching)
+        strains = (*(e.natural_curvature for e in scene.of(Bending)), *(e.natural_strain for e in stretching))
         return any(strains) or bool(self.weight.any())
 
     @cached_property
@@ -219,18 +206,6 @@ class System:
         for body in self.scene.bodies:
             rest[self.layout.body(body.name)][:2] = body.centre
         return rest
-
-
-def _frames(system: System) -> Frames:
-    return Frames.of(system.scene)
-
-
-def _followers(system: System) -> Followers:
-    return Followers.of(system.scene, system.acting)
-
-
-def _stiffness(system: System) -> Array:
-    return between_bodies(system.scene, "stiffness")
 
 
 def compile_scene(scene: Scene) -> System:
@@ -274,8 +249,8 @@ class _Scales:
         for start, count in layout.modes:
             unit[start : start + count] = force
         for constraint, (row, count) in zip(self.scene.of(Constraint), layout.multipliers, strict=True):
-            if isinstance(constraint, Clamp | Carried):
-                unit[row : row + count] = (force, force, moment)[:count]
+            if isinstance(constraint, Clamp):
+                unit[row : row + count] = force, force, moment
             elif isinstance(constraint, Driven):
                 unit[row : row + count] = [(force, force, moment)[axis] for axis in constraint.parts]
         return unit

@@ -18,6 +18,7 @@ from spline_model.effects.elastic import Taper
 from spline_model.errors import (
     InvalidParameter,
     is_finite,
+    require_choice,
     require_finite,
     require_not_negative,
     require_positive,
@@ -95,9 +96,8 @@ class StripDesign:
     tip_joint: str = CLAMP
 
     def __post_init__(self) -> None:
-        for name, joint in (("root_joint", self.root_joint), ("tip_joint", self.tip_joint)):
-            if joint not in JOINTS:
-                raise InvalidParameter(f"{name} of {self.name}", joint, " or ".join(JOINTS))
+        require_choice(f"root_joint of {self.name}", self.root_joint, JOINTS)
+        require_choice(f"tip_joint of {self.name}", self.tip_joint, JOINTS)
         if self.tip is None and self.tip_joint != CLAMP:
             raise InvalidParameter(f"tip_joint of {self.name}", self.tip_joint, "clamp of a free end")
         sides = (self.width, self.thickness, self.width_end, self.thickness_end)
@@ -152,8 +152,7 @@ class StripDesign:
         """Arc length at rest [m]."""
         if self.rise == 0.0:
             return self.chord
-        half = 2.0 * math.atan2(2.0 * abs(self.rise), self.chord)
-        return self.chord * half / math.sin(half)
+        return self.chord * self.opening / math.sin(self.opening)
 
     @property
     def flexural_rigidity(self) -> float:

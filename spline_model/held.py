@@ -18,6 +18,7 @@ from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, reduced
 from spline_model.reduced.preload import Preload
 from spline_model.reduced.states import unknowns_of
+from spline_model.strip.element import STRETCHING
 
 Array = NDArray[np.float64]
 
@@ -207,7 +208,7 @@ def _held_model(mechanism: Mechanism, body: str | None) -> Reduced | None:
         return None
     system = compile_scene(mechanism.driven(1.0, body))
     model = reduced(system)
-    if model is None or model.strips.stretching.any():
+    if model is None or model.strips.numbers[:, STRETCHING].any():
         return None
     if (model.strips.compliance < LEAST_HELD_COMPLIANCE).any():
         return None

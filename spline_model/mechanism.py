@@ -12,9 +12,9 @@ import numpy as np
 
 from spline_model.design import HINGE, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
-from spline_model.effects import GROUND, Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation
+from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
-from spline_model.effects.boundary import STEADY, Sized
+from spline_model.effects.boundary import Sized
 from spline_model.effects.elastic import CURLING
 from spline_model.effects.registry import (
     DEFAULT_EFFECTS,
@@ -54,19 +54,14 @@ class Mechanism:
         )
         return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
-    def with_control_points(self, control_points: int | None) -> Self:
-        """The same mechanism with so many control points a strip."""
-        if control_points == self.design.discretisation.control_points:
-            return self
-        return self.with_discretisation(control_points=control_points)
-
     def on(self, segments: int, control_points: int) -> Self:
         """The same mechanism with so many segments a strip, of so many control points, and what goes with
         them."""
         grid = self.design.discretisation
-        if (segments, control_points) == (grid.segments, grid.points):
-            return self.with_control_points(control_points)
-        own = {"axial_modes": None, "gauss_points": None}
+        if (segments, control_points) == (grid.segments, grid.control_points):
+            return self
+        same = (segments, control_points) == (grid.segments, grid.points)
+        own = {} if same else {"axial_modes": None, "gauss_points": None}
         return self.with_discretisation(segments=segments, control_points=control_points, **own)
 
     def in_motion(self) -> Self:
@@ -88,18 +83,15 @@ class Mechanism:
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
-        return self.with_effects(drive)
+        return self.scene.with_effects(drive)
 
     def propped(self, turned: bool = False, body: str | None = None) -> Self:
         """The same with props where rigid motions are free beside a drive of a rotation, if it is turned."""
         if not loose(self.scene):
             return self
         drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
-        return replace(self, scene=self.with_effects(*props_of(self.with_effects(*drives))))
-
-    def with_effects(self, *more: Effect) -> Scene:
-        """The scene with some effects more."""
-        return self.scene.with_effects(*more)
+        scene = self.scene
+        return replace(self, scene=scene.with_effects(*props_of(scene.with_effects(*drives))))
 
     def released(self) -> Scene:
         """The scene in motion (``in_motion``), without the drives that hold the start alone.
@@ -195,14 +187,11 @@ def compliant_mechanism(
     )
     built = build(names, given, design)
     frames = {each.name: each for each in built if isinstance(each, Body)}
-    # nothing else keeps the frame where a load acts from turning
-    held = [DrivenRotation(body=name, angle=0.0, beside=True) for name, each in frames.items() if each.on]
     ends: tuple[Literal["start", "end"], ...] = ("start", "end")
     clamps: list[Effect] = []
     for strip, whole, _ in design.pieces:
         for end in ends:
             clamps += _joined(strip, whole, end, frames)
-    carried = [_carried(frame) for frame in frames.values() if frame.on]
     scene = Scene(
         strips=tuple(
             Strip(
@@ -222,7 +211,7 @@ def compliant_mechanism(
             ),
             *frames.values(),
         ),
-        effects=(*(each for each in built if not isinstance(each, Body)), *held, *clamps, *carried),
+        effects=(*(each for each in built if not isinstance(each, Body)), *clamps),
     )
     return Mechanism(design=design, effects=names, parameters=given, scene=scene)
 
@@ -241,13 +230,6 @@ def _joined(
         frames[frame] = Body(name=frame, centre=np.array(place, dtype=float), joint=True, on=to)
         return [Clamp(strip=strip.name, end=end, to=frame)]
     return [Clamp(strip=strip.name, end=end, to=frame, free=True)] if frame in frames else []
-
-
-def _carried(frame: Body) -> Effect:
-    """What holds the centre of a frame where it lies at rest, on the ground or on a body."""
-    if frame.on == GROUND:
-        return DrivenDisplacement(body=frame.name, displacement=(0.0, 0.0), history=STEADY)
-    return Carried(body=frame.name, by=str(frame.on))
 
 
 def require_mechanism(value: Any) -> None:

@@ -198,8 +198,7 @@ def _modes(
     if held:
         scene = scene.with_effects(DrivenRotation(body=mechanism.design.body_named(body), angle=0.0))
     system = compile_scene(scene)
-    if system.followers.place.size:
-        raise InvalidParameter("effects", "a load that follows its body", "dead ones for natural frequencies")
+    system.require_dead("effects")
     layout = system.layout
     try:
         z = static_state(mechanism, rotation, increments, body)[: layout.size]
@@ -273,14 +272,10 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
 
     Axial forces that comply are eliminated; strips that cannot stretch are constraints.
     """
-    y, strips, poses = from_unknowns(model, z), model.strips, len(model.bodies.rest)
-    (gradient,), (hessian,) = whole_tangents(model, y[None])
-    gradient[:poses] -= (model.bodies.load + model.bodies.weight)[:poses]
-    by, bend = model.frames.spread(y, gradient)
-    hessian = model.energy * (by.T @ hessian @ by + bend)
+    y, strips = from_unknowns(model, z), model.strips
+    hessian = model.energy * whole_tangents(model, y[None], np.ones(1))[1][0]
     axial = [np.arange(model.size)[model.places(s)[1]] for s in range(len(strips.compliance))]
-    fixed = np.concatenate([model.bodies.held, model.frames.coordinates, *axial])
-    free = np.setdiff1d(np.arange(model.size), fixed)
+    free = np.delete(np.arange(model.size), np.concatenate([model.fixed, *axial]).astype(int))
     stiffness, rows = hessian[np.ix_(free, free)], [hessian[:0, free]]
     slide = np.zeros_like(stiffness)
     for places, compliance in zip(axial, strips.compliance, strict=True):
@@ -294,7 +289,7 @@ def _linear(model: Reduced, z: Array) -> tuple[Array, Array, Array, Array]:
             stiffness += share
             if slides:
                 slide += share
-    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y) @ by[:, free]
+    return stiffness, slide, np.concatenate(rows), coordinates_by(model, y)[:, free]
 
 
 def _sorted_modes(stiffness: Array, mass: Array, rigid: int) -> tuple[Array, Array]:

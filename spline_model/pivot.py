@@ -173,12 +173,17 @@ def ends_at_rest(
     x, y, zero = length * np.cos(inclination), length * np.sin(inclination), 0.0 * length
     root = 2.0 * crossing_ratio * x
     strips = ((zero, zero), (x, y)), ((root, zero), (root - x, y))
-    return [[turned(*point, orientation) for point in strip] for strip in strips]
+    c, s = np.cos(orientation), np.sin(orientation)
+    return [[_turned_by(c, s, *point) for point in strip] for strip in strips]
 
 
 def turned(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
     """A point turned about the origin; numbers or arrays."""
-    c, s = np.cos(angle), np.sin(angle)
+    return _turned_by(np.cos(angle), np.sin(angle), x, y)
+
+
+def _turned_by(c: Any, s: Any, x: Any, y: Any) -> tuple[Any, Any]:
+    """The same by cosine and sine."""
     return c * x - s * y, s * x + c * y
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property, wraps
 from typing import Any, TypeVar
 
@@ -15,8 +15,8 @@ def read_only(given: T) -> T:
     """The same, its arrays no longer to be written: an array, or what holds some by name or in order."""
     if isinstance(given, np.ndarray):
         given.flags.writeable = False
-    elif isinstance(given, Mapping | tuple):
-        for each in given.values() if isinstance(given, Mapping) else given:
+    elif isinstance(given, dict | tuple):
+        for each in given.values() if isinstance(given, dict) else given:
             read_only(each)
     return given
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.effects import Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
+from spline_model.effects import Clamp, Driven, DrivenDisplacement, DrivenRotation, Spring
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import GROUND
 from spline_model.errors import InvalidParameter
@@ -36,10 +36,10 @@ def props_of(scene: Scene) -> list[Constraint]:
     """Props where rigid motions are free, to stand behind all other constraints."""
     parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
     rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
-    for each in scene.of(Carried):
+    for frame in (body for body in scene.bodies if body.on is not None):
         for axis in range(2):
-            point = _row(scene, parts, each.by, axis, scene.body(each.body).centre)
-            rows.append(_row(scene, parts, each.body, axis) - point)
+            at = 0.0 if frame.on == GROUND else _row(scene, parts, str(frame.on), axis, frame.centre)
+            rows.append(_row(scene, parts, frame.name, axis) - at)
     for spring in scene.of(Spring):
         for axis in range(3):
             if spring.stiffness[axis] > 0.0:
@@ -82,6 +82,7 @@ def loose(scene: Scene) -> list[list[Body]]:
     for clamp in scene.of(Constraint):
         if isinstance(clamp, Clamp):
             ends.setdefault(clamp.strip, []).append(clamp.to)
+    ends |= {body.name: [body.name, body.on] for body in scene.bodies if body.on and not body.turns}
     for first, *others in ends.values():
         for other in others:
             at[root(other)] = root(first)

@@ -80,13 +80,14 @@ class Body:
     """A rigid body, given by its centre at rest (2,) [m]; its rotation at rest is zero.
 
     joint: whether it is a frame without mass, between two pieces of a strip or at its end, or where a load
-    acts, behind all bodies; on: what carries its centre, if it is not free.
+    acts, behind all bodies; on: what carries its centre, if it is not free, and whether it then turns freely.
     """
 
     name: str
     centre: NDArray[np.float64]
     joint: bool = False
     on: str | None = None
+    turns: bool = True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -148,13 +149,8 @@ class Scene:
     def of(self, kind: type[Kind]) -> tuple[Kind, ...]:
         """The scene's effects of this class, in scene order; sorted out once."""
         if kind not in self._sorted:
-            kinds = {each for each in self._kinds if issubclass(each, kind)}
-            self._sorted[kind] = tuple(effect for effect in self.effects if type(effect) in kinds)
+            self._sorted[kind] = tuple(effect for effect in self.effects if isinstance(effect, kind))
         return self._sorted[kind]
-
-    @cached_property
-    def _kinds(self) -> set[type]:
-        return {type(effect) for effect in self.effects}
 
     @cached_property
     def _sorted(self) -> dict[type, tuple[Any, ...]]:

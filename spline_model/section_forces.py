@@ -11,13 +11,15 @@ from spline_model.basis import SlideModes
 from spline_model.bordered import evaluate
 from spline_model.compile import System, compile_scene
 from spline_model.effects import GROUND, MixedStretching
-from spline_model.errors import InvalidParameter
+from spline_model.errors import InvalidParameter, require_choice
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.motion.start import axial_rigidity
 from spline_model.scene import Scene
-from spline_model.sections import ENDS, STATIONS, Sections, by_piece, clamp_reactions, sections
+from spline_model.sections import STATIONS, Sections, by_piece, reactions, sections
 
 Array = NDArray[np.float64]
+
+STATIC, MOVING, _ = ANALYSES = ("static", "release", "modes")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,14 +50,17 @@ class StripFields:
     bodies: Array
 
 
-def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Return the fields of static states along the strips.
+def strip_fields(mechanism: Mechanism, states: Array, analysis: str = "static") -> StripFields:
+    """Return the fields of states along the strips.
 
     Parameters
     ----------
     mechanism : Mechanism
     states : (S, N) m, rad and N
         Unknowns of S states, as solutions hold them; the multiplier of a drive at the end is ignored.
+    analysis : str
+        "static" (default), "release" for the states of a motion, or "modes" for states that modes are about:
+        static ones without what is released in a motion.
 
     Returns
     -------
@@ -65,12 +70,17 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     Raises
     ------
     InvalidParameter
-        States of another size than the mechanism's.
+        States of another size than the mechanism's, or another analysis.
 
     Notes
     -----
-    Shear force and reactions follow from balance with the clamps: exact but for the residual of the solver.
-    N and M follow from the strains; they have the error of too few control points.
+    N and M follow from the strains; they have the error of too few control points. Shear force and reactions
+    of a static state follow from balance with the clamps: exact but for the residual of the solver. Inertia
+    is not among the states of a motion: there the shear force is that of the moments' balance in a
+    shear-rigid strip without rotary inertia of its sections, V = -M' / stretch (' = d/ds0), one order less
+    accurate than M, and the reactions are the section forces at the ends, zero at a free one but for that
+    error. Its axial forces are those of the shape, as some integrators keep none; of inextensible strips
+    those that the states hold.
 
     References
     ----------
@@ -81,59 +91,16 @@ def static_fields(mechanism: Mechanism, states: Array) -> StripFields:
     With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
 
     >>> path = solve_statics(pivot, rotation=0.1, increments=1)
-    >>> static_fields(pivot, path.states).bending_moment.shape[:2]
+    >>> strip_fields(pivot, path.states).bending_moment.shape[:2]
     (2, 2)
-    """
-    require_mechanism(mechanism)
-    return _fields(mechanism, mechanism.scene, states, moving=False)
-
-
-def mode_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Fields of the static states (S, N) that modes are about: without what is released in a motion."""
-    return _fields(mechanism, mechanism.released(), states, moving=False)
-
-
-def moving_fields(mechanism: Mechanism, states: Array) -> StripFields:
-    """Return the fields of the states of a motion along the strips.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-    states : (T, N) m, rad and N
-        Unknowns of T records.
-
-    Returns
-    -------
-    StripFields
-        Arrays (T, G, P) of G strips at P stations: axial force, shear force, moment and more.
-
-    Raises
-    ------
-    InvalidParameter
-        States of another size than the mechanism's.
-
-    Notes
-    -----
-    Inertia is not among the states: the shear force is that of the moments' balance in a
-    shear-rigid strip without rotary inertia of its sections, V = -M' / stretch (' = d/ds0),
-    one order less accurate than M, and the reactions are the section forces at the ends, zero
-    at a free one but for that error. Axial forces are those of the shape, as some integrators
-    keep none; of inextensible strips those that the states hold.
-
-    References
-    ----------
-    Reissner, Zeitschrift fuer angewandte Mathematik und Physik 23 (1972), for the balance of a strip.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
-
     >>> motion = solve_release(pivot, start=0.1, duration=1e-3, step=1e-4, records=2, check=False)
-    >>> moving_fields(pivot, motion.states).shear_force.shape[:2]
+    >>> strip_fields(pivot, motion.states, "release").shear_force.shape[:2]
     (3, 2)
     """
     require_mechanism(mechanism)
-    return _fields(mechanism, mechanism.released(), states, moving=True)
+    require_choice("analysis", analysis, ANALYSES)
+    scene = mechanism.scene if analysis == STATIC else mechanism.released()
+    return _fields(mechanism, scene, states, moving=analysis == MOVING)
 
 
 def _known(system: System, states: Array) -> Array:
@@ -162,10 +129,9 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
     _stretch(mechanism, system.scene, along.axial_force, stretch)
     if moving:
         direction = rotation + np.arctan2(rest[..., 1], rest[..., 0])
-        force, reactions = _by_moments(arc, along, stretch, direction)
+        force, borne = _by_moments(arc, along, stretch, direction)
     else:
-        ends = [[clamp_reactions(system, states, name, end) for end in ENDS] for name in scene.whole]
-        force, reactions = along.shear_force, np.array(ends).transpose(2, 0, 1, 3)
+        force, borne = along.shear_force, reactions(system, states)
     return StripFields(
         arc_length=arc,
         rest_shape=rest_shape,
@@ -176,7 +142,7 @@ def _fields(mechanism: Mechanism, scene: Scene, states: Array, *, moving: bool) 
         axial_force=along.axial_force,
         shear_force=force,
         bending_moment=along.bending_moment,
-        reactions=reactions,
+        reactions=borne,
         rest_bodies=np.array([body.centre for body in mechanism.design.bodies]).reshape(-1, 2),
         bodies=states[:, layout.poses].reshape(len(states), -1, 3)[:, : len(scene.own_bodies)],
     )

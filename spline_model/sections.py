@@ -154,6 +154,12 @@ def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Arra
     return np.zeros((len(states), 3)) if rows is None else states[:, rows]
 
 
+def reactions(system: System, states: Array) -> Array:
+    """Those of root and tip of all strips (S, G, 2, 3)."""
+    ends = [[clamp_reactions(system, states, name, end) for end in ENDS] for name in system.scene.whole]
+    return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
+
+
 def free_tips(system: System, states: Array) -> dict[str, Array]:
     """x, y [m] of the free ends, and how far their sections have turned since rest [rad], (S, 3) by strip.
 

@@ -95,7 +95,7 @@ def sensitivities(
     given = _stepped(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
-    system.require_plain("asked")
+    system.require_dead("asked")
     z = solution.states
     model, base = _model_of(system, z), Given.of(asked.design)
     units = np.full(len(parameters), model.length), np.full(len(parameters), model.energy)
@@ -103,7 +103,7 @@ def sensitivities(
     models = [of_design(model, designs, p) for p in range(len(parameters))]
     changes, rate = _differentiate(model, models, solution, designs.start[:, model.bodies.held].imag / STEP)
     y = from_unknowns(model, z) + 1j * STEP * changes
-    force, product, energies = _products(models, y, rate)
+    force, product, energies = _products(models, y, solution.load_factor, rate)
     reaction = force[..., model.bodies.held]
     unknowns = np.stack([unknowns_of(*each) for each in zip(models, y, reaction, strict=True)])
     states = _quantity(unknowns)
@@ -151,9 +151,9 @@ def _model_of(system: System, z: Array) -> Reduced:
     return model
 
 
-def _products(models: Sequence[Reduced], y: Complex, rate: Array) -> list[Complex]:
+def _products(models: Sequence[Reduced], y: Complex, load: Array, rate: Array) -> list[Complex]:
     """``products`` of P designs at their states (P, S, Y) along the same rates (S, Y)."""
-    found = (products(model, each, rate + 0j) for model, each in zip(models, y, strict=True))
+    found = (products(model, each, load, rate + 0j) for model, each in zip(models, y, strict=True))
     return [np.stack(each) for each in zip(*found, strict=True)]
 
 
@@ -162,15 +162,14 @@ def _differentiate(
 ) -> tuple[Array, Array]:
     """Derivatives (P, S, Y) by the parameters, ``held`` (P, D) of held coordinates, and (S, Y) by the
     rotation."""
-    z = solution.states
-    y, bodies, poses = from_unknowns(model, z), model.bodies, len(model.bodies.rest)
-    left, tangent = whole_tangents(model, y)
-    force = _products(models, np.repeat(y[None], len(models), axis=0) + 0j, 0.0 * y)[0]
-    left[:, :poses] -= np.multiply.outer(solution.load_factor, bodies.load[:poses]) + bodies.weight[:poses]
+    z, load, bodies = solution.states, solution.load_factor, model.bodies
+    y = from_unknowns(model, z)
+    left, tangent = whole_tangents(model, y, load)
+    force = _products(models, np.repeat(y[None], len(models), axis=0) + 0j, load, 0.0 * y)[0]
     count, unit = model.system.layout.coordinate_count, model.system.scales.unit
     again = unknowns_of(model, y, np.zeros((len(y), len(bodies.held))))
     apart = np.abs(again - z)[:, :count] / unit[:count]
-    free = np.setdiff1d(np.arange(model.size), bodies.held)
+    free = np.delete(np.arange(model.size), model.fixed)
     wrong = np.maximum(np.abs(left[:, free]).max(axis=1), apart.max(axis=1))
     if not wrong.max() <= LARGEST_RESIDUAL:  # what of a residual moves nothing is round-off of stiff strips
         moved = np.linalg.solve(tangent[:, free[:, None], free], left[:, free, None])[..., 0]

@@ -206,7 +206,7 @@ def impulse_solver(
     if mechanism.design.bodies:
         name = mechanism.design.body_named(body)
         drives = DrivenDisplacement(body=name, displacement=(0.0, 0.0)), DrivenRotation(body=name, angle=0.0)
-        scene = mechanism.with_effects(*drives)
+        scene = mechanism.scene.with_effects(*drives)
     return ImpulseSolver(mechanism, compile_scene(scene), form=form, sweeps=sweeps, tolerance=tolerance)
 
 

@@ -18,7 +18,7 @@ from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
 from spline_model.scene import AXES
-from spline_model.sections import ENDS, STATIONS, Sections, clamp_reactions, free_tips, sections
+from spline_model.sections import STATIONS, Sections, free_tips, reactions, sections
 from spline_model.solution import (  # noqa: F401 - types of fields that are inherited
     CriticalPoint,
     ErrorEstimate,
@@ -172,9 +172,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def clamp_reactions(self) -> Array:
         """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
-        names = self.system.scene.whole
-        ends = [[clamp_reactions(self.system, self.states, name, end) for end in ENDS] for name in names]
-        return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
+        return reactions(self.system, self.states)
 
     @property
     def stations(self) -> Array:
@@ -264,10 +262,10 @@ def _body_stiffness(model: Reduced, states: Array, load: Array, body: str) -> Ar
     """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
     on a body's coordinates."""
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
-    own, held = np.arange(at, at + 3), [*model.bodies.held, *model.frames.coordinates]
+    own = np.arange(at, at + 3)
     tangents = model.energy * body_tangents(model, from_unknowns(model, states), load)
     other = np.ones(tangents.shape[1], dtype=bool)
-    other[own] = other[held] = False
+    other[own] = other[model.fixed] = False
     rest = np.flatnonzero(other)
     found = tangents[:, own[:, None], own]
     if rest.size:

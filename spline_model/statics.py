@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,19 +38,7 @@ METHODS = ("condensed", "multipliers")
 CONTROLS = ("load", "arc-length")
 
 
-def solve_statics(
-    pivot: Pivot,
-    *,
-    rotation: float | Sequence[float],
-    increments: int = 20,
-    order: str = LOADS_FIRST,
-    method: str = "condensed",
-    accuracy: float | None = None,
-    branch: str = "primary",
-    check: bool = True,
-    raise_on_failure: bool = True,
-    progress: Progress | None = None,
-) -> StaticSolution:
+def solve_statics(pivot: Pivot, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
     """Rotate the body of a pivot from 0 to `rotation` in equal increments.
 
     Parameters
@@ -57,27 +46,8 @@ def solve_statics(
     pivot : Pivot
     rotation : float or sequence of float, rad
         End of the path, or ends of several legs, one after the other.
-    increments : int, default 20
-        Increments of each leg.
-    order : str
-        "loads first" (default) raises loads with the body held, then they are constant. "together", and
-        always with driven displacements, raises them with abs(rotation) over the largest one of the path.
-        With rotation 0 the body is held and the loads grow from 0 to 1.
-    method : str
-        "condensed" (default) is compiled; clamps are solved and strips condensed, where the scene allows it.
-        "multipliers" is the bordered system of the paper. Both agree to 1e-10.
-    accuracy : float, 1, default None
-        Wanted relative error over the path of all quantities of ``spline_model.solution.ErrorEstimate``.
-        Control points, axial modes and quadrature are raised until the estimate is below it. Default: 1e-4
-        for a pivot without a number of control points, else no estimate.
-    branch : str
-        "primary" (default), or "follow" the other path at a bifurcation.
-    check : bool, default True
-        Confirm critical points and an early end by more control points (``spline_model.confirmed``).
-    raise_on_failure : bool, default True
-        Raise an error for a path that ends early, or return it with its status.
-    progress : callable, default None
-        Called as progress(done, total).
+    options
+        Keywords of `solve_mechanism`: `increments`, `order`, `method`, `accuracy` and more.
 
     Returns
     -------
@@ -86,10 +56,8 @@ def solve_statics(
 
     Raises
     ------
-    InvalidParameter
-        A value outside its range.
-    ConvergenceError
-        The path ended early, or the accuracy was not reached; the error has the converged part.
+    InvalidParameter, ConvergenceError
+        As in `solve_mechanism`.
 
     References
     ----------
@@ -106,18 +74,7 @@ def solve_statics(
     0.1633 N m
     """
     finite_numbers("rotation", rotation, "rad")  # a pivot is always driven
-    return solve_mechanism(
-        pivot,
-        rotation=rotation,
-        increments=increments,
-        order=order,
-        method=method,
-        branch=branch,
-        accuracy=accuracy,
-        check=check,
-        raise_on_failure=raise_on_failure,
-        progress=progress,
-    )
+    return solve_mechanism(pivot, rotation=rotation, **options)
 
 
 def solve_mechanism(
@@ -146,18 +103,35 @@ def solve_mechanism(
         Rotated and reported body; None is the only one.
     rotation : float or sequence of float, rad, default None
         Prescribed rotation; None leaves all bodies to the loads.
-    increments, order, method, branch, raise_on_failure, progress
-        As in `solve_statics`.
+    increments : int, default 20
+        Increments of each leg, or of the loads.
+    order : str
+        "loads first" (default) raises loads with the body held, then they are constant. "together", and
+        always with driven displacements, raises them with abs(rotation) over the largest one of the path.
+        With rotation 0 the body is held and the loads grow from 0 to 1.
+    method : str
+        "condensed" (default) is compiled; clamps are solved and strips condensed, where the scene allows it.
+        "multipliers" is the bordered system of the paper. Both agree to 1e-10.
     control : str
         "load" (default) prescribes the load factors. "arc-length" follows the path through limit points;
         then `increments` is for the first step only.
+    branch : str
+        "primary" (default), or "follow" the other path at a bifurcation.
     end : float, 1, default 1
         Last load factor. With another one, or with "arc-length", loads and the last rotation grow together.
-    accuracy, check
-        As in `solve_statics`; with "arc-length" the accuracy is that of the last state.
+    accuracy : float, 1, default None
+        Wanted relative error over the path of all quantities of ``spline_model.solution.ErrorEstimate``, with
+        "arc-length" that of the last state. Control points, axial modes and quadrature are raised until the
+        estimate is below it. Default: 1e-4 for a pivot without a number of control points, else no estimate.
     starts : bool, default False
         A motion starts at the end: rigid motions that nothing holds are held until then. Otherwise a load
         along one raises InvalidParameter.
+    check : bool, default True
+        Confirm critical points and an early end by more control points (``spline_model.confirmed``).
+    raise_on_failure : bool, default True
+        Raise an error for a path that ends early, or return it with its status.
+    progress : callable, default None
+        Called as progress(done, total).
 
     Returns
     -------
@@ -169,7 +143,7 @@ def solve_mechanism(
     InvalidParameter
         A value outside its range, or a load along a free rigid motion.
     ConvergenceError
-        As in `solve_statics`.
+        The path ended early, or the accuracy was not reached; the error has the converged part.
 
     References
     ----------

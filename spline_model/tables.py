@@ -19,6 +19,7 @@ from spline_model.effects import (
 )
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import STEADY, History, Sized
+from spline_model.frames import NO_FRAMES, Frames
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
 
@@ -125,22 +126,28 @@ class LoadTable(NamedTuple):
     factors: Array
 
     @classmethod
-    def of(cls, scene: Scene) -> LoadTable:
-        """Dead forces and moments on bodies that grow, one row a component."""
+    def of(cls, scene: Scene, followers: bool = False) -> LoadTable:
+        """Dead forces and moments on bodies that grow, and ``followers``, one row a component."""
         growing = [load for load in scene.of(Sized) if not load.steady]
-        if scene.followers:
+        if not followers:
             growing = [load for load in growing if not getattr(load, "follower", False)]
         return _table_of_loads(scene, growing) if growing else NO_LOADS
-
-    @classmethod
-    def of_all(cls, scene: Scene) -> LoadTable:
-        """The same with followers."""
-        return _table_of_loads(scene, [load for load in scene.of(Sized) if not load.steady])
 
     def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
         """Some of the rows."""
         own = {name: getattr(self, name)[kept] for name in ("coordinate", "value", "turns", "first", "pairs")}
         return self._replace(**own)
+
+
+def frames_of(scene: Scene) -> Frames:
+    """Frames that bodies of a scene carry, among its unknowns [m]."""
+    places, levers = [], []
+    for frame in (body for body in scene.bodies if body.on is not None):
+        on = None if frame.on == GROUND else scene.body(str(frame.on))
+        carrier = -1 if on is None else scene.layout.bodies[on.name]
+        places.append((scene.layout.bodies[frame.name], carrier, 2 if frame.turns else 3))
+        levers.append(frame.centre if on is None else frame.centre - on.centre)
+    return Frames(np.array(places, dtype=np.int64), np.array(levers)) if places else NO_FRAMES
 
 
 class Tables(NamedTuple):
@@ -161,9 +168,9 @@ def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:
 
 def _columns(names: Sequence[str], rows: Sequence[tuple[float, ...]]) -> dict[str, Any]:
     """The columns of rows by their names; those of places are whole numbers."""
-    columns = np.array(rows, dtype=float).reshape(-1, len(names)).T.copy()
+    columns = zip(*rows, strict=True) if rows else [()] * len(names)
     return {
-        name: column.astype(np.int64) if name in PLACES else column
+        name: np.array(column, dtype=np.int64 if name in PLACES else float)
         for name, column in zip(names, columns, strict=True)
     }
 

@@ -15,6 +15,7 @@ from spline_model.compile import System, compile_scene
 from spline_model.continuation.resolution import LARGEST_DEFECT, moment_defect
 from spline_model.effects import StrainEnergy, Stretching
 from spline_model.followers import Followers
+from spline_model.frames import Frames, carry, fold, spread
 
 Array = NDArray[np.float64]
 
@@ -132,6 +133,22 @@ class Followed:
         """Forces that turn with bodies, among the unknowns."""
         return self.system.followers
 
+    @property
+    def frames(self) -> Frames:
+        """Frames that bodies carry, among the unknowns."""
+        return self.system.frames
+
+    def _arms(self, z: Array) -> Array:
+        arms = np.empty_like(z)
+        carry(z, self.frames, arms)
+        return arms
+
+    def along(self, z: Array, rate: Array) -> Array:
+        """A rate (N,) of the unknowns at z, with that of frames by their bodies."""
+        if self.frames.place.size:
+            spread(rate, self.frames, self._arms(z))
+        return rate
+
     def refuse(self, z: Array) -> str:
         """Why a state that was just evaluated is no strip; empty if it is one."""
         return checks.refuse(self.system, z)
@@ -240,7 +257,10 @@ class Followed:
         Exact: in a share of the preload the gradient is a square at most.
         """
         if not self.grows:
-            return self.push_of_loads + self.followers.push(z)
+            push = self.push_of_loads + self.followers.push(z)
+            if self.frames.place.size:
+                fold(push, self.frames, self._arms(z))
+            return push
         apart = self.room()
         apart.fill(z, 0.0, load_factor - 0.5)
         less = apart.gradient.copy()

@@ -50,14 +50,14 @@ def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, f
         right[row, 1] = -1.0  # the drive's row is -(theta - angle)
     smooth = work.system.has_potential
     found, inertia = _symmetric(work, right) if smooth else (work.solve(right), _sign(work))
-    rate = found[:, 0].copy()
+    rate = work.along(z, found[:, 0].copy())
     conjugate, curvature = work.conjugate(z, load_factor)
     return Point(
         load_factor=load_factor,
         z=z,
         rate=rate,
         slope=1.0,
-        turn=None if row is None else found[:, 1].copy(),
+        turn=None if row is None else work.along(z, found[:, 1].copy()),
         stiffness=np.nan if row is None else _of_drive(work, row, found[:, 1]),
         inertia=inertia,
         energies=energies,

@@ -5,7 +5,6 @@ from spline_model.effects.boundary import GROUND as GROUND
 from spline_model.effects.boundary import AppliedForce as AppliedForce
 from spline_model.effects.boundary import AppliedMoment as AppliedMoment
 from spline_model.effects.boundary import BodyGravity as BodyGravity
-from spline_model.effects.boundary import Carried as Carried
 from spline_model.effects.boundary import Clamp as Clamp
 from spline_model.effects.boundary import Driven as Driven
 from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement

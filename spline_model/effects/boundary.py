@@ -69,18 +69,6 @@ class Clamp(Constraint):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Carried(Constraint):
-    """The centre of a massless frame, held where it lies on a body at rest; the frame turns freely.
-
-    The multipliers are the force [N] of the body on the frame (``spline_model.frames``).
-    """
-
-    rows: ClassVar[int] = 2
-    body: str
-    by: str
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Driven(Constraint):
     """Coordinates of a body that are prescribed, each from where it is at rest by a part x load factor.
 

@@ -35,7 +35,7 @@ def applied_force(
         yield boundary.AppliedMoment(body=acts_on, moment=moment, history=history)
     elif at is not None:
         name = f"point {tuple(at)} of {acts_on}"
-        yield Body(name=name, centre=np.array(at, dtype=float), joint=True, on=acts_on)
+        yield Body(name=name, centre=np.array(at, dtype=float), joint=True, on=acts_on, turns=False)
         acts_on = name
     yield boundary.AppliedForce(body=acts_on, force=force, history=history, follower=follower)
 

@@ -69,7 +69,7 @@ class Problem(NamedTuple):
         """
         system = motion.system
         layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
-        system.require_plain("effects")
+        system.require_dead("effects")
         if system.springs.size:
             raise InvalidParameter("effects", "spring", "a motion by solve_motion, for impulses know none")
         strips = {name: g for g, name in enumerate(layout.strips)}
@@ -159,11 +159,9 @@ def _constraints(
         if isinstance(constraint, Clamp):
             key: tuple[str, str] = (constraint.strip, constraint.end)
             touched = (strips[constraint.strip], bodies.get(constraint.to, -1))
-        elif isinstance(constraint, Driven):
-            key, touched = (constraint.body, "drive"), (bodies[constraint.body], -1)
         else:
-            expected = "clamps, driven rotations and displacements"
-            raise InvalidParameter("effects", type(constraint).__name__, expected)
+            assert isinstance(constraint, Driven), "there are no others"
+            key, touched = (constraint.body, "drive"), (bodies[constraint.body], -1)
         found.setdefault(key, []).extend((at + k, *touched) for k in range(count))
     return found
 

@@ -22,6 +22,8 @@ from __future__ import annotations
 
 import math
 
+from spline_model.frames import carry, draw, fold_moving, spread
+from spline_model.reduced.arrays import ARMS
 from spline_model.reduced.assembly import place_of, scatter
 from spline_model.strip.compiled import part
 from spline_model.strip.condense import eliminate
@@ -269,6 +271,9 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
     bodies, strips, shape, local = arrays.bodies, arrays.strips, arrays.shape, arrays.local
     poses, n, modes = bodies.rest.size, shape.order.size, strips.compliance.shape[1]
     own, tangent, load = 2 * n - 6, room.tangent, room.load
+    arms = arrays.space.vectors[ARMS]
+    carry(y, bodies.frames, arms)
+    spread(w, bodies.frames, arms)
     for b in range(poses // 3):
         room.turns[b, 0], room.turns[b, 1] = math.cos(y[3 * b + 2]), math.sin(y[3 * b + 2])
     for i in range(load.size):
@@ -297,7 +302,11 @@ def accelerate(y, w, sharpness, grid, arrays, masses, room, push):
         size, first = _strip_system(s, tied, grid, strips, local, room), 2 + max(tied - 1, 0)
         eliminate(first, size, room.g[s], room.h[s])
         scatter(first, size, strips.tips[s], strips.roots[s], poses + s, room.g[s], room.h[s], load, tangent)
+    if bodies.frames.place.size > 0:
+        fold_moving(w, tangent, load, bodies.frames, arms)
     _solve_bodies(poses, tangent, load, push)
+    spread(push, bodies.frames, arms)
+    draw(w, push, bodies.frames, arms)
     for s in range(strips.roots.size):
         at, tied = poses + s * (own + modes), grid.tied[s]
         a = y[at + own : at + own + modes]

@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.effects import StripDamping
+from spline_model.frames import Frames
 from spline_model.motion.start import Motion
 from spline_model.reduced.model import Reduced, in_units
 from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
+from spline_model.strip.element import FIRST, SECOND
 from spline_model.tables import DriveTable, LoadTable
 
 Array = NDArray[np.float64]
@@ -33,8 +35,7 @@ class Masses(NamedTuple):
     along x as along y, in the order of elimination; relaxation (S,) [s]; pairs (G, 4, n n): products d1 d1,
     d1 d2, d2 d1, d2 d2 of the basis. loads (F) and drives (D) of the motion, at the coordinates load_at and
     drive_at of the bodies. gain (S, K): stiffness by which axial forces are condensed, of which the
-    first ``outer`` stay beside the bodies; frames, lever: as in ``Frames``, among y; free_from: first free
-    end.
+    first ``outer`` stay beside the bodies; frames: as in ``Bodies``; free_from: first free end.
     """
 
     inertia: Array
@@ -49,8 +50,7 @@ class Masses(NamedTuple):
     drive_at: Places
     gain: Array
     across: Array
-    frames: Places
-    lever: Array
+    frames: Frames
     outer: int
     free_from: int
 
@@ -72,7 +72,7 @@ class Masses(NamedTuple):
             np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
             for whole in (motion.mass, damped)
         )
-        basis = model.shape.d1, model.shape.d2
+        basis = model.shape.tables[FIRST : SECOND + 1]
         pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
         time = {e.strip: e.relaxation_time for e in model.system.scene.of(StripDamping)}
         c = strips.compliance
@@ -93,8 +93,7 @@ class Masses(NamedTuple):
             drive_at=drives.coordinate - begin,
             gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
             across=across if across.any() else across[:0, :0],
-            frames=model.frames.place,
-            lever=model.frames.lever,
+            frames=model.bodies.frames,
             outer=outer,
             free_from=len(model.system.scene.bodies),
         )
@@ -143,7 +142,7 @@ class Scratch(NamedTuple):
     of the control points; mean, end: maps D, and derivatives at the end; steady, force, stiff: inertia, drag
     and loads; blocks xx, xy, yx, yy of the tangent, a line of them; half of it in element coordinates; pull,
     along: of the axial forces and of their strains; residual, reduced: of it at the bodies with the strips
-    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms: of carried
+    condensed; system and x, free: what is solved; held: 1 where a drive or a body holds; arms, ends: of
     frames, see ``spline_model.motion.bodies``; follow: values of followers.
     """
 
@@ -174,7 +173,8 @@ class Scratch(NamedTuple):
     energies: Annotated[Array, "5"]
     free: Annotated[Places, "Q'"]
     held: Annotated[Places, "Q"]
-    arms: Annotated[Array, "C 6"]
+    arms: Annotated[Array, "Q"]
+    ends: Annotated[Array, "Q"]
     follow: Annotated[Array, "F"]
 
 
@@ -205,8 +205,8 @@ def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
     """What the letters of ``State`` and ``Scratch`` stand for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
-    sizes |= {"C": len(masses.frames), "F": len(masses.load_at)}
-    return sizes | {"Y": model.size, "E": 2 * n + masses.outer, "Q'": q + s * masses.outer}
+    sizes |= {"F": len(masses.load_at), "Y": model.size, "E": 2 * n + masses.outer}
+    return sizes | {"Q'": q + s * masses.outer}
 
 
 class Poses(NamedTuple):
@@ -235,9 +235,10 @@ class Poses(NamedTuple):
     still: Annotated[Places, "0"]
 
     @classmethod
-    def of(cls, y: Array, rate: Array, inertia: Array, all_bodies: int) -> Poses:
-        """A state with these coordinates and velocities; inertia (Q,)."""
-        still = [*np.flatnonzero(inertia == 0.0), *range(len(rate), all_bodies)]
+    def of(cls, y: Array, rate: Array, masses: Masses, all_bodies: int) -> Poses:
+        """A state with these coordinates and velocities."""
+        light = np.flatnonzero(masses.inertia == 0.0)
+        still = [*np.setdiff1d(light, masses.frames.carried), *range(len(rate), all_bodies)]
         poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})
         return poses._replace(
             y=y.copy(), trial=y.copy(), rate=rate, last=np.ones(1), still=np.array(still, dtype=np.int64)

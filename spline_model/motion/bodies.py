@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from spline_model.effects.boundary import FOLLOWER
+from spline_model.frames import fold, fold_tangent, spread
 from spline_model.strip.compiled import called, part
 
 
@@ -68,42 +69,31 @@ def add_springs(h, state, bodies, masses, work):
 
 @part()
 def carry_frames(state, masses, work):
-    """Changes of carried frames over a step by those of their bodies, as the ends of strips go with theirs.
+    """Changes of frames over a step by those of their bodies, as the ends of strips go with theirs.
 
-    arms: derivative of a frame's change, over the step and at its end, and its lever at the end.
+    arms: of the change over the step; ends: of its derivative at the end.
     """
-    dy = work.dy
-    for f in range(masses.frames.shape[0]):
-        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
-        x, y, c = masses.lever[f, 0], masses.lever[f, 1], dy[body + 2]
-        before, after = state.y[body + 2], state.y[body + 2] + 2.0 * math.atan(0.5 * c)
-        cos, sin, slope = math.cos(before), math.sin(before), 1.0 / (1.0 + 0.25 * c * c)
-        x0, y0 = cos * x - sin * y, sin * x + cos * y
-        cos, sin = math.cos(after), math.sin(after)
-        x1, y1 = cos * x - sin * y, sin * x + cos * y
-        arm[0], arm[1], arm[2], arm[3] = -0.5 * (y0 + y1), 0.5 * (x0 + x1), -slope * y1, slope * x1
-        arm[4], arm[5] = x1, y1
-        dy[frame], dy[frame + 1] = dy[body] + c * arm[0], dy[body + 1] + c * arm[1]
+    frames, arms, ends = masses.frames, work.arms, work.ends
+    for f in range(frames.place.shape[0]):
+        at, turn, x, y = frames.place[f, 0], frames.place[f, 1] + 2, frames.lever[f, 0], frames.lever[f, 1]
+        if turn < 2:
+            continue
+        c, before = work.dy[turn], state.y[turn]
+        after, slope = before + 2.0 * math.atan(0.5 * c), 1.0 / (1.0 + 0.25 * c * c)
+        x1, y1 = math.cos(after) * x - math.sin(after) * y, math.sin(after) * x + math.cos(after) * y
+        arms[at] = 0.5 * (math.cos(before) * x - math.sin(before) * y + x1)
+        arms[at + 1] = 0.5 * (math.sin(before) * x + math.cos(before) * y + y1)
+        ends[at], ends[at + 1] = slope * x1, slope * y1
+    spread(work.dy, frames, arms)
 
 
 @part()
 def fold_frames(masses, work):
-    """Add what acts on carried frames, and its derivatives, to their bodies."""
-    raw, reduced, tangent = work.residual, work.reduced, work.tangent
-    for f in range(masses.frames.shape[0]):
-        frame, body, arm = masses.frames[f, 0], masses.frames[f, 1], work.arms[f]
-        turn, fx, fy = body + 2, raw[frame], raw[frame + 1]
-        for k in range(2):
-            raw[body + k] += raw[frame + k]
-            raw[turn] += arm[k] * raw[frame + k]
-            reduced[body + k] += reduced[frame + k]
-            reduced[turn] += arm[k] * reduced[frame + k]
-            for j in range(reduced.size):
-                tangent[body + k, j] += tangent[frame + k, j]
-                tangent[turn, j] += arm[k] * tangent[frame + k, j]
-        for k in range(2):
-            for i in range(reduced.size):
-                tangent[i, body + k] += tangent[i, frame + k]
-                tangent[i, turn] += arm[k + 2] * tangent[i, frame + k]
-        slope = 1.0 / (1.0 + 0.25 * work.dy[turn] * work.dy[turn])
-        tangent[turn, turn] -= 0.5 * slope * (arm[4] * fx + arm[5] * fy)
+    """Fold what acts on frames, and its derivatives, on their bodies."""
+    frames, ends = masses.frames, work.ends
+    for f in range(frames.place.shape[0]):
+        at = frames.place[f, 0]
+        ends[at + 2] = 0.5 * (ends[at] * work.residual[at] + ends[at + 1] * work.residual[at + 1])
+    fold(work.residual, frames, work.arms)
+    fold(work.reduced, frames, work.arms)
+    fold_tangent(work.tangent, 0.0, frames, work.arms, ends)

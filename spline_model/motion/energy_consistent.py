@@ -177,8 +177,9 @@ def _run(time, step, begin, end, every, active, state, arrays, masses, tolerance
     for d in range(active.size):
         if active[d] == 1:
             work.held[masses.drive_at[d]] = 1
-    for f in range(masses.frames.shape[0]):
-        work.held[masses.frames[f, 0]] = work.held[masses.frames[f, 0] + 1] = 1
+    for f in range(masses.frames.place.shape[0]):
+        for k in range(masses.frames.place[f, 2]):
+            work.held[masses.frames.place[f, 0] + k] = 1
     for k in range(begin, end):
         now = time + k * step
         solved = newton(now, step, active, state, arrays, masses, tolerance, work, counters)

@@ -248,9 +248,8 @@ def highest_frequency(motion: Motion, z: Array) -> float:
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
     if motion.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
-        expected = "energy (fixed step) for damping, loads, drives, supports and hinges"
+        expected = "energy (fixed step) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
-    motion.system.require_plain("integrator")
     layout = motion.system.layout
     blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):

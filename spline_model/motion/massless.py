@@ -118,6 +118,9 @@ def _balance(h, poses, masses, space):
             residual -= poses.load[i]
         norm = max(norm, abs(residual)) if residual == residual else math.inf
         x[i] = -residual
+    for f in range(masses.frames.place.shape[0]):
+        for i in range(masses.frames.place[f, 0], masses.frames.place[f, 0] + masses.frames.place[f, 2]):
+            system[i, i] = 1.0
     return norm
 
 

@@ -47,12 +47,13 @@ def stepper(start: Start) -> Moves:
         )
     if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
         raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
-    motion.system.require_plain("effects")
+    motion.system.require_dead("effects")
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
     own = len(motion.system.scene.own_bodies)
     if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
-        raise InvalidParameter("effects", "tip_force", "loads on bodies only, with massless strips")
+        expected = "loads at centres of bodies only, with massless strips"
+        raise InvalidParameter("effects", "a load at a tip or point", expected)
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:
         raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia")
@@ -67,7 +68,7 @@ def softness(model: Reduced, y: Array, strip: int) -> float:
     """
     w, a = model.places(strip)
     parts = []
-    for hessian in whole_tangents(model, np.array([y, at_rest(model)]))[1]:
+    for hessian in whole_tangents(model, np.array([y, at_rest(model)]), np.zeros(2))[1]:
         coupling = hessian[a, w]
         compliance = -hessian[a, a] + LEAST * np.eye(len(coupling))
         parts.append(hessian[w, w] + coupling.T @ np.linalg.solve(compliance, coupling))
@@ -180,7 +181,7 @@ class _Stepper(Moves):
         self._masses = Masses.of(self.motion, model)
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / model.system.scales.pose
-        self._poses = Poses.of(y, rate.ravel(), self._masses.inertia, len(model.bodies.load))
+        self._poses = Poses.of(y, rate.ravel(), self._masses, len(model.bodies.load))
         self.width = model.size + rate.size + ENERGIES
         self.counters = np.zeros(6, dtype=np.int64)
         self._arrays = model.arrays()

@@ -252,15 +252,11 @@ class Trajectory(Tabulated):
         system: System,
         run: Records,
         *,
-        effects: tuple[str, ...],
-        body: str,
         settings: dict[str, Any],
-        unresolved: Callable[[], str],
-        still: Callable[[], bool],
         laps: Laps,
-        way: str = "",
+        **known: Any,
     ) -> Trajectory:
-        """The trajectory of a run; a run that says why it stopped has not converged."""
+        """The trajectory of a run; a run that says why it stopped has not converged. known: other fields."""
         rows = run.rows
         points = max((strip.basis.control_points for strip in system.scene.strips), default=0)
         segments = max((len(pieces) for pieces in system.scene.whole.values()), default=1)
@@ -270,18 +266,14 @@ class Trajectory(Tabulated):
             message=run.message,
             time=np.arange(0.0, len(rows)) * run.spacing,
             bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.own_bodies)},
-            body=body,
             kinetic_energy=rows[:, KINETIC],
             strain_energy=rows[:, STRAIN],
             gravity_energy=rows[:, WEIGHT] + rest,
             work=rows[:, WORK],
             dissipated=rows[:, DISSIPATED],
             whole=run.whole,
-            unresolved=unresolved,
-            still=still,
-            way=way,
-            effects=effects,
             counters=run.counters,
             settings={"segments": segments, "control_points": points} | settings,
             seconds=laps.lap("recover"),
+            **known,
         )

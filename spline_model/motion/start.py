@@ -15,6 +15,7 @@ from spline_model.effects import Bending, MixedStretching, StripDamping
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import FOLLOWER, factor_at
 from spline_model.errors import InvalidParameter
+from spline_model.frames import carry, fold_tangent, spread
 from spline_model.solution import Later
 from spline_model.strip.compiled import part
 from spline_model.tables import ROW, DriveTable, LoadTable
@@ -129,9 +130,11 @@ class Motion:
         gradient, hessian = np.empty(size), np.empty((size, size))
         points, clamps = self.system.tables.points, self.system.tables.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
-        self.system.frames.subtract(z, gradient, hessian)
+        frames, arms = self.system.frames, np.zeros(size)
+        carry(z, frames, arms)
+        fold_tangent(hessian, 0.0, frames, arms, arms)
         clamped = clamps.place[:, ROW, None] + np.arange(3)
-        rows = np.concatenate((clamped.ravel(), self.system.frames.rows, drives.row[held])).astype(int)
+        rows = np.concatenate((clamped.ravel(), drives.row[held])).astype(int)
         hessian[drives.row, drives.coordinate] = -1.0
         jacobian = -hessian[rows][:, :count]
         rate = np.zeros(len(rows))
@@ -139,6 +142,7 @@ class Motion:
             change = factor_of(d, time + span, drives) - factor_of(d, time, drives)
             rate[len(rows) - len(held) + i] = change / span * drives.target[d]
         caught = v + self._constrained(jacobian, np.zeros(count), rate - jacobian @ v)[0]
+        spread(caught, frames, arms)
         return caught, 0.5 * float(v @ self.mass @ v - caught @ self.mass @ caught)
 
     def accelerated(self, z: Array, v: Array) -> tuple[Array, Array]:

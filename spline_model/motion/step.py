@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from spline_model.effects.boundary import FOLLOWER
+from spline_model.frames import spread
 from spline_model.motion.bodies import add_followers, add_springs, carry_frames, cayley, fold_frames
 from spline_model.motion.start import factor_of
 from spline_model.motion.strip import add_points, condense, move_strip, to_reduced
@@ -185,11 +186,7 @@ def improve(strips, masses, local, work):
         if free[i] < poses:
             dy[free[i]] += x[i]
             size = max(size, abs(x[i]))
-    for f in range(masses.frames.shape[0]):
-        frame, body = masses.frames[f, 0], masses.frames[f, 1]
-        for k in range(2):
-            moved = work.reduced[body + k] + work.arms[f, k + 2] * work.reduced[body + 2]
-            work.reduced[frame + k] = moved
+    spread(work.reduced, masses.frames, work.ends)
     for s in range(strips.roots.size):
         at, tip, root = poses + s * (own + modes), strips.tips[s], strips.roots[s]
         ends = own + (3 if tip >= 0 else 0) + (3 if root >= 0 else 0)

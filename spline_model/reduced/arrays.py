@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.frames import Frames
 from spline_model.strip.element import Local, Shape, Strips
 
 Array = NDArray[np.float64]
@@ -15,7 +16,7 @@ BENDING, AXIAL, DEAD, SLOWEST, NEGATIVE = range(5)
 """Places of what ``assemble`` sums up: energies in EI/L, least v / J0, negative pivots of the strips."""
 KNOWN = 4
 """States and rates that the next one is predicted from: of five, round-off would outgrow what they add."""
-FORCE, RAW, CHANGE, MOVE, REACTION, REACTION_RATE, ENDS = range(7)
+FORCE, RAW, CHANGE, MOVE, REACTION, REACTION_RATE, ENDS, ARMS = range(8)
 """Rows of ``Space.vectors``."""
 Y, RATE, PREDICTED, SPARE = range(2 * KNOWN, 2 * KNOWN + 4)
 """Rows of ``Space.states`` behind the known ones."""
@@ -32,7 +33,8 @@ class Bodies(NamedTuple):
     rest (3 B,); load (Q,) generalised force at load factor 1; weight (Q,) at any, Q = 3 B and one more
     for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these;
     driven: place among the held ones of the rotation whose torque is asked for, or -1; springs: stiffness
-    over the poses of the scene's bodies, or (0, 0).
+    over the poses of the scene's bodies, or (0, 0); frames: those of them that others carry, which are
+    neither free nor held.
     """
 
     rest: Array
@@ -42,14 +44,15 @@ class Bodies(NamedTuple):
     held: NDArray[np.int64]
     driven: int
     springs: Array
+    frames: Frames
 
 
 class Space(NamedTuple):
     """Working arrays of a path, few as in ``Strips``: the bodies' system and the states.
 
-    tangent (Q, Q), upper; factors (F, F) of its free part; vectors (7, Q or more): FORCE and RAW, the
-    residuals with the strips condensed and without, CHANGE (F,), MOVE, REACTION and REACTION_RATE (D,), and
-    ENDS of a strip;
+    tangent (Q, Q), upper; factors (F, F) of its free part; vectors (8, Q or more): FORCE and RAW, the
+    residuals with the strips condensed and without, CHANGE (F,), MOVE, REACTION and REACTION_RATE (D,),
+    ENDS of a strip, and ARMS of frames;
     states (2 KNOWN + 4, Y): known ones, their rates, Y, RATE, PREDICTED and SPARE; out (SUMS,): what
     ``assemble`` sums up, the factors of the known states, and what is known of the last one.
     """
@@ -64,7 +67,7 @@ class Space(NamedTuple):
     def of(cls, bodies: Bodies, size: int, dtype: Any = float) -> Self:
         """Fresh ones for that many unknowns."""
         q, f = bodies.load.size, bodies.free.size
-        shapes = (q, q), (f, f), (7, max(q, 7)), (2 * KNOWN + 4, size), (SUMS,)
+        shapes = (q, q), (f, f), (8, max(q, 7)), (2 * KNOWN + 4, size), (SUMS,)
         return cls(*(np.zeros(shape, dtype=dtype) for shape in shapes))
 
 

@@ -7,7 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.frames import carry, fold, fold_tangent, spread
 from spline_model.reduced.arrays import (
+    ARMS,
     AXIAL,
     BENDING,
     DEAD,
@@ -87,12 +89,14 @@ def condensed(s, own, size, strips, local):
 
 @part()
 def begin(y, load, bodies, space):
-    """What acts on the bodies, into FORCE and RAW, and sums of energies that have nothing in them yet."""
+    """Frames, what acts on the bodies, into FORCE and RAW, and sums of energies that have nothing in them."""
     out, force, raw = space.out, space.vectors[FORCE], space.vectors[RAW]
     out[BENDING] = out[AXIAL] = out[DEAD] = 0.0
     out[SLOWEST] = np.inf
     for i in range(bodies.load.size):
         force[i] = raw[i] = -load * bodies.load[i] - bodies.weight[i]
+    if bodies.frames.place.size > 0:
+        carry(y, bodies.frames, space.vectors[ARMS])
     for i in range(bodies.rest.size):
         out[DEAD] -= bodies.weight[i] * y[i]
     if bodies.springs.size > 0:
@@ -164,7 +168,21 @@ def assemble(y, load, arrays):
             last, size, strips.tips[s], strips.roots[s], poses + s, h[LAST], h, space.vectors[FORCE],
             space.tangent,
         )  # fmt: skip
+    if bodies.frames.place.size > 0:
+        _fold(bodies, space)
     return norm
+
+
+@called()
+def _fold(bodies, space):
+    """Fold what acts on frames, of which the tangent has no part, on the bodies that carry them."""
+    for i in range(bodies.load.size):
+        for j in range(i):
+            space.tangent[i, j] = space.tangent[j, i]
+    arms = space.vectors[ARMS]
+    fold(space.vectors[FORCE], bodies.frames, arms)
+    fold(space.vectors[RAW], bodies.frames, arms)
+    fold_tangent(space.tangent, 0.0, bodies.frames, arms, arms)
 
 
 @called()
@@ -222,6 +240,8 @@ def move_strips(share, arrays, out):
     local, space = arrays.local, arrays.space
     n, modes, poses = shape.order.size, strips.compliance.shape[1], bodies.rest.size
     own, ends, move = 2 * n - 6, space.vectors[ENDS], space.vectors[MOVE]
+    if bodies.frames.place.size > 0:
+        spread(move, bodies.frames, space.vectors[ARMS])
     for s in range(strips.roots.size):
         at = poses + s * (own + modes)
         tip, root = strips.tips[s] >= 0, strips.roots[s] >= 0

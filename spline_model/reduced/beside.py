@@ -11,7 +11,8 @@ off by K^-1 H - 1 times what v is, and so is the stiffness.
 
 from __future__ import annotations
 
-from spline_model.reduced.arrays import FORCE, MOVE, RATE, RAW, REACTION, REACTION_RATE, SPARE
+from spline_model.frames import fold, spread
+from spline_model.reduced.arrays import ARMS, FORCE, MOVE, RATE, RAW, REACTION, REACTION_RATE, SPARE
 from spline_model.reduced.assembly import begin, move_strips, place_of, residual_of
 from spline_model.reduced.equilibrium import CLOSE, CONFIRMED, ITERATIONS, NEARLY, carry, newton, tangent
 from spline_model.strip.compiled import called, lane, part
@@ -55,7 +56,8 @@ def _forward(own, last, end, coupled, outer, gain, h, b, gap, g):
 
 @part()
 def condense_again(arrays):
-    """Add to FORCE what the strips' g, overwritten, and gaps are at the ends by the factors at hand."""
+    """Add to FORCE what the strips' g, overwritten, and gaps are at the ends by the factors at hand, and fold
+    it on those that carry frames."""
     bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
     local, space = arrays.local, arrays.space
     force, modes, own = space.vectors[FORCE], strips.compliance.shape[1], 2 * shape.order.size - 6
@@ -66,6 +68,7 @@ def condense_again(arrays):
         _forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, local.gap[s], g)
         for i in range(last, end + strips.outer):
             force[place_of(i - last, tip, root, bodies.rest.size + s)] += g[i]
+    fold(force, bodies.frames, space.vectors[ARMS])
 
 
 @called()
@@ -79,9 +82,9 @@ def respond(arrays, out):
     move = space.vectors[MOVE]
     condense_again(arrays)
     carry(REACTION_RATE, bodies, space)
+    move_strips(1.0, arrays, out)
     for i in range(bodies.rest.size):
         out[i] = move[i]
-    move_strips(1.0, arrays, out)
 
 
 @part()
@@ -98,6 +101,7 @@ def take_residual(y, load, arrays):
         evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, space.out)
         to_coordinates(s, local.nodal[s, GRADIENT], last, local.map[s], strips, local.reduced[s, LAST])
         norm = max(norm, residual_of(s, own, last, strips, local, space))
+    fold(space.vectors[RAW], bodies.frames, space.vectors[ARMS])
     return norm
 
 
@@ -163,14 +167,22 @@ def _turn_ends(s, own, last, rate, strips, local):
 
 @part()
 def take_product(rate, load_rate, arrays):
-    """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE."""
+    """H v of a state just evaluated by ``take_residual`` along a rate v (Y,): its g, gap and FORCE.
+
+    In v the rates of frames are put.
+    """
     bodies, strips, shape = arrays.bodies, arrays.strips, arrays.shape
     local, space = arrays.local, arrays.space
     force, poses = space.vectors[FORCE], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
-    own, last = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer
+    own, last, arms = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, space.vectors[ARMS]
+    spread(rate, bodies.frames, arms)
     for i in range(bodies.load.size):
         force[i] = -load_rate * bodies.load[i]
+    for f in range(bodies.frames.place.shape[0]):
+        turn = bodies.frames.place[f, 1] + 2
+        if turn >= 2:
+            force[turn] -= arms[bodies.frames.place[f, 0] + 2] * rate[turn]
     for i in range(bodies.springs.shape[0]):
         for j in range(bodies.springs.shape[0]):
             force[i] += bodies.springs[i, j] * rate[j]

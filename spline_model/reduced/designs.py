@@ -48,7 +48,22 @@ def designs_of(model: Reduced, base: Given, given: Given, length: Array, energy:
         force=np.stack((bodies.load, bodies.weight))[:, : len(bodies.rest)] * shares[:, None],
         target=model.drives[1] * np.where(turns, 1.0, model.length / wide),
         springs=_springs(model, length, energy),
+        levers=_levers(model, given) / wide[..., None],
     )
+
+
+def _levers(model: Reduced, given: Given) -> Array:
+    """Levers of frames (D, C, 2) [m]: of hinges at the ends of strips, of loads at points that stay."""
+    strips, frames = model.strips, model.bodies.frames
+    levers = np.zeros((len(given.ends), *frames.lever.shape), dtype=given.ends.dtype)
+    for f, (at, by, _) in enumerate(frames.place.tolist()):
+        levers[:, f] = model.system.scene.bodies[at // 3].centre
+        for end, carriers in enumerate((strips.roots, strips.tips)):
+            for s in np.flatnonzero(carriers == at // 3):
+                levers[:, f] = given.ends[:, s, end]
+        if by >= 0:
+            levers[:, f] -= given.centres[:, by // 3]
+    return levers
 
 
 def _springs(model: Reduced, length: Array, energy: Array) -> Array:
@@ -84,12 +99,9 @@ def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, e
 
 def of_design(model: Reduced, designs: Designs, d: int) -> Reduced:
     """The mechanism with the strips of one of the designs, which are over its own length and energy."""
-    own, bodies = (
-        {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")},
-        model.bodies,
-    )
-    if bodies.springs.size:
-        bodies = bodies._replace(rest=designs.start[d, : len(bodies.rest)])
+    own = {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")}
+    rest, frames = designs.start[d, : len(model.bodies.rest)], model.bodies.frames
+    bodies = model.bodies._replace(rest=rest, frames=frames._replace(lever=designs.levers[d]))
     return replace(model, bodies=bodies, strips=model.strips._replace(**own))
 
 

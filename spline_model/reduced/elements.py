@@ -20,7 +20,6 @@ from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import (
     AXIAL,
     BENDING,
-    DEAD,
     SLOWEST,
     Answer,
     Arrays,
@@ -31,7 +30,7 @@ from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITE
 from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
 from spline_model.reduced.preload import Preload, act, apart
-from spline_model.reduced.states import add_strip, unknowns_of
+from spline_model.reduced.states import gather, unknowns_of
 from spline_model.strip.compiled import kernel
 from spline_model.strip.element import ON_POINTS
 
@@ -42,33 +41,6 @@ ASIDE = 1e-5
 
 
 @kernel()
-def _gather(y, reaction, aim, load, arrays, out, gradient, hessian):
-    """Gradient (N,) and tangent (Y, Y) in poses, w and then a of all strips, at y (Y,); energies in out.
-
-    Reactions (D,) of the drives, which hold their coordinates at ``aim`` (D,), are the last unknowns.
-    """
-    bodies, strips = arrays.bodies, arrays.strips
-    shape, local = arrays.shape, arrays.local
-    n, count, modes, poses = shape.order.size, strips.roots.size, strips.compliance.shape[1], bodies.rest.size
-    own = 2 * n - 6
-    gradient[:] = 0.0
-    hessian[:, :] = 0.0
-    out[:] = 0.0
-    out[SLOWEST] = np.inf
-    for i in range(poses):
-        gradient[i] = -load * bodies.load[i] - bodies.weight[i]
-        out[DEAD] -= bodies.weight[i] * y[i]
-    for d in range(reaction.size):
-        held, row = bodies.held[d], y.size + d
-        gradient[held] -= reaction[d]
-        gradient[row] = aim[d] - y[held]
-        hessian[held, row] = hessian[row, held] = -1.0
-    for s in range(count):
-        at, first, forces = poses + s * (own + modes), poses + s * own, poses + count * own + s * modes
-        add_strip(s, at, first, forces, y, strips, shape, local, out, gradient, hessian)
-
-
-@kernel()
 def _defect_of(y, arrays):
     """The moment defect of the state that was last gathered."""
     return moment_defect(y, arrays.strips, arrays.shape, arrays.local, SMALLEST_MOMENT)
@@ -76,41 +48,37 @@ def _defect_of(y, arrays):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
-    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives, forces on carried frames.
+    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives.
 
-    All is dimensionless. arrays, out (5,): the model to kernels, and energies as ``_gather`` left them;
-    frames: among these unknowns.
+    All is dimensionless. arrays: the model to kernels.
     """
 
     model: Reduced
     arrays: Arrays
-    out: Array
-    frames: Frames
 
     @classmethod
     def of(cls, system: System) -> Self:
         """The elements of a system that they know."""
         model = reduced(system)
         assert model is not None, "``followed`` asks first"
-        size, frames = model.size + len(model.bodies.held), model.frames
-        if frames.place.size:
-            place = frames.place.copy()
-            place[:, 2] = size + 2 * np.arange(len(place))
-            size, frames = size + 2 * len(place), frames._replace(place=place)
+        size = model.size + len(model.bodies.held)
         return cls(
             system=system,
             gradient=np.empty(size),
             hessian=np.empty((size, size)),
             model=model,
             arrays=model.arrays(),
-            out=np.zeros(5),
-            frames=frames,
         )
 
     @property
     def compiled(self) -> bool:
         """Whether a path is followed by kernels where nothing happens on it."""
-        return not (self.frames.place.size or self.followers.place.size)
+        return not self.followers.place.size
+
+    @property
+    def frames(self) -> Frames:
+        """Frames that bodies carry, among these unknowns as among y."""
+        return self.model.bodies.frames
 
     @property
     def followers(self) -> Followers:
@@ -204,16 +172,19 @@ class Elements(Followed):
         arrays = self.arrays if share == 1.0 else self.loose
         if share != 1.0:
             act(share, self.preload, arrays.bodies, arrays.strips)
-        origin, target = model.drives
-        given = self.y(z), z[self.held], origin + load_factor * target, load_factor
-        _gather(*given, arrays, self.out, self.gradient, self.hessian)
-        if (springs := model.bodies.springs).size:
-            own = slice(0, len(springs))
-            self.gradient[own] += springs @ (z[own] - model.bodies.rest[own])
-            self.hessian[own, own] += springs
-        self.frames.subtract(z, self.gradient, self.hessian)
+        (origin, target), held, own = model.drives, model.bodies.held, self.place
+        y, gradient, hessian = self.y(z), np.zeros(model.size), np.zeros((model.size, model.size))
+        gather(y[None], np.array([load_factor]), arrays, gradient[None], hessian[None])
+        z[own], self.gradient[own], self.hessian[:] = y, gradient, 0.0  # frames in y were put in place
+        self.hessian[own[:, None], own] = hessian
+        self.hessian[model.bodies.frames.carried, model.bodies.frames.carried] = 1.0
+        rows = model.size + np.arange(len(held))
+        self.gradient[held] -= z[rows]
+        self.gradient[rows] = origin + load_factor * target - z[held]
+        self.hessian[held, rows] = self.hessian[rows, held] = -1.0
         self.followers.subtract(z, load_factor, self.gradient, self.hessian)
-        return float(self.out[BENDING]), float(self.out[AXIAL])
+        out = arrays.space.out
+        return float(out[BENDING]), float(out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:
         """Work from rest to z of loads and of weight."""
@@ -241,7 +212,7 @@ class Elements(Followed):
         """Why a state that was just evaluated is no strip."""
         own = self.place[len(self.model.bodies.rest) :].reshape(len(self.model.strips.roots), -1)
         last = own.shape[1] - self.model.strips.compliance.shape[1]
-        if (z[own[:, last - 2 : last]] > 0.0).all() and self.out[SLOWEST] > checks.SLOWEST_SPEED:
+        if (z[own[:, last - 2 : last]] > 0.0).all() and self.arrays.space.out[SLOWEST] > checks.SLOWEST_SPEED:
             return ""
         return super().refuse(self.unknowns(z))
 
@@ -256,17 +227,12 @@ class Elements(Followed):
         drives, z = self.system.drives, np.zeros(len(self.gradient))
         z[self.place] = from_unknowns(self.model, unknowns)
         z[self.held] = unknowns[drives.row] * self.model.drive_length / self.model.energy
-        z[self.frames.rows] = unknowns[self.system.frames.rows] * self.model.length / self.model.energy
         return z
 
     def unknowns(self, z: Array) -> Array:
         """The scene's unknowns at z (N,) or (S, N)."""
         states = np.atleast_2d(z)
-        found = unknowns_of(self.model, self.y(states), states[:, self.held])
-        if self.frames.place.size:
-            force = self.model.energy / self.model.length
-            found[:, self.system.frames.rows] = states[:, self.frames.rows] * force
-        return found.reshape(*z.shape[:-1], -1)
+        return unknowns_of(self.model, self.y(states), states[:, self.held]).reshape(*z.shape[:-1], -1)
 
     def moved(self, z: Array, direction: Array) -> Array:
         """Change (Q,) of the scene's coordinates, dimensionless, with that of poses and w."""

@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
+from spline_model.frames import fold
 from spline_model.newton import FLOOR, LAST, ROUND_OFF
 from spline_model.reduced.arrays import (
+    ARMS,
     CHANGE,
     FORCE,
     MOVE,
@@ -126,8 +128,13 @@ def tangent(held_rate, load_rate, arrays):
     free, held, matrix, vectors = bodies.free, bodies.held, space.tangent, space.vectors
     x, move, rate = vectors[CHANGE], vectors[MOVE], space.states[RATE]
     carry(REACTION, bodies, space)
+    for i in range(bodies.load.size):
+        move[i] = load_rate * bodies.load[i]
+    fold(move, bodies.frames, vectors[ARMS])
+    for d in range(held.size):
+        vectors[REACTION_RATE, d] = -move[held[d]]
     for i in range(free.size):
-        total = load_rate * bodies.load[free[i]]
+        total = move[free[i]]
         for d in range(held.size):
             total -= entry(matrix, free[i], held[d]) * held_rate[d]
         x[i] = total
@@ -137,13 +144,11 @@ def tangent(held_rate, load_rate, arrays):
     for d in range(held.size):
         move[held[d]] = held_rate[d]
     for d in range(held.size):
-        total = -load_rate * bodies.load[held[d]]
         for i in range(bodies.load.size):
-            total += entry(matrix, held[d], i) * move[i]
-        vectors[REACTION_RATE, d] = total
+            vectors[REACTION_RATE, d] += entry(matrix, held[d], i) * move[i]
+    move_strips(0.0, arrays, rate)
     for i in range(bodies.rest.size):
         rate[i] = move[i]
-    move_strips(0.0, arrays, rate)
 
 
 @called()

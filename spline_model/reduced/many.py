@@ -32,7 +32,7 @@ class Designs(NamedTuple):
 
     along (D, S, G, 11 + K), numbers (D, S, 12 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
     G): curvature; start (D, Y): at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H):
-    change of the held coordinates; springs (D, 3 B, 3 B) as in ``Bodies``.
+    change of the held coordinates; springs (D, 3 B, 3 B) as in ``Bodies``; levers (D, C, 2) of frames.
     """
 
     length: Array
@@ -45,11 +45,12 @@ class Designs(NamedTuple):
     force: Array
     target: Array
     springs: Array
+    levers: Array
 
 
 LINE, TABLE, BLOCK = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0, 0))
 PLACES = np.zeros(0, dtype=np.int64)
-NO_DESIGNS = Designs(LINE, LINE, BLOCK[None], BLOCK, BLOCK, BLOCK, TABLE, BLOCK, TABLE, BLOCK)
+NO_DESIGNS = Designs(LINE, LINE, BLOCK[None], BLOCK, BLOCK, BLOCK, TABLE, BLOCK, TABLE, BLOCK, BLOCK)
 NO_RESULTS = PLACES, BLOCK, TABLE, TABLE, TABLE, TABLE, PLACES.reshape(0, 0), TABLE, PLACES
 NOWHERE = Route(LINE, LINE, LINE, 0.0)
 
@@ -109,6 +110,8 @@ def _take_design(i, designs, preload, bodies, strips, route, local):
         fallen += bodies.weight[k] * start[k]
     for k in range(bodies.springs.shape[0]):
         copy(designs.springs[i, k], bodies.springs[k])
+    for f in range(bodies.frames.place.shape[0]):
+        copy(designs.levers[i, f], bodies.frames.lever[f])
     modes, own = strips.compliance.shape[1], strips.numbers.shape[1] - ON_POINTS - 6
     for s in range(strips.roots.size):
         for k in range(strips.numbers.shape[1]):

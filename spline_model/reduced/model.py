@@ -12,7 +12,6 @@ from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching
 from spline_model.errors import InvalidParameter
 from spline_model.followers import Followers
-from spline_model.frames import Frames
 from spline_model.reduced.arrays import Arrays, Bodies, Space
 from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
 from spline_model.scene import Scene
@@ -53,9 +52,9 @@ class Reduced:
         return slice(at, at + own), slice(at + own, at + own + modes)
 
     @property
-    def frames(self) -> Frames:
-        """Frames that bodies carry, among y; their multipliers are none of it."""
-        return self.system.frames.among(self.system.layout.poses.start, self.length)
+    def fixed(self) -> list[int]:
+        """Coordinates of bodies that are not free: held ones, and those of frames."""
+        return [*self.bodies.held.tolist(), *self.bodies.frames.carried]
 
     @property
     def followers(self) -> Followers:
@@ -76,7 +75,8 @@ class Reduced:
     def let_go(self, system: System) -> Reduced:
         """That of a system in which nothing is driven, with the same strips and bodies."""
         every = np.arange(len(self.bodies.load))
-        bodies = self.bodies._replace(free=every, held=every[:0], driven=-1)
+        free = np.delete(every, self.bodies.frames.carried)
+        bodies = self.bodies._replace(free=free, held=every[:0], driven=-1)
         return replace(self, system=system, bodies=bodies)
 
     def as_slender(self, *, slender: bool) -> Reduced:
@@ -111,8 +111,6 @@ def reduced(system: System) -> Reduced | None:
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
     or the spatial measure. It is made once a system.
     """
-    if not _known(system.scene):
-        return None
     made: Reduced | None = system.once("reduced", _reduced)
     return made
 
@@ -128,8 +126,10 @@ def require_reduced(system: System) -> Reduced:
     return model
 
 
-def _reduced(system: System) -> Reduced:
+def _reduced(system: System) -> Reduced | None:
     scene = system.scene
+    if not _known(scene):
+        return None
     bending = {e.strip: e for e in scene.of(Bending)}
     basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
     length, energy = system.scales.length, system.scales.energy
@@ -184,15 +184,17 @@ def _bodies_of(system: System, outer: int) -> Bodies:
         part[: len(rest)] /= force
         part[2 : len(rest) : 3] /= length
     held, rows = drives.coordinate - begin, drives.row.tolist()
-    driven = set(held.tolist())
+    frames = system.frames.among(begin, length)
+    fixed = {*held.tolist(), *frames.carried}
     return Bodies(
         rest=np.array(rest),
         load=load,
         weight=weight,
-        free=np.array([i for i in range(len(load)) if i not in driven], dtype=np.int64),
+        free=np.array([i for i in range(len(load)) if i not in fixed], dtype=np.int64),
         held=held,
         driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
         springs=in_units(system, system.springs),
+        frames=frames,
     )
 
 

@@ -119,11 +119,12 @@ def strips_of(
     c *= energy / length
     small = c < LEAST_COMPLIANCE
     outer = int(small[:, :split].any())
+    gain = np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)) if small.any() else 1.0 / c
     roots, tips = ([ends[strip.name, end].body for strip in scene.strips] for end in ("start", "end"))
     strips = Strips(
         along=along_of(system, shape, (speed, rest), to_modes),
         compliance=c,
-        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        gain=gain,
         numbers=_numbers_of(system, shape, ends),
         roots=np.array(roots, dtype=np.int64),
         tips=np.array(tips, dtype=np.int64),

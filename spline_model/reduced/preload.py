@@ -13,7 +13,7 @@ from spline_model.reduced.beside import respond
 from spline_model.reduced.model import Reduced
 from spline_model.reduced.numbers import in_order
 from spline_model.strip.compiled import called, kernel
-from spline_model.strip.element import CURVATURE, GRADIENT, LAST, PER_U, STRAIN, Strips
+from spline_model.strip.element import CURVATURE, GRADIENT, LAST, ON_POINTS, PER_U, STRAIN, Strips
 from spline_model.strip.ends import to_coordinates
 from spline_model.strip.points import evaluate_residual
 
@@ -45,9 +45,9 @@ class Preload(NamedTuple):
         if system.weight.size:
             given = [in_order(s.control_points, model.shape).ravel() for s in system.scene.strips]
             points = np.array(given)
-            hung = float((strips.dead * points).sum() / model.length)
+            hung = float((strips.numbers[:, ON_POINTS:] * points).sum() / model.length)
         return cls(
-            curvature=np.array((model.rest, strips.curvature)),
+            curvature=np.array((model.rest, strips.along[..., CURVATURE])),
             numbers=strips.numbers,
             bodies=bodies.weight,
             hung=np.array([hung, hung + float(bodies.weight[: len(bodies.rest)] @ bodies.rest)]),

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from spline_model.effects import MixedStretching
 from spline_model.effects.plate import STEP
-from spline_model.reduced.arrays import AXIAL, BENDING, RAW
-from spline_model.reduced.assembly import assemble, place_of
+from spline_model.frames import carry, fold, fold_tangent
+from spline_model.reduced.arrays import ARMS, AXIAL, BENDING, FORCE, RAW
+from spline_model.reduced.assembly import assemble, begin, place_of
 from spline_model.reduced.beside import take_product, take_residual
 from spline_model.reduced.model import Reduced
-from spline_model.strip.compiled import called, copy, kernel
+from spline_model.strip.compiled import called, copy, kernel, part
 from spline_model.strip.element import (
     FORCE_AT,
     GRADIENT,
@@ -30,17 +31,18 @@ Array = NDArray[Any]
 
 
 @kernel()
-def _place_all(y, poses, shape, strips, local, out, points, forces):
-    """Control points (S, G, 2 n) and, from the gradient, what the clamps do to the strips (S, G, 2, 3).
+def _place_all(y, arms, bodies, shape, strips, local, out, points, forces):
+    """Frames in y, control points (S, G, 2 n) and what the clamps do to the strips (S, G, 2, 3).
 
-    A clamp's force is what its two control points ask for, its moment what the inner one asks for
-    across its direction.
+    A clamp's force is what the gradient asks for at its two control points, its moment what it asks for at
+    the inner one across its direction.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
     for row in range(y.shape[0]):
+        carry(y[row], bodies.frames, arms)
         for s in range(strips.roots.size):
-            at = poses + s * (own + modes)
+            at = bodies.rest.size + s * (own + modes)
             state = y[row]
             place_points(s, state[at : at + own], state, strips, local)
             evaluate_residual(s, state[at + own : at + own + modes], n, shape, strips, local, out)
@@ -66,7 +68,7 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
     points = np.zeros((len(y), len(strips.roots), 2 * n), dtype=y.dtype)
     forces = np.zeros((len(y), len(strips.roots), 2, 3), dtype=y.dtype)
     out = np.zeros(5, dtype=y.dtype)
-    _place_all(y, len(model.bodies.rest), shape, strips, model.local(), out, points, forces)
+    _place_all(y, np.zeros_like(y[0]), model.bodies, shape, strips, model.local(), out, points, forces)
     if clamped is not None:
         forces = clamped
     system = model.system
@@ -96,14 +98,11 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
 def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
     """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors (S,), in EI/L.
 
-    nan of a singular strip. Carried frames go with their bodies and have no part of their own.
+    nan of a singular strip.
     """
     arrays = model.arrays()
     found, force = np.empty((len(y), *arrays.space.tangent.shape)), np.empty((len(y), len(model.bodies.load)))
     _condense_all(y, load, arrays, found, force)
-    for row in range(len(y) * bool(model.frames.place.size)):
-        by, bend = model.frames.spread(y[row, : found.shape[1]], force[row])
-        found[row] = by.T @ found[row] @ by + bend
     followers = model.followers
     for row in range(len(y) * bool(followers.place.size)):
         followers.subtract(y[row], load[row], force[row], found[row])
@@ -121,57 +120,62 @@ def _condense_all(y, load, arrays, tangents, forces):
                 tangents[row, i, j] = tangents[row, j, i] = value
 
 
-def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
-    """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' and springs' energy in y (S, Y), in EI/L.
+def whole_tangents(model: Reduced, y: Array, load: Array) -> tuple[Array, Array]:
+    """Gradient (S, Y) and Hessian (S, Y, Y) of all energy in y (S, Y) at load factors (S,), in EI/L.
 
-    Axial forces are among y. Dead loads on the strips are in it; weight of, and loads on, the bodies are not.
+    Axial forces are among y; frames are put there, and have no part of it.
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
-    poses, local = len(model.bodies.rest), model.local()
-    _assemble(y, poses, model.strips, model.shape, local, np.zeros(5), gradient, hessian)
-    own = slice(0, len(model.bodies.springs))
-    gradient[:, own] += (y[:, own] - model.bodies.rest[own]) @ model.bodies.springs
-    hessian[:, own, own] += model.bodies.springs
+    gather(y, load, model.arrays(), gradient, hessian)
     return gradient, hessian
 
 
 @kernel()
-def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
-    """Add all strips of all states."""
-    modes = strips.compliance.shape[1]
-    own = 2 * shape.order.size - 6
+def gather(y, load, arrays, gradient, hessian):
+    """``whole_tangents`` into zeros; energies of the last state in ``space``."""
+    bodies, strips, shape, space = arrays.bodies, arrays.strips, arrays.shape, arrays.space
+    modes, own, springs = strips.compliance.shape[1], 2 * shape.order.size - 6, bodies.springs.shape[0]
+    arms = space.vectors[ARMS]
     for row in range(y.shape[0]):
+        g, h = gradient[row], hessian[row]
+        begin(y[row], load[row], bodies, space)
+        for i in range(bodies.rest.size):
+            g[i] = space.vectors[RAW, i]
+        for i in range(springs * springs):
+            h[i // springs, i % springs] = bodies.springs[i // springs, i % springs]
         for s in range(strips.roots.size):
-            at = poses + s * (own + modes)
-            add_strip(s, at, at, at + own, y[row], strips, shape, local, out, gradient[row], hessian[row])
+            at = bodies.rest.size + s * (own + modes)
+            _add_strip(s, at, y[row], strips, shape, arrays.local, space.out, g, h)
+        fold(g, bodies.frames, arms)
+        fold_tangent(h, 0.0, bodies.frames, arms, arms)
 
 
-def products(model: Reduced, y: Array, rate: Array) -> tuple[Array, Array, Array]:
-    """Gradient (S, Y) as of ``whole_tangents``, its product with the Hessian along rates (S, Y), and energies
-    of bending and stretching (S, 2) [EI/L], at states y (S, Y)."""
+def products(model: Reduced, y: Array, load: Array, rate: Array) -> tuple[Array, Array, Array]:
+    """Gradient (S, Y) as of ``whole_tangents``, its product with the Hessian along rates (S, Y), in which
+    those of frames are put, and energies of bending and stretching (S, 2) [EI/L], at states y (S, Y)."""
     gradient, product = np.zeros((2, *y.shape), dtype=y.dtype)
     energies = np.zeros((len(y), 2), dtype=y.dtype)
-    _multiply(y, rate, model.arrays(), gradient, product, energies)
-    own = slice(0, len(model.bodies.springs))
-    gradient[:, own] += (y[:, own] - model.bodies.rest[own]) @ model.bodies.springs
-    product[:, own] += rate[:, own] @ model.bodies.springs
+    _multiply(y, load, rate, model.arrays(), gradient, product, energies)
     return gradient, product, energies
 
 
 @kernel()
-def _multiply(y, rate, arrays, gradient, product, energies):
+def _multiply(y, load, rate, arrays, gradient, product, energies):
+    space = arrays.space
     for row in range(y.shape[0]):
-        take_residual(y[row], 0.0, arrays)
-        energies[row, 0], energies[row, 1] = arrays.space.out[BENDING], arrays.space.out[AXIAL]
-        _add_strips(arrays, gradient[row])
+        take_residual(y[row], load[row], arrays)
+        energies[row, 0], energies[row, 1] = space.out[BENDING], space.out[AXIAL]
+        copy(space.vectors[RAW, : arrays.bodies.rest.size], gradient[row])
+        _add_strips(False, arrays, gradient[row])
         take_product(rate[row], 0.0, arrays)
-        _add_strips(arrays, product[row])
+        copy(space.vectors[FORCE, : arrays.bodies.rest.size], product[row])
+        _add_strips(True, arrays, product[row])
 
 
 @called()
-def _add_strips(arrays, total):
-    """Add g and gap of all strips to a covector (Y,)."""
+def _add_strips(ends, arrays, total):
+    """Put g and gap of all strips in a covector (Y,), and with their ``ends`` add what acts on bodies."""
     strips, local, poses = arrays.strips, arrays.local, arrays.bodies.rest.size
     own, modes = 2 * arrays.shape.order.size - 6, strips.compliance.shape[1]
     last = own + strips.coupled - strips.outer
@@ -179,29 +183,32 @@ def _add_strips(arrays, total):
         g, tip, root, at = local.reduced[s, LAST], strips.tips[s], strips.roots[s], poses + s * (own + modes)
         copy(g[:own], total[at : at + own])
         copy(local.gap[s], total[at + own : at + own + modes])
-        for i in range(last, last + 3 * (tip >= 0) + 3 * (root >= 0)):
+        for i in range(last, last + (3 * (tip >= 0) + 3 * (root >= 0)) * ends):
             total[place_of(i - last, tip, root, 0)] += g[i]
+    if ends:
+        fold(total, arrays.bodies.frames, arrays.space.vectors[ARMS])
 
 
-@called()
-def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessian):
-    """Add strip s, with w and a from y[at] on, to gradient and tangent, where these are at first and axial.
+@part()
+def _add_strip(s, at, y, strips, shape, local, out, gradient, hessian):
+    """Add strip s, with w and a from y[at] on, to gradient and tangent.
 
     The axial energy is int (N eps - 1/2 c N^2) J0 du, whose derivatives these are.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6
-    a = y[at + own : at + own + modes]
+    axial = at + own
+    a = y[axial : axial + modes]
     place_points(s, y[at : at + own], y, strips, local)
     evaluate_points(s, a, n, shape, strips, local, out)
     size, h, gap = to_element(s, n, 0, strips, local), local.reduced[s], local.gap[s]
     g, width = h[LAST], h.shape[1]
     for i in range(size):
-        row = first + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
+        row = at + i if i < own else place_of(i - own, strips.tips[s], strips.roots[s], 0)
         gradient[row] += g[i]
         hessian[row, row] += h[i, i]
         for j in range(i + 1, size):
-            column = first + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
+            column = at + j if j < own else place_of(j - own, strips.tips[s], strips.roots[s], 0)
             hessian[row, column] += h[i, j]
             hessian[column, row] += h[i, j]
         for k in range(modes):
@@ -241,6 +248,10 @@ def coordinates_by(model: Reduced, y: Array) -> Array:
 
 
 def _stepped(model: Reduced) -> Reduced:
-    """The same with strips of complex numbers, for states with a complex step."""
+    """The same with strips and frames of complex numbers, for states with a complex step."""
     own = {name: getattr(model.strips, name) + 0j for name in ("along", "numbers", "compliance")}
-    return replace(model, strips=model.strips._replace(**own))
+    rest: Array = model.bodies.rest + 0j
+    lever: Array = model.bodies.frames.lever + 0j
+    frames = model.bodies.frames
+    bodies = model.bodies._replace(rest=rest, frames=frames._replace(lever=lever))
+    return replace(model, bodies=bodies, strips=model.strips._replace(**own))

@@ -72,21 +72,6 @@ class Shape(NamedTuple):
             products[place, :, : len(i)] = (curve[of_i, i] * curve[of_j, j]).T
         return cls(order=order, tables=tables, rule=rule, curve=curve, products=products)
 
-    @property
-    def d1(self) -> Array:
-        """First derivatives (G, n)."""
-        return np.asarray(self.tables[FIRST])
-
-    @property
-    def d2(self) -> Array:
-        """Second derivatives (G, n)."""
-        return np.asarray(self.tables[SECOND])
-
-    @property
-    def weight(self) -> Array:
-        """Weights (G,)."""
-        return np.asarray(self.rule[WEIGHT])
-
 
 class Strips(NamedTuple):
     """What tells S strips from one another, in few arrays: each costs every kernel that they are passed to.
@@ -119,24 +104,9 @@ class Strips(NamedTuple):
         return self.along[..., SPEED]
 
     @property
-    def curvature(self) -> Array:
-        """Stress-free curvature (S, G)."""
-        return self.along[..., CURVATURE]
-
-    @property
     def modes(self) -> Array:
         """Modes of the axial force (S, G, K)."""
         return self.along[..., MODES:]
-
-    @property
-    def stretching(self) -> Array:
-        """EA of stretching by quadrature (S,)."""
-        return self.numbers[:, STRETCHING]
-
-    @property
-    def strain(self) -> Array:
-        """Natural strain (S,)."""
-        return self.numbers[:, STRAIN]
 
     @property
     def root(self) -> Array:
@@ -152,11 +122,6 @@ class Strips(NamedTuple):
     def reach(self) -> Array:
         """k_A, k_B (S, 2)."""
         return self.numbers[:, REACH:PER_U]
-
-    @property
-    def dead(self) -> Array:
-        """Dead load on the control points (S, 2 n)."""
-        return self.numbers[:, ON_POINTS:]
 
 
 class Local(NamedTuple):

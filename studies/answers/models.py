@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from studies.answers.settings import FeSettings, Settings
@@ -29,9 +30,9 @@ def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]
         from fe_reference import strip_fields
 
         return strip_fields
-    from spline_model.section_forces import mode_fields, moving_fields, static_fields
+    from spline_model import strip_fields as fields_of_splines
 
-    return {"static": static_fields, "release": moving_fields, "modes": mode_fields}[analysis]
+    return partial(fields_of_splines, analysis=analysis)
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,7 @@ class Asked:
         """Return the design in the model as a result was reached: in motion, with the control points or
         elements that an accuracy has taken."""
         asked = self.modelled
-        if hasattr(asked, "with_control_points"):
+        if hasattr(asked, "in_motion"):
             grid = asked.design.discretisation
             chosen = getattr(result, "settings", {}).get("control_points", grid.points)
             points = getattr(result, "control_points", chosen)

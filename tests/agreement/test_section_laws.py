@@ -129,14 +129,13 @@ def test_roots_are_springs_at_both_clamps(name, models, grid):
     """Requirement: a strip that is bent to a half turn between two roots turns as one that is longer by c t
     at either, the elements' ends turn from the bodies by the moment over the springs, and the energy is the
     work. Splines have no springs but a compliance along the strip."""
-    fields = spline_model.static_fields if models is spline_model else fe_reference.strip_fields
     made = strips(models, 0.1, 0.05, (0.0,), ROOTS, {"root_compliance": {"root": 0.416}}, **grid)
     rigidity, spring = YOUNGS_MODULUS * 0.1 * 0.05**3 / 12.0, 0.416 * 0.05
 
     def error(turn=3.0):
         bent = models.solve_mechanism(made, rotation=turn, increments=5)
         moment = rigidity * 3.0 / (1.0 + 2.0 * spring)
-        at_ends = fields(made, bent.states[-1:]).rotation[0, 0, [0, -1]]
+        at_ends = models.strip_fields(made, bent.states[-1:]).rotation[0, 0, [0, -1]]
         turns = at_ends if models is fe_reference else ()
         known = (moment, 1.5 * moment, spring * moment / rigidity, 3.0 - spring * moment / rigidity)
         known = known[: 2 + len(turns)]

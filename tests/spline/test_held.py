@@ -49,7 +49,7 @@ def disagreement(pose, increments=8, slide=None, **settings):
         DrivenRotation(body="body", angle=rotation),
         DrivenDisplacement(body="body", displacement=tuple(displacement)),
     )
-    led = replace(reference, scene=reference.with_effects(*drives))
+    led = replace(reference, scene=reference.scene.with_effects(*drives))
     path = solve_mechanism(led, increments=increments)
     system, z = path.system, path.states[-1]
     rows = system.layout.multipliers[-2:]

@@ -10,6 +10,8 @@ from spline_model import (
     StripDesign,
     compliant_mechanism,
     natural_frequencies,
+    sensitivities,
+    solve_many,
     solve_mechanism,
     solve_motion,
 )
@@ -195,6 +197,71 @@ def test_motions_with_hinges_keep_their_energy():
         return np.abs(energy - energy[0]).max()
 
     gates.hold("spline_hinged_motion", error)
+
+
+def carried(end=1.0, height=0.1, load=True, inertia=True, density=1e-3):
+    """A body on a spring and two strips, each with a hinge, and a load beside the centre of the body."""
+    section = STRIP | {"density": density}
+    given = {"spring": {"stiffness": (1.0, 2.0), "rotational_stiffness": 0.5}}
+    if load:
+        given["applied_force"] = {"force": (0.5, -1.0), "at": (1.4, 0.3)}
+    effects = ("bending", "stretching", "body_inertia", *given, *("strip_inertia",) * inertia)
+    low = section | {"start": (0.0, -0.5), "end": (1.2, -0.4)}
+    return compliant_mechanism(
+        strips=[
+            StripDesign(name="beam", tip="end", tip_joint="hinge", **section | {"end": (end, 0.0)}),
+            StripDesign(name="low", tip="end", root_joint="hinge", **low),
+        ],
+        bodies=[BodyDesign(name="end", centre=(1.2, height), mass=1.0, moment_of_inertia=0.5)],
+        effects=effects,
+        parameters=given,
+        control_points=7,
+    )
+
+
+def test_designs_with_hinges_have_derivatives_and_batches():
+    """Requirement: derivatives by the places of hinges and centres are those of differences, and a batch
+    gives what single solves give."""
+    names = ("beam.end_x", "end.centre_y")
+
+    def solved(end=1.0, height=0.1):
+        return solve_mechanism(carried(end, height), rotation=0.4, increments=4)
+
+    found = sensitivities(carried(), solved(), parameters=names)
+
+    def error(step=1e-4):
+        moved = [
+            [solved(**{name: at + way * step}) for way in (1.0, -1.0)]
+            for name, at in (("end", 1.0), ("height", 0.1))
+        ]
+        apart = [
+            (getattr(a, name)[-1] - getattr(b, name)[-1]) / (2.0 * step)
+            - getattr(found, name).derivative[-1, ..., k]
+            for k, (a, b) in enumerate(moved)
+            for name in ("torque", "stiffness", "centre")
+        ]
+        return max(np.abs(each).max() for each in apart)
+
+    gates.hold("spline_carried_derivatives", error)
+    batch = solve_many(carried(), {"beam.end_x": [1.0, 1.05], "end.centre_y": [0.1, 0.15]}, rotation=0.4)
+    for row, alone in enumerate((solved(), solved(1.05, 0.15))):
+        np.testing.assert_allclose(batch.torque[row, -1], alone.torque[-1], rtol=1e-10)
+        np.testing.assert_allclose(batch.stiffness[row, -1], alone.stiffness[-1], rtol=1e-9)
+
+
+def test_all_motions_know_hinges():
+    """Requirement: the leapfrog and massless strips move a body on hinges as the energy scheme does."""
+    run = {"start": 0.4, "duration": 0.2, "check": False}
+
+    def error(step=1e-3):
+        motion = solve_motion(carried(load=False), step=step, **run)
+        explicit = solve_motion(carried(load=False), integrator="leapfrog", records=50, **run)
+        light = solve_motion(carried(load=False, density=1e-12), step=step, **run)
+        massless = solve_motion(carried(load=False, inertia=False), step=step, **run)
+        pairs = ((motion, explicit), (light, massless))
+        return max(np.abs(a.bodies["end"][-1] - b.bodies["end"][-1]).max() for a, b in pairs)
+
+    gates.hold("spline_carried_motion", error)
 
 
 def followed(load):

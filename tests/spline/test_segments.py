@@ -12,7 +12,7 @@ from spline_model import (
     cross_axis_pivot,
     solve_mechanism,
     solve_statics,
-    static_fields,
+    strip_fields,
 )
 from tests import gates
 from tests.frames import one_strip
@@ -47,7 +47,7 @@ def test_a_pivot_in_segments_answers_as_a_whole_one():
     def error(segments=3, control_points=9):
         pivots = made(segments=segments, control_points=control_points), made(control_points=17)
         paths = [replace(solve_statics(each, rotation=0.9, increments=3), balanced=True) for each in pivots]
-        fields = [static_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
+        fields = [strip_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
         curves = ("arc_length", "rest_shape", "rotation", "stretch", "reactions", "rest_bodies")
         numbers = ("torque", "stiffness", "work", "bending_energy", "own_stiffness")
         return max(apart(*paths, (*PLACES, *numbers)), apart(*fields, curves))

@@ -119,7 +119,7 @@ def test_states_of_another_design_are_refused():
         studies.plot(path, fe_reference.cross_axis_pivot(**TABLE_ONE, elements=4))
     splines = spline_model.cross_axis_pivot(**SIX)
     with pytest.raises(spline_model.InvalidParameter, match=r"states: got .*control points"):
-        spline_model.static_fields(splines, np.zeros((1, 5)))
+        spline_model.strip_fields(splines, np.zeros((1, 5)))
     with pytest.raises(BadInput, match="got StaticSolution and Pivot, expected"):
         studies.plot(path, splines)
 

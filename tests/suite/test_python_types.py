@@ -152,10 +152,7 @@ def _of(package):
     yield lambda each: package.natural_frequencies(each)
     if package is spline_model:
         yield lambda each: package.impulse_solver(each)
-        yield lambda each: package.static_fields(each, np.zeros((1, 1)))
-        yield lambda each: package.moving_fields(each, np.zeros((1, 1)))
-    else:
-        yield lambda each: package.strip_fields(each, np.zeros((1, 1)))
+    yield lambda each: package.strip_fields(each, np.zeros((1, 1)))
 
 
 def _arrays(answer):
