@@ -6,7 +6,6 @@ import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from studies.cases.design import as_toml, document_of, read_design
@@ -136,25 +135,6 @@ def test_gravity_by_its_direction(table, expected, case):
     path = case(("[drive]", f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\n{table}\n[drive]'))
     found = read_design(path).effects.parameters()["gravity"]["acceleration"]
     assert found == pytest.approx(expected, abs=1e-14)
-
-
-@pytest.mark.parametrize("model", [["--model", "spline"], ["--model", "fe", "--elements", "4"]])
-def test_a_pivot_turned_with_its_gravity_answers_the_same(model, case, command):
-    """Turned with its gravity, a pivot has the same torque and stress, and its centre turns with it."""
-    answers = []
-    for angle in (0.0, 70.0):
-        gravity = f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\ndirection_deg = {angle - 90}'
-        path = case(
-            ("[material]", f"orientation_deg = {angle}\n[material]"),
-            ("[drive]", f"{gravity}\n[drive]"),
-            ("increments = 20", "increments = 2"),
-        )
-        answers.append(json.loads(command("solve", path, *model, "--json", "-").out))
-    plain, turned = answers
-    for name in ("torque_Nm", "max_stress_Pa", "stiffness_Nm_per_rad"):
-        assert np.allclose(turned[name], plain[name], rtol=1e-7, atol=1e-7 * max(map(abs, plain[name])))
-    place = [np.array(each["com_x_m"]) + 1j * np.array(each["com_y_m"]) for each in answers]
-    assert np.allclose(place[1], place[0] * np.exp(1j * math.radians(70.0)), atol=1e-10)
 
 
 SHIPPED = [

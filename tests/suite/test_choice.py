@@ -155,24 +155,6 @@ def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_pa
     assert first.frequency == pytest.approx(fine.frequency, rel=ACCURACY)
 
 
-@pytest.mark.slow
-def test_size_answers_case_and_optimum_to_the_accuracy(pivot, command, tmp_path):
-    """Requirement: of the same design `size` has stiffness, stress and shift within 1e-4, as of its optimum,
-    with errors and the remarks of `solve`."""
-    held = ("--objective", "centre-shift", "--starts", 1, "--crossing-ratio", 0.8, "--inclination-deg", 65)
-    sized = tmp_path / "sized.toml"
-    found = json.loads(command("size", pivot, *held, "--out", sized, "--json", "-").out)
-    for case, given in ((steep(), found["case"]), (read_design(sized), found["optimum"]["spline"])):
-        many = answer_static(case, SplineSettings(control_points=20))
-        good = numbers(many)
-        assert given["largest_centre_shift_m"] == pytest.approx(good["centre_shift_max_m"], rel=ACCURACY)
-        assert given["max_stress_Pa"] == pytest.approx(good["stress_max_Pa"], rel=ACCURACY)
-        assert given["stiffness_Nm_per_rad"] == pytest.approx(many.stiffness[0], rel=ACCURACY)
-    assert max(found["optimum"]["estimated_error"].values()) <= ACCURACY
-    solved = json.loads(command("solve", sized, "--json", "-").out)
-    assert found["optimum"]["validity"]["outside"] == solved["validity"]["outside"] != []
-
-
 def test_the_page_answers_one_design_to_the_accuracy(pivot):
     """Requirement: the page has moment, stiffness, stress and shift of the same design within 1e-4."""
     good, made = right(), page(pivot)

@@ -27,18 +27,6 @@ def rod(shared="", own=""):
     return text.replace(f"= {SECOND_MOMENT}", f"= {MOMENT}")
 
 
-@pytest.mark.parametrize(
-    "given", [{"shared": FIBRE}, {"own": f"{FIBRE}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}"}]
-)
-def test_stress_of_a_round_rod(given, tmp_path, command):
-    """A section names its outermost fibre in [section] or of its own: the stress is that of the rod."""
-    (tmp_path / "rod.toml").write_text(rod(**given))
-    found = json.loads(command("solve", tmp_path / "rod.toml", "--json", "-").out)
-    right = 32.0 * LOAD * LENGTH / (math.pi * DIAMETER**3)
-    assert found["strength"]["max_stress_Pa"] == pytest.approx(right, rel=1e-3)
-    assert not any("outer_fibre_m" in each for each in found["validity"]["outside"])
-
-
 @pytest.mark.parametrize("model", ["spline", "fe"])
 def test_no_stress_without_an_outermost_fibre(model, tmp_path, command):
     """Of a section by area and second moment alone no stress is printed, and the answer names the key."""
