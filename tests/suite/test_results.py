@@ -1,6 +1,8 @@
 """The committed results are fresh, can be drawn again, reproduce, and are what README.md says."""
 
 import shutil
+import sys
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -9,10 +11,11 @@ from matplotlib.legend import Legend
 
 from studies.__main__ import main
 from studies.commands import readme
+from studies.cost.openseespy import _loaded
 from studies.errors import BadInput
 from studies.record import style
 from studies.record.source import ROOT
-from studies.record.store import Store, as_csv, inputs
+from studies.record.store import RESULTS, Store, as_csv, inputs
 from studies.registry import STUDIES, study_of
 
 #: A study of half a second.
@@ -102,3 +105,31 @@ def test_verify_renews_what_is_the_same_and_names_what_differs(tmp_path, capsys)
     table.assign(error_torque=1.001 * table["error_torque"]).to_csv(path, index=False)
     assert main(words) == 1
     assert capsys.readouterr().err.endswith(f"{NAME}: differs: meshes (error_torque)\n")
+
+
+#: Studies that hold the suite against the other codes.
+BESIDE_PEERS = ("cost/codes",)
+
+
+def files_in(folder: Path) -> dict[str, bytes]:
+    """Return the content of all files below a folder."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_results_stay_without_the_other_codes(tmp_path, monkeypatch, capsys):
+    """Where Exudyn and OpenSees are not there, the studies beside them keep every byte, so that pages and
+    report stay true, and each says in a line what to install."""
+    for study in BESIDE_PEERS:
+        shutil.copytree(RESULTS / "data" / study, tmp_path / "data" / study)
+    before = files_in(tmp_path)
+    _loaded.cache_clear()  # a code that was asked for before in this process is remembered
+    for name in [loaded for loaded in sys.modules if loaded.partition(".")[0] in ("exudyn", "openseespy")]:
+        monkeypatch.setitem(sys.modules, name, None)
+    for name in ("exudyn", "openseespy"):
+        monkeypatch.setitem(sys.modules, name, None)
+    assert main(["run", *BESIDE_PEERS, "--results", str(tmp_path)]) == 0
+    assert capsys.readouterr().err.splitlines() == [
+        f"{study}: left as it is: it needs exudyn, openseespy: python -m pip install '.[peers]'"
+        for study in BESIDE_PEERS
+    ]
+    assert files_in(tmp_path) == before

@@ -1,4 +1,4 @@
-"""The hash of a study changes with the code of all that it imports, and kernels of another code are dropped."""
+"""The hash of a study follows the code of all that it imports; kernels of another code are dropped."""
 
 import shutil
 from graphlib import TopologicalSorter
