@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.published import budget
+from studies.published import solid_pivot
 from studies.published.solids import limits_of
 
 ROTATION = np.linspace(0.1, 1.0, 5)
@@ -19,8 +19,8 @@ def states(shift=0.0, **labels):
 
 def test_bars_are_the_largest_differences():
     """Torque is relative to the state, the trajectory to the chord of the solid's or beam's own path."""
-    shifts = {name: 0.01 * k for k, name in enumerate(budget.VARIANTS)}
-    wanted = {model for _, model, _ in budget.SOURCES.values() if not model.startswith("solid")}
+    shifts = {name: 0.01 * k for k, name in enumerate(solid_pivot.VARIANTS)}
+    wanted = {model for _, model, _ in solid_pivot.SOURCES.values() if not model.startswith("solid")}
     models = [states(model=name) for name in wanted - set(shifts)]
     variants = [states(shift, model=name) for name, shift in shifts.items()]
     laws = {"st-venant-kirchhoff": 0.0, "neo-hookean": -0.02}
@@ -28,10 +28,10 @@ def test_bars_are_the_largest_differences():
         states(shift, law=law).assign(uncertainty=1e-4, uncertainty_m=9e-5) for law, shift in laws.items()
     ]
     tables = {"models": pd.concat(models), "variants": pd.concat(variants), "limits": pd.concat(limits)}
-    rows = pd.DataFrame(budget.budget(tables, 5)).set_index("source")
-    reference = 1.0 + shifts[budget.BEAM] * ROTATION
-    for source, (_, model, against) in budget.SOURCES.items():
-        if against == budget.BEAM:
+    rows = pd.DataFrame(solid_pivot.budget(tables, 5)).set_index("source")
+    reference = 1.0 + shifts[solid_pivot.BEAM] * ROTATION
+    for source, (_, model, against) in solid_pivot.SOURCES.items():
+        if against == solid_pivot.BEAM:
             own = 1.0 + shifts.get(model, 0.0) * ROTATION
             apart = np.abs(own / reference - 1.0).max()
             assert rows.loc[source, "error_torque"] == pytest.approx(apart, abs=1e-14)

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from studies.asking import whole
+from studies.commands.results import whole
 from studies.engine import Claim, Part, Study, finding
 from studies.record import progress
 from studies.record.progress import Bar, measure, silent
