@@ -14,11 +14,11 @@ from functools import partial
 from pathlib import Path
 
 from studies.answers import quantities
+from studies.commands import judge
 from studies.commands.case import PAGE, markdown_head
 from studies.commands.findings import TABLES, stored_table
 from studies.commands.parser import command
 from studies.errors import BadInput
-from studies.published import benchmark
 from studies.record.files import write_whole
 from studies.record.source import HOME, ROOT
 from studies.record.store import Store
@@ -55,9 +55,9 @@ def main(arguments: argparse.Namespace) -> int:
     for path, text in texts.items():
         write_whole(path, text.encode())
         print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
-    for name, content in benchmark.package(partial(stored_table, Store())).items():
-        write_whole(benchmark.FOLDER / name, content)
-    print(f"{benchmark.FOLDER.relative_to(ROOT)}: {', '.join(benchmark.THEORIES)}")
+    for name, content in judge.package(partial(stored_table, Store())).items():
+        write_whole(judge.FOLDER / name, content)
+    print(f"{judge.FOLDER.relative_to(ROOT)}: {', '.join(judge.THEORIES)}")
     return 0
 
 

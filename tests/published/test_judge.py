@@ -9,8 +9,8 @@ from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
+from studies.commands import judge
 from studies.commands.findings import stored_table
-from studies.published import benchmark
 from studies.record.store import Store
 
 CASE = named_case()
@@ -44,8 +44,8 @@ def judged(tmp_path, capsys):
 
 def test_package_is_of_the_stored_results():
     """The files of the package are those that the stored tables give."""
-    for name, content in benchmark.package(partial(stored_table, Store())).items():
-        assert (benchmark.FOLDER / name).read_bytes() == content, name
+    for name, content in judge.package(partial(stored_table, Store())).items():
+        assert (judge.FOLDER / name).read_bytes() == content, name
 
 
 def test_answers_of_the_suite_pass(judged):
@@ -59,7 +59,7 @@ def test_answers_of_the_suite_pass(judged):
         rows("vibration_rotation_rad", motion.time, motion.rotation),
     ]
     code, found = judged(results)
-    assert code == 0 and set(found) == set(benchmark.QUANTITIES)
+    assert code == 0 and set(found) == set(judge.QUANTITIES)
     assert found["torque_Nm"] == ("20 of 20", "pass") and found["frequency_Hz"] == ("5 of 5", "pass")
     assert found["vibration_rotation_rad"] == ("50 of 250", "pass")
 
@@ -82,7 +82,7 @@ def test_deviations_of_a_coarse_mesh_are_named(judged):
 @pytest.mark.parametrize(("share", "code"), [(0.999, 0), (-0.999, 0), (1.001, 1), (-1.001, 1)])
 def test_uncertainty_is_added_to_the_tolerance(judged, share, code, tmp_path, monkeypatch):
     """A value passes up to the tolerance times the scale plus the uncertainty, on both sides."""
-    _, _, tolerance = benchmark.QUANTITIES["torque_Nm"]
+    _, _, tolerance = judge.QUANTITIES["torque_Nm"]
     known = rows("torque_Nm", [0.5], [8.0]).assign(uncertainty=3e-3, scale=4.0)
     known.to_csv(tmp_path / "beam.csv", index=False)
     monkeypatch.setattr("studies.commands.judge.FOLDER", tmp_path)
