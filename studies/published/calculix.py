@@ -37,7 +37,7 @@ STEP = (
 MESHES, SMALL = (2, 3), 5e-4
 
 
-def missing() -> str:
+def _missing() -> str:
     """Return what this machine lacks."""
     return "" if shutil.which(PROGRAM) else "it needs CalculiX: apt-get install calculix-ccx"
 
@@ -153,5 +153,5 @@ STUDY = Study(
         "torque_Nm": Digits(relative=10.0 * PRECISION),
         **dict.fromkeys(("error_torque", "error_force", "value"), Digits(floor=10.0 * PRECISION)),
     },
-    missing=missing,
+    missing=_missing,
 )

@@ -10,7 +10,7 @@ from studies.published.solid_pivot import STATES
 from studies.published.solids import meshed, turned
 from tests.gates import hold
 
-ccx = pytest.mark.skipif(bool(calculix.missing()), reason="ccx is not installed (calculix-ccx)")
+ccx = pytest.mark.skipif(bool(calculix.STUDY.missing()), reason="ccx is not installed (calculix-ccx)")
 PIVOT = named_case()
 
 
