@@ -148,19 +148,6 @@ def test_pendulum_period(model, answered, refused):
     assert 4.0 * quarter == pytest.approx(4.1335, rel=1e-3)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_what_nothing_holds_falls(model, tmp_path, answered):
-    """Requirement: two bodies on a strip, held until their release, fall by g t^2 / 2 in the mean."""
-    case = tmp_path / "falling.toml"
-    text = (FINDS / "free_flight.toml").read_text().split("[scene]")[0]
-    case.write_text(text + '[scene]\neffects = ["+gravity"]\n')
-    found, moved = flown(answered, case, model, 0.1)
-    assert found["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
-    gained = np.array(found["kinetic_J"]) + np.array(found["strain_J"]) + np.array(found["gravity_J"])
-    assert np.ptp(gained) < 1e-4 * max(found["kinetic_J"])
-    assert moved[1] == pytest.approx(-0.5 * 9.80665 * 0.01, rel=0.01)
-
-
 def test_gradients_of_lengths_far_apart():
     """Requirement: a path of strips of which one is 500 times shorter has gradients, though its residual is
     round-off of the short strip: the torque at a given displacement is proportional to Young's modulus."""
