@@ -44,6 +44,7 @@ COMMANDS: dict[str, str] = {
 #: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
 PLACES: dict[str, str] = {
     "critical-load": "studies.commands.critical_load",
+    "completion": "studies.commands.compile:completion",
     "markers": "studies.commands.interactive:markers",
     "calibrate": "studies.commands.interactive:calibrate",
     "list": "studies.registry:listed",

@@ -11,9 +11,9 @@ from studies.cases.design import Design, read_design
 from studies.cases.document import nearest
 from studies.cases.problem import FOLDER
 from studies.commands import parser
-from studies.commands.parser import STREAM, Argument, positive, whole_number, writable_file
+from studies.commands.parser import STREAM, Argument, positive, whole_number
 from studies.errors import BadInput
-from studies.record.files import PICTURES
+from studies.record.files import PICTURES, require_writable_file
 from studies.record.source import HOME
 
 Some = TypeVar("Some", bound=Design)
@@ -32,16 +32,22 @@ def _case_file(text: str) -> str:
     return str(own)
 
 
+def _writable_file(text: str) -> Path:
+    """Parse a file that is to be written, refused before anything is computed where it cannot be."""
+    require_writable_file(Path(text))
+    return Path(text)
+
+
 def _file_or_stream(text: str) -> Path:
     """Parse a file that is to be written, or "-" for the output stream."""
-    return STREAM if text == str(STREAM) else writable_file(text)
+    return STREAM if text == str(STREAM) else _writable_file(text)
 
 
 def _picture_file(text: str) -> Path:
     """Parse the file of a picture, which must have one of the known endings."""
     if Path(text).suffix[1:].lower() not in PICTURES:
         raise BadInput(f"got {text}, expected a file that ends in .svg, .png or .pdf")
-    return writable_file(text)
+    return _writable_file(text)
 
 
 CASE = Argument(
@@ -111,7 +117,6 @@ INCREMENTS = Argument(
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)
 HELD = Argument("--held", "hold the rotation of the body")
-REPEAT = Argument("--repeat R", "wall_s is the median of R solves, default 1", whole_number(1), default=1)
 DURATION = Argument("--duration T", "of the motion, in s (default: four swings of the design)", positive)
 STEP = Argument("--step S", "of the integrator, in s (default: its own)", positive)
 INTEGRATOR = Argument(
@@ -135,7 +140,7 @@ PLOT = Argument(
     _picture_file,
 )
 OUT = Argument("--out FOLDER", read=Path)
-OUT_FILE = Argument("--out FILE", read=writable_file)
+OUT_FILE = Argument("--out FILE", read=_writable_file)
 NAMES = Argument("names NAME", "studies, groups, or all; `list` names them", nargs="+")
 RESULTS = Argument(
     "--results FOLDER",

@@ -1,7 +1,7 @@
-"""The tables of the page of findings, as lines of Markdown made from the stored results."""
+"""The tables of README and of the page of findings, as lines of Markdown made from the stored results."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ import pandas as pd
 
 from studies.commands.case import markdown_head
 from studies.design.sizing import AGAIN, BEAMS, EFFECTS, TOLERANCES
+from studies.engine import percent
 from studies.errors import BadInput
 from studies.record.store import Store
 from studies.registry import STUDIES
@@ -31,7 +32,7 @@ SWINGS = {
 CLAIMED = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 
 
-def sized(store: Store) -> Iterator[str]:
+def _sized(store: Store) -> Iterator[str]:
     """Yield the table of the designs that gradients found, with plate effects and supports, beside what each
     began from; below it what was promised as beams."""
     size = "length, thickness, width [mm]"
@@ -75,19 +76,42 @@ def _less(factor: float) -> str:
     return "" if factor == 1.0 else f" (× 1/{factor:.3g})"
 
 
-def paths(store: Store) -> Iterator[str]:
+#: Formulations of the table in the README.
+SHORT = ("n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements")
+
+
+def _short(store: Store) -> Iterator[str]:
+    """Yield the table of the README: a row per formulation, errors in percent."""
+    paths = _path_rows(store)
+    swings = _rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
+    names = ("path", "torque", "stiffness", "swing frequency")
+    static = _uncertainties(store, "convergence/control_points")
+    moving = _uncertainties(store, "paper/fig06_release")
+    limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
+    yield markdown_head("largest error, against refined finite elements", *names)
+    for name in SHORT:
+        errors = " | ".join(percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
+        shift = swings[name]["frequency_shift"]
+        shown = f"{'+' if shift > 0.0 else ''}{percent(shift)}"
+        if abs(shift) <= limits[-1]:
+            shown = f"< {percent(limits[-1])}"
+        yield f"| {SWINGS[name]} | {errors} | {shown} |"
+    yield "| *uncertainty of the reference* | " + " | ".join(map(percent, limits)) + " |"
+
+
+def _paths(store: Store) -> Iterator[str]:
     """Yield the table of the static path: a row a formulation, and the uncertainty of the reference."""
-    limits = uncertainties(store, "convergence/control_points")
+    limits = _uncertainties(store, "convergence/control_points")
     yield markdown_head("largest error over 0 to 90°", *QUANTITIES)
-    for label, row in path_rows(store).items():
+    for label, row in _path_rows(store).items():
         yield f"| {label} | " + " | ".join(f"{row[f'error_{name}']:.1e}" for name in QUANTITIES) + " |"
     yield "| *uncertainty of the reference* | " + " | ".join(f"{limits[n]:.0e}" for n in QUANTITIES) + " |"
 
 
-def swings(store: Store) -> Iterator[str]:
+def _swings(store: Store) -> Iterator[str]:
     """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
-    rows = rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
-    limits = uncertainties(store, "paper/fig06_release")
+    rows = _rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
+    limits = _uncertainties(store, "paper/fig06_release")
     yield markdown_head("swing of 0.05 s from 90°", "frequency", "rotation")
     for name, label in SWINGS.items():
         row = rows[name]
@@ -96,18 +120,18 @@ def swings(store: Store) -> Iterator[str]:
     yield f"| *uncertainty of the reference* | {uncertain} |"
 
 
-def claims(store: Store) -> Iterator[str]:
+def _claims(store: Store) -> Iterator[str]:
     """Yield the table of the paper's claims: one row a claim, one column a formulation."""
     studies = ("paper/fig04_trajectory", "paper/fig05_stiffness", "paper/fig06_release")
     found = pd.concat([stored_table(store, study, "findings") for study in studies])
     yield markdown_head("claim of the paper", *CLAIMED)
     for claim, rows in found.groupby("claim", sort=True):
-        verdicts = rows_by(rows, "formulation")
+        verdicts = _rows_by(rows, "formulation")
         cells = (f"{verdicts[name]['holds']} ({percent(verdicts[name]['value'])})" for name in CLAIMED)
         yield f"| {claim} | " + " | ".join(cells) + " |"
 
 
-def published(store: Store) -> Iterator[str]:
+def _published(store: Store) -> Iterator[str]:
     """Yield the table of published problems: of each and each kind of answer the value that is met worst, by
     the splines where they answer."""
     values = stored_table(store, "published/problems", "values")
@@ -133,12 +157,12 @@ def stored_table(store: Store, study: str, name: str) -> pd.DataFrame:
         raise BadInput(f"{study}/{name}: got no stored table, expected those of `make figures`") from None
 
 
-def uncertainties(store: Store, study: str) -> "pd.Series[Any]":
+def _uncertainties(store: Store, study: str) -> "pd.Series[Any]":
     """Return the uncertainty of the reference of a study, by quantity."""
     return stored_table(store, study, "reference").set_index("quantity")["uncertainty"]
 
 
-def path_rows(store: Store) -> dict[str, Any]:
+def _path_rows(store: Store) -> dict[str, Any]:
     """Return the rows of the errors along the static path, by the label of their formulation."""
     splines = stored_table(store, "convergence/control_points", "map")
     meshes = stored_table(store, "convergence/elements", "meshes")
@@ -154,13 +178,9 @@ def path_rows(store: Store) -> dict[str, Any]:
     return {label: rows.iloc[0] for label, rows in found.items()}
 
 
-def rows_by(table: pd.DataFrame, column: str) -> Mapping[str, Any]:
+def _rows_by(table: pd.DataFrame, column: str) -> Mapping[str, Any]:
     """Return the rows of a table by what stands in one column."""
     return {row[column]: row for row in table.to_dict("records")}
-
-
-def percent(value: float) -> str:
-    return f"{100.0 * value:.2g} %" if abs(value) < 1.0 else f"{100.0 * value:.0f} %"
 
 
 #: Models beside the spline, in the order of the columns.
@@ -172,7 +192,7 @@ TASKS = {
 }
 
 
-def costs(store: Store) -> Iterator[str]:
+def _costs(store: Store) -> Iterator[str]:
     """Yield both tables of what an error costs: rows of errors, columns of models, all of one run."""
     for k, (name, (title, shown)) in enumerate(TASKS.items()):
         found = stored_table(store, "cost/codes", name)
@@ -181,7 +201,7 @@ def costs(store: Store) -> Iterator[str]:
             yield ""
         yield markdown_head(title, "spline", "its increments or steps alone", *groups)
         for level, rows in sorted(found.groupby("level"), reverse=True):
-            peers = rows_by(rows, "group")
+            peers = _rows_by(rows, "group")
             cells = (_cost(peers[group]) if group in peers else "–" for group in groups)
             own = (_time(rows[name].iloc[0]) for name in ("spline_s", "spline_solve_s"))
             yield f"| {' | '.join((shown.format(level), *own, *cells))} |"
@@ -195,7 +215,7 @@ def _cost(row: Mapping[str, Any]) -> str:
     return f"{_time(row['whole_s'])} (× {ratio:g})"
 
 
-def hard_cases(store: Store) -> Iterator[str]:
+def _hard_cases(store: Store) -> Iterator[str]:
     """Yield the counts of outcomes: a row a family, a column a model, "right / refused / wrong / bad input" a
     cell."""
     cells: dict[str, dict[Any, str]] = {}
@@ -216,7 +236,7 @@ def _time(seconds: float) -> str:
 SOLID_AT = (9.0, 45.0, 90.0)
 
 
-def solids(store: Store) -> Iterator[str]:
+def _solids(store: Store) -> Iterator[str]:
     """Yield the deviations of beam models from solids of the benchmark pivot."""
     rows = stored_table(store, "model_form/solid_pivot", "deviations")
     degrees = np.degrees(rows["rotation_rad"]).round(3)
@@ -230,7 +250,7 @@ def solids(store: Store) -> Iterator[str]:
     yield "| *uncertainty of the solids* | " + " | ".join(percent(known[a]) for a in SOLID_AT) + " |  |"
 
 
-def solid_designs(store: Store) -> Iterator[str]:
+def _solid_designs(store: Store) -> Iterator[str]:
     """Yield the deviations of beam models from solids of other designs at the first and last rotation."""
     rows = stored_table(store, "model_form/solid_designs", "states")
     designs = list(rows["design"].unique())
@@ -243,3 +263,18 @@ def solid_designs(store: Store) -> Iterator[str]:
         yield f"| {model} | " + " | ".join(ends) + " |"
     unsure = rows.groupby("design")["uncertainty"].max()
     yield "| *uncertainty of the solids* | " + " | ".join(percent(unsure[each]) for each in designs) + " |"
+
+
+#: Block of README.md or docs/findings.md -> the lines that stand between its marks.
+TABLES: dict[str, Callable[[Store], Iterator[str]]] = {
+    "agreement": _short,
+    "paths": _paths,
+    "swings": _swings,
+    "claims": _claims,
+    "costs": _costs,
+    "hard cases": _hard_cases,
+    "sized": _sized,
+    "solids": _solids,
+    "solid designs": _solid_designs,
+    "published": _published,
+}

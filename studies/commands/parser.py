@@ -10,7 +10,6 @@ from typing import Any, NoReturn
 from studies.cases.document import nearest
 from studies.cases.rules import number
 from studies.errors import BadInput
-from studies.record.files import require_writable_file
 
 #: What stands for the output stream in place of a file.
 STREAM = Path("-")
@@ -155,9 +154,3 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
         return given
 
     return parse
-
-
-def writable_file(text: str) -> Path:
-    """Parse a file that is to be written, refused before anything is computed where it cannot be."""
-    require_writable_file(Path(text))
-    return Path(text)

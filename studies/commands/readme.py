@@ -14,37 +14,14 @@ from functools import partial
 from pathlib import Path
 
 from studies.answers import quantities
-from studies.commands import findings
 from studies.commands.case import PAGE, markdown_head
-from studies.commands.findings import QUANTITIES, SWINGS, percent, stored_table, uncertainties
+from studies.commands.findings import TABLES, stored_table
 from studies.commands.parser import command
 from studies.errors import BadInput
 from studies.published import benchmark
 from studies.record.files import write_whole
 from studies.record.source import HOME, ROOT
 from studies.record.store import Store
-
-#: Formulations of the table in the README.
-SHORT = ("n = 4, as the paper", "n = 4, locking-free", "n = 6", "FE, 20 elements")
-
-
-def _short(store: Store) -> Iterator[str]:
-    """Yield the table of the README: a row per formulation, errors in percent."""
-    paths = findings.path_rows(store)
-    swings = findings.rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
-    names = ("path", "torque", "stiffness", "swing frequency")
-    static = uncertainties(store, "convergence/control_points")
-    moving = uncertainties(store, "paper/fig06_release")
-    limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
-    yield markdown_head("largest error, against refined finite elements", *names)
-    for name in SHORT:
-        errors = " | ".join(percent(paths[SWINGS[name]][f"error_{each}"]) for each in QUANTITIES)
-        shift = swings[name]["frequency_shift"]
-        shown = f"{'+' if shift > 0.0 else ''}{percent(shift)}"
-        if abs(shift) <= limits[-1]:
-            shown = f"< {percent(limits[-1])}"
-        yield f"| {SWINGS[name]} | {errors} | {shown} |"
-    yield "| *uncertainty of the reference* | " + " | ".join(map(percent, limits)) + " |"
 
 
 def _quantities(store: Store) -> Iterator[str]:
@@ -62,18 +39,8 @@ def _of_page(name: str) -> Callable[[Store], Iterable[str]]:
 
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
-    ROOT / "README.md": {"agreement": _short},
-    ROOT / "docs" / "findings.md": {
-        "paths": findings.paths,
-        "swings": findings.swings,
-        "claims": findings.claims,
-        "costs": findings.costs,
-        "hard cases": findings.hard_cases,
-        "sized": findings.sized,
-        "solids": findings.solids,
-        "solid designs": findings.solid_designs,
-        "published": findings.published,
-    },
+    ROOT / "README.md": {"agreement": TABLES["agreement"]},
+    ROOT / "docs" / "findings.md": {name: table for name, table in TABLES.items() if name != "agreement"},
     ROOT / "docs" / "data.md": {"quantities": _quantities},
     ROOT / "docs" / "cases.md": {name: _of_page(name) for name in PAGE},
 }

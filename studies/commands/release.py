@@ -82,7 +82,6 @@ LINES = 20
         "wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
         "the elements (default: none is asked for)"
     ),
-    take.REPEAT.but("wall_s is the median of R releases, default 1"),
     Argument("--no-check", "omit the companion motions that estimate the resolution"),
     Argument(
         "--most-steps N",
@@ -99,7 +98,7 @@ def main(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> Motion:
         if settings.model == "spline":
             take.refuse(arguments, FE_OPTIONS, OPTIONS)
-        options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS, "repeat")}
+        options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
         duration, options["step"] = _pace(arguments, design, settings)
         return answer_release(
             design, settings, start=start, duration=duration, check=not arguments.no_check, **options

@@ -1,27 +1,46 @@
-"""The commands of the studies and their stored results: run, draw, verify, status."""
+"""The commands of the studies and their stored results: run, draw, verify, status.
+
+Points of studies are asked beside each other in other processes, as of `whole`.
+"""
 
 import argparse
+import os
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from functools import cache
+from multiprocessing import get_context
+from typing import Any
 
-from studies.asking import cores, processes, whole
+import pandas as pd
+
 from studies.commands.arguments import NAMES, RESULTS
 from studies.commands.parser import Argument, command, whole_number
-from studies.engine import Study, Tables
+from studies.engine import Answer, Part, Study, Tables
 from studies.errors import BadInput
+from studies.kinds import Progress
 from studies.record import style
 from studies.record.progress import Bar
 from studies.record.store import Inputs, Store, differing, inputs
-from studies.registry import STUDIES, selected, study_of
+from studies.registry import STUDIES, selected, study_at, study_of
 
 DIFFERS = 1
 PROCESSES = Argument(
     "--processes N",
     "answer points beside each other where time is not measured, default the number of cores",
     whole_number(1),
-    default=cores(),
+    default=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
 )
 FRESH_TOO = Argument("--fresh-too", "compute fresh results as well")
+
+#: Place of a study, number of its part and of the point.
+Key = tuple[str, int, int]
+#: Points of studies by their keys, in the order of their answers.
+Points = dict[Key, tuple[Part, Any]]
+#: An answer and the seconds that it took.
+Timed = tuple[Answer, float]
 
 
 @command(NAMES, RESULTS, PROCESSES)
@@ -136,7 +155,7 @@ def _whole(names: list[str], count: int) -> Iterator[tuple[str, Study, Tables, f
     while a bar shows how far they are."""
     names_at = {STUDIES[name]: name for name in names}
     studies = {place: study_of(name) for place, name in names_at.items()}
-    with processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
+    with _processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
         for place, tables, seconds in whole(studies, bar, pool):
             yield names_at[place], studies[place], tables, seconds, bar
 
@@ -160,3 +179,74 @@ def _differing(stored: Tables, found: Tables, study: Study) -> dict[str, str]:
         elif columns := differing(name, stored[name], found[name], study.digits):
             others[name] = f"{name} ({', '.join(columns)})"
     return others
+
+
+def whole(
+    studies: Mapping[str, Study], progress: Progress, pool: Executor | None = None
+) -> Iterator[tuple[str, dict[str, pd.DataFrame], float]]:
+    """Ask all points, and yield each study as soon as it is whole: its place, its tables, and what all its
+    answers took, one after the other [s].
+
+    Args:
+        studies: by their places, as of `study_at`, where other processes find them.
+        progress: is told how many points of how many of all studies are done.
+        pool: has points of all studies beside each other, but for those that must be alone, which come when
+            it has done the others. Without it one study comes after the other.
+    """
+    points = {key: one for place, study in studies.items() for key, one in _points(place, study).items()}
+    found: dict[Key, Timed] = {}
+    progress(0, len(points))
+    for key, timed in _answers(points, pool):
+        found[key] = timed
+        progress(len(found), len(points))
+        mine = [each for each in points if each[0] == key[0]]
+        if all(each in found for each in mine):
+            answers, seconds = zip(*(found[each] for each in mine), strict=True)
+            yield key[0], studies[key[0]].tables(answers), sum(seconds)
+
+
+def _answers(points: Points, pool: Executor | None) -> Iterator[tuple[Key, Timed]]:
+    """Yield the answer of each point: those of other processes, then those of this one."""
+    beside = [key for key, (part, _) in points.items() if pool and not part.alone]
+    waiting = {pool.submit(_elsewhere, key): key for key in beside if pool}
+    for future in as_completed(waiting):
+        yield waiting[future], future.result()
+    yield from ((key, _timed(*point)) for key, point in points.items() if key not in beside)
+
+
+def _points(place: str, study: Study) -> Points:
+    """Return part and point by their key."""
+    return {
+        (place, i, k): (part, point)
+        for i, part in enumerate(study.parts)
+        for k, point in enumerate(part.at())
+    }
+
+
+def _timed(part: Part, point: Any) -> Timed:
+    """Answer one point; return the seconds that it took as well."""
+    start = time.perf_counter()
+    return part.answer(point), time.perf_counter() - start
+
+
+def _elsewhere(key: Key) -> Timed:
+    """Answer one point in another process, which has the study from its place."""
+    return _timed(*_points_at(key[0])[key])
+
+
+@cache
+def _points_at(place: str) -> Points:
+    return _points(place, study_at(place))
+
+
+@contextmanager
+def _processes(count: int) -> Iterator[Executor | None]:
+    """Yield what runs points on `count` processes, one thread each; nothing for a single one."""
+    if count < 2:
+        yield None
+        return
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)

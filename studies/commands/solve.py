@@ -70,7 +70,6 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
     *take.SEVERAL_MODELS,
     take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
-    take.REPEAT,
     take.ACCURACY.but(
         "wanted relative error of path, torque, stiffness and stress, and of section forces (spline) or "
         "energy (fe): raises the control points (default 1e-4, or none with --control-points) or doubles "
@@ -83,10 +82,9 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
     design = take.driven(take.chosen_design(arguments), arguments)
-    how = {"repeat": arguments.repeat, "accuracy": arguments.accuracy}
 
     def ask(settings: Settings, bar: Bar) -> Response:
-        return answer_static(design, settings, progress=bar, **how)
+        return answer_static(design, settings, accuracy=arguments.accuracy, progress=bar)
 
     return tell.asked(arguments, ask, _document, _table, stopped=_stopped, beside=_differences, frame=_frame)
 

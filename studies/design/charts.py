@@ -179,7 +179,7 @@ def _points() -> Answer:
     return {"points": rows}
 
 
-def loaded(ratio: float, inclination: float, direction: str) -> Answer:
+def _loaded(ratio: float, inclination: float, direction: str) -> Answer:
     """Return the stiffness of a pivot at rest under a growing load, and the load at which it buckles."""
     problem = _at_crossing(ratio, inclination)
     angle = DIRECTIONS[direction]
@@ -215,7 +215,7 @@ def _at_crossing(ratio: float, inclination: float) -> Problem:
     )
 
 
-def judged(name: str) -> Answer:
+def _judged(name: str) -> Answer:
     """Return where a pivot of the suite lies, and the part of its stiffness that a beam neglects."""
     problem = named_case(name)
     answer = answer_static(problem, SplineSettings(control_points=POINTS))
@@ -279,8 +279,8 @@ STUDY = Study(
         Part(ask=_ranges),
         Part(ask=_points),
         Part(ask=limits),
-        Part(at=lambda: product(*LOADED, DIRECTIONS), ask=loaded),
-        Part(at=lambda: PIVOTS, ask=judged),
+        Part(at=lambda: product(*LOADED, DIRECTIONS), ask=_loaded),
+        Part(at=lambda: PIVOTS, ask=_judged),
     ),
     claims=(
         Claim(

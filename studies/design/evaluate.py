@@ -46,7 +46,7 @@ def sides_of(design: Design) -> list[Design]:
     return [design, replace(design, rotation=-design.rotation)]
 
 
-def held_states(design: Design) -> list[int]:
+def _held_states(design: Design) -> list[int]:
     """Return the states of a range where stress is held: at the end of each side, and, but for a pivot
     without loads, before the body turns."""
     if not isinstance(design, Problem):
@@ -102,7 +102,7 @@ class Answers:
         followed: by quantity: `STIFFNESS` at the first state [N m / rad], or, where the bodies follow the
             loads, `TRAVEL`, how far the body goes [m], each alone; behind the first state the squares of the
             centre shift [m^2] and the change of the stiffness over that of the first state, signed [1]; the
-            signed fibre stresses at the states of `held_states` [Pa].
+            signed fibre stresses at the states of `_held_states` [Pa].
         measured: the same without gradients.
     """
 
@@ -137,7 +137,7 @@ def answers(
     rotation, stiffness, by_stiffness, shift, by_shift, stress, by_stress = map(
         _joined, zip(*sides, strict=True)
     )
-    shift, by_shift, held = shift - shift[0], by_shift - by_shift[0], held_states(design)
+    shift, by_shift, held = shift - shift[0], by_shift - by_shift[0], _held_states(design)
     ratio = stiffness[1:] / stiffness[0]
     by_ratio = (by_stiffness[1:] - ratio[:, None] * by_stiffness[0]) / stiffness[0]
     by_square = 2.0 * np.einsum("si,sip->sp", shift[1:], by_shift[1:])
@@ -219,7 +219,7 @@ def _to_one_side(design: Design, control_points: int, parameters: Sequence[str],
             path = asked.static_path()
         except asked.model.ConvergenceError as error:
             raise PathEnds(str(error)) from None
-        if path.critical_points and held_states(design) != [-1]:
+        if path.critical_points and _held_states(design) != [-1]:
             raise PathEnds(path.message)
         found = sensitivities(
             asked.modelled, path, parameters=parameters, stations=STATIONS, body=design.body

@@ -38,7 +38,7 @@ TIMES = 2.0
 SMALL = 1e-3
 
 
-class Rows(NamedTuple):
+class _Rows(NamedTuple):
     """A constraint: margins (R,) that must not be below zero [1], and their gradients by y and t (R, N + 1).
 
     name: of the quantity, or of the variable at its bound. fall: of the margins, where they are zero, over a
@@ -118,7 +118,7 @@ class Programme:
         ratio = objective / self.scale
         return ratio**2 if self.question.objective == CENTRE_SHIFT else ratio
 
-    def limits(self, y: Array, found: Answers) -> Iterator[Rows]:
+    def limits(self, y: Array, found: Answers) -> Iterator[_Rows]:
         """Yield the constraints at a point y (N + 1,) with these answers: the objective below t, the stress,
         the ratios, which are linear in the variables, and last the equality: stiffness, or travel, over the
         wanted one less one."""
@@ -134,7 +134,7 @@ class Programme:
             side, limit = ratio.side / asked.variables[0].high, ratio.limit
             margin = side * (values[ratio.top] - limit * values[ratio.bottom])
             by = side * span * (eye[ratio.top] - limit * eye[ratio.bottom])
-            yield Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
+            yield _Rows(ratio.name, np.array([margin]), by[None], side * limit * values[ratio.bottom])
         yield self._below(
             STIFFNESS, found.followed[asked.held], asked.wanted, -1.0, 0.0 * eye[-1], signs=(-1.0,)
         )
@@ -147,22 +147,22 @@ class Programme:
         bound: float,
         by_bound: Array,
         signs: tuple[float, ...] = (1.0, -1.0),
-    ) -> Rows:
+    ) -> _Rows:
         """Return the rows of values over a limit that are to be below a bound, those of these signs."""
         value, by = found.value / limit, np.pad(found.by * self.question.span / limit, ((0, 0), (0, 1)))
         margin, jacobian = (
             [of - sign * each for sign in signs] for of, each in ((bound, value), (by_bound, by))
         )
-        return Rows(name, np.concatenate(margin), np.concatenate(jacobian), 1.0)
+        return _Rows(name, np.concatenate(margin), np.concatenate(jacobian), 1.0)
 
-    def _bounds(self, y: Array) -> Iterator[Rows]:
+    def _bounds(self, y: Array) -> Iterator[_Rows]:
         """Yield the bounds of the variables at a point y (N + 1,)."""
         for place, variable in enumerate(self.question.variables):
             if variable.span:
                 at, one = y[place : place + 1], np.eye(len(y))[place : place + 1]
                 low, high = variable.low / variable.span, variable.high / variable.span
-                yield Rows(f"{variable.name} at its least", at, one, low)
-                yield Rows(f"{variable.name} at its most", 1.0 - at, -one, -high)
+                yield _Rows(f"{variable.name} at its least", at, one, low)
+                yield _Rows(f"{variable.name} at its most", 1.0 - at, -one, -high)
 
     def rows(self, y: Array) -> tuple[Array, Array]:
         """Return the margins of all rows (R,) [1], the last that of the equality, and their Jacobian

@@ -51,7 +51,7 @@ class Variable(NamedTuple):
         return self.high - self.low
 
 
-class Ratio(NamedTuple):
+class _Ratio(NamedTuple):
     """A limit on the ratio of two variables.
 
     name: of the constraint. top, bottom: places of the variables. limit: of the ratio, which is the least one
@@ -85,7 +85,7 @@ class Question:
     objective: str
     wanted: float = math.nan
     allowable_stress: float = math.inf
-    ratios: tuple[Ratio, ...] = ()
+    ratios: tuple[_Ratio, ...] = ()
     control_points: int = CONTROL_POINTS
 
     def design(self, values: Array) -> Any:
@@ -191,8 +191,8 @@ class PivotQuestion(Question):
         within = ((each, *given.get(each.name, (each.low, each.high))) for each in usual)
         slender = ("length over thickness", "the case's, the least,")
         ratios = (
-            Ratio("slenderness", 0, 3, length / thickness, 1, slender),
-            Ratio("aspect", 4, 0, aspect, -1, ("width over length", "the --aspect of")),
+            _Ratio("slenderness", 0, 3, length / thickness, 1, slender),
+            _Ratio("aspect", 4, 0, aspect, -1, ("width over length", "the --aspect of")),
         )
         variables = tuple(each._replace(low=low, high=high) for each, low, high in within)
         return cls(start=start, variables=variables, objectives=OF_PIVOT, ratios=ratios, **asked)

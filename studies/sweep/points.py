@@ -34,7 +34,7 @@ POINT, STATUS, REASON = "point", "status", "reason"
 NOT_ESTIMATED = "error not estimated"
 
 
-class Column(NamedTuple):
+class _Column(NamedTuple):
     """A column of the table: what it means, and its value for each design from their answer, (D,).
 
     `usual`: stored where the file does not say what is. `whole`: of whole numbers.
@@ -108,7 +108,7 @@ def _most(ratio: str) -> Callable[[Paths], Array]:
     return lambda paths: np.max([np.asarray(getattr(s, ratio), dtype=float) for s in paths.bent], axis=0)
 
 
-def _standing(each: Quantity) -> Column:
+def _standing(each: Quantity) -> _Column:
     """Return the column of a quantity of a path: its value in the state that stands for it."""
 
     def standing(paths: Paths) -> Array:
@@ -117,7 +117,7 @@ def _standing(each: Quantity) -> Column:
         )  # of a part that an effect of this design alone would have
         return STANDING[each.standing](paths.along.get(each.key, none))
 
-    return Column(f"{each.meaning}, {each.standing}", standing)
+    return _Column(f"{each.meaning}, {each.standing}", standing)
 
 
 def _unstable(paths: Paths) -> Any:
@@ -126,58 +126,58 @@ def _unstable(paths: Paths) -> Any:
 
 
 PATH = {
-    "rotation_rad": Column("rotation at the end", _end("rotation")),
+    "rotation_rad": _Column("rotation at the end", _end("rotation")),
     **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
-    "stiffness_rest_Nm_per_rad": Column("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
-    "stiffness_end_Nm_per_rad": Column("rotational stiffness at the end", _end("stiffness_Nm_per_rad")),
-    "stiffness_variation": Column(
+    "stiffness_rest_Nm_per_rad": _Column("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
+    "stiffness_end_Nm_per_rad": _Column("rotational stiffness at the end", _end("stiffness_Nm_per_rad")),
+    "stiffness_variation": _Column(
         "largest less smallest stiffness of the path, over that at rest",
         lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, p.rest]),
     ),
-    "moment_defect": Column(
+    "moment_defect": _Column(
         "largest relative imbalance of the strips' moments, of a spline",
         lambda p: p.along["defect"].max(axis=1),
     ),
-    "iterations": Column("Newton iterations", lambda p: p.iterations, whole=True),
-    "control_points": Column(
+    "iterations": _Column("Newton iterations", lambda p: p.iterations, whole=True),
+    "control_points": _Column(
         "control points of a strip, of a spline", lambda p: p.control_points, whole=True
     ),
-    "estimated_error": Column(
+    "estimated_error": _Column(
         "largest estimated relative error of what `solve` answers; none where it is not estimated",
         lambda p: p.error,
     ),
-    "unstable_states": Column(
+    "unstable_states": _Column(
         "states of the path that are not stable, -1 where the model does not say", _unstable, False, True
     ),
-    "torque_max_Nm": Column(
+    "torque_max_Nm": _Column(
         "largest magnitude of the driving torque", lambda p: np.abs(p.along["torque_Nm"]).max(axis=1), False
     ),
-    "stress_end_Pa": Column("largest stress of the strips at the end", _end("max_stress_Pa"), False),
+    "stress_end_Pa": _Column("largest stress of the strips at the end", _end("max_stress_Pa"), False),
     # what an answer is worth; the curvature is taken as high as the strain allows
-    "width_ratio": Column("b/L, largest of the strips", _most("width_ratio")),
-    "curvature_ratio": Column("b^2/(R t), largest of strips and states, at most", _most("curvature_ratio")),
-    "thickness_ratio": Column("t/L, largest of the strips", _most("thickness_ratio")),
-    "strain_max": Column("largest strain of strips and states", _most("strain")),
-    "outside": Column(
+    "width_ratio": _Column("b/L, largest of the strips", _most("width_ratio")),
+    "curvature_ratio": _Column("b^2/(R t), largest of strips and states, at most", _most("curvature_ratio")),
+    "thickness_ratio": _Column("t/L, largest of the strips", _most("thickness_ratio")),
+    "strain_max": _Column("largest strain of strips and states", _most("strain")),
+    "outside": _Column(
         "limits of the model that the answer lies beyond",
         lambda p: validity.passed(p.bent, p.effects),
         whole=True,
     ),
 }
 SHIFT = {
-    "centre_shift_end_m": Column(
+    "centre_shift_end_m": _Column(
         "displacement of the body's point at the strips' crossing, at the end", lambda p: p.shift[:, -1]
     ),
-    "centre_shift_max_m": Column("largest displacement of that point", lambda p: p.shift.max(axis=1)),
-    "centre_shift_end_x_m": Column("x of the displacement at the end", _end("shift", 0), False),
-    "centre_shift_end_y_m": Column("y of the displacement at the end", _end("shift", 1), False),
+    "centre_shift_max_m": _Column("largest displacement of that point", lambda p: p.shift.max(axis=1)),
+    "centre_shift_end_x_m": _Column("x of the displacement at the end", _end("shift", 0), False),
+    "centre_shift_end_y_m": _Column("y of the displacement at the end", _end("shift", 1), False),
 }
 
 
-def _of_bodies(names: list[str]) -> dict[str, Column]:
+def _of_bodies(names: list[str]) -> dict[str, _Column]:
     """Return the places of bodies at the end of a path."""
     return {
-        f"{body}_{part}": Column(f"{part} of {body} at the end", _end("bodies", place, axis))
+        f"{body}_{part}": _Column(f"{part} of {body} at the end", _end("bodies", place, axis))
         for place, body in enumerate(names)
         for axis, part in enumerate(("x_m", "y_m", "rotation_rad"))
     }
@@ -187,28 +187,28 @@ def _frequency(mode: int) -> Callable[[Spectrum], float]:
     return lambda found: found.frequency[mode] if mode < len(found.frequency) else np.nan
 
 
-def _of_modes(count: int) -> dict[str, Column]:
+def _of_modes(count: int) -> dict[str, _Column]:
     """Return the frequencies of the lowest modes; negative where the state is unstable."""
     return {
-        f"frequency_{mode}_Hz": Column(f"frequency of mode {mode}", _frequency(mode - 1))
+        f"frequency_{mode}_Hz": _Column(f"frequency of mode {mode}", _frequency(mode - 1))
         for mode in range(1, count + 1)
     }
 
 
 RELEASE = {
-    "frequency_Hz": Column("frequency of the swing", lambda m: m.frequency),
-    "rotation_min_rad": Column("smallest rotation", lambda m: m.rotation.min()),
-    "rotation_max_rad": Column("largest rotation", lambda m: m.rotation.max()),
-    "kinetic_max_J": Column("largest kinetic energy", lambda m: m.kinetic_energy.max()),
-    "energy_error": Column("largest relative error of the energy", lambda m: m.energy_error),
-    "records": Column("records of the motion", lambda m: len(m.time), usual=False, whole=True),
+    "frequency_Hz": _Column("frequency of the swing", lambda m: m.frequency),
+    "rotation_min_rad": _Column("smallest rotation", lambda m: m.rotation.min()),
+    "rotation_max_rad": _Column("largest rotation", lambda m: m.rotation.max()),
+    "kinetic_max_J": _Column("largest kinetic energy", lambda m: m.kinetic_energy.max()),
+    "energy_error": _Column("largest relative error of the energy", lambda m: m.energy_error),
+    "records": _Column("records of the motion", lambda m: len(m.time), usual=False, whole=True),
 }
 """Of a release: functions of a `Motion`."""
 
 Answer = Paths | Spectrum | Motion
 
 
-def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Column]:
+def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Column]:
     """Return all quantities of an analysis of the case's document, `count` of modes."""
     if kind == "modes":
         return _of_modes(count)
@@ -225,13 +225,13 @@ def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, Column]:
     return PATH | places | parts
 
 
-def stored(task: Task) -> dict[str, Column]:
+def stored(task: Task) -> dict[str, _Column]:
     """Return the quantities that the task stores, by name, in their order."""
     found = known(task.case, task.kind, task.options.get("count", 0))
     return {name: found[name] for name in task.quantities}
 
 
-def values(found: Mapping[str, Column], answer: Answer) -> dict[str, Array]:
+def values(found: Mapping[str, _Column], answer: Answer) -> dict[str, Array]:
     """Return the quantities of an answer, (D,) each."""
     return {name: np.atleast_1d(np.asarray(each.of(answer))) for name, each in found.items()}
 

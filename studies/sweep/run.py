@@ -39,7 +39,7 @@ class SweepError(BadInput):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pool:
+class _Pool:
     """Workers behind the interface of `concurrent.futures`, and how many they are."""
 
     executor: futures.Executor
@@ -50,7 +50,7 @@ def sweep(
     plan: Plan,
     out: Path,
     *,
-    pool: AbstractContextManager[Pool] | None = None,
+    pool: AbstractContextManager[_Pool] | None = None,
     csv: bool = False,
     progress: Progress = silent,
 ) -> int:
@@ -116,7 +116,7 @@ def _interruptions() -> Iterator[Callable[[], None]]:
 
 
 def _tables(
-    plan: Plan, missing: list[int], pool: Pool, interrupted: Callable[[], None]
+    plan: Plan, missing: list[int], pool: _Pool, interrupted: Callable[[], None]
 ) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
     drawer, waiting = Drawer(plan.sample), iter(missing)
@@ -153,7 +153,7 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
 
 
 @contextmanager
-def local_pool(plan: Plan, workers: int | None = None) -> Iterator[Pool]:
+def local_pool(plan: Plan, workers: int | None = None) -> Iterator[_Pool]:
     """Yield workers on this machine, all cores by default: threads for the batch kernel, else processes.
 
     An interruption waits for the chunks that threads have under way; processes end in the middle of one.
@@ -164,7 +164,7 @@ def local_pool(plan: Plan, workers: int | None = None) -> Iterator[Pool]:
         spawn = multiprocessing.get_context("spawn")
         executor = futures.ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_quietly)
     try:
-        yield Pool(executor=executor, workers=count)
+        yield _Pool(executor=executor, workers=count)
     except BaseException:
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
@@ -181,7 +181,7 @@ def _end_quietly() -> None:
 @contextmanager
 def cluster(
     address: str, *, workers: int = 1, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
-) -> Iterator[Pool]:
+) -> Iterator[_Pool]:
     """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
 
     The suite, in the same version, must be installed on each. The chunks of a worker that is lost go to
@@ -208,7 +208,7 @@ def cluster(
                 f"expected one: dask worker {address}"
             ) from None
         _require_suite(client, address)
-        yield Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
+        yield _Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
 
 
 def _require_suite(client: Any, address: str) -> None:

@@ -1,11 +1,8 @@
 """Numbers of a mechanism's case file as variables: their gradients, and the file with their values."""
 
-import tomllib
-
 import numpy as np
 import pytest
 
-from studies.cases.design import Design, as_toml, named_design, read_design
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
 from studies.design.evaluate import STRESS, VARIATION
@@ -48,13 +45,3 @@ def test_a_number_stands_for_the_sections_of_all_strips():
     wide = asked.design(np.array([0.02]))
     for strip, own in zip(wide.strips, asked.start.strips, strict=True):
         assert strip.second_moment_of_area == pytest.approx(2.0 * own.second_moment_of_area)
-
-
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
-def test_a_document_is_written_as_it_is_read(path, tmp_path):
-    """The text of a case's document is the same document, and the same design."""
-    document, target = parsed(path), tmp_path / "case.toml"
-    target.write_text(as_toml(document, ["a remark"]), encoding="utf-8")
-    assert tomllib.loads(target.read_text(encoding="utf-8")) == document
-    found: Design = read_design(target)
-    assert found == named_design(path.stem)

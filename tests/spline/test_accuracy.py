@@ -148,10 +148,3 @@ def test_other_scenes_have_an_estimate_too(settings, more):
     solution = solve_statics(pivot(**settings), accuracy=1e-4, **path)
     reference = solve_statics(pivot(**settings, **more), **path)
     gates.check("spline_accuracy_request", max(true_errors(solution, reference)) / 1e-4)
-
-
-def test_search_begins_at_the_pivots_own_control_points():
-    """Requirement: control points are raised, never lowered; one trial where they are enough."""
-    solution = solve_statics(pivot(control_points=9), rotation=QUARTER, accuracy=1e-2)
-    assert solution.estimate.trials == (9,)
-    assert solution.estimate.accuracy == 1e-2

@@ -7,7 +7,7 @@ import pytest
 
 from spline_model import Status, solve_release
 from tests import gates
-from tests.spline.swings import drift, pivot
+from tests.spline.swings import pivot
 
 #: Half a swing [s].
 DURATION = 0.006
@@ -59,15 +59,6 @@ def test_wrong_estimates_are_seen():
     gates.refuse("spline_motion_accuracy_optimism", optimism)
     gates.refuse("spline_motion_accuracy_request", lambda step: true_error(released(4, step=step)) / 1e-2)
     gates.refuse("spline_motion_accuracy_pessimism", lambda step: 1e-1 / true_error(released(10, step=step)))
-
-
-def test_accuracy_without_explicit_steps_takes_steps_that_keep_energy():
-    """Requirement: where there is no leapfrog, long energy-consistent steps do for a loose accuracy."""
-    trajectory = released(accuracy=3e-2, effects=("bending", "stretching", "body_inertia"))
-    assert trajectory.settings["integrator"] == "quasi-static strips"
-    assert trajectory.settings["accuracy_rad"] == 3e-2
-    assert trajectory.settings["control_points"] == trajectory.estimate.control_points
-    assert drift(trajectory) < 1e-9
 
 
 def test_records_are_thinned_not_the_comparison():

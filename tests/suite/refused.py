@@ -1,5 +1,8 @@
 """Faults of designs and of command lines that no rule of one value tells, and what refuses each."""
 
+from pathlib import Path
+
+FINDS = Path(__file__).with_name("finds")
 GRAVITY = '[scene]\neffects = ["+gravity"]\n[effects.gravity]\n'
 
 #: Command with its case -> a text of its file, what is written over it, and what the one line must say.
@@ -104,4 +107,38 @@ WORDS = {
     "export CASE --out there/out": "cannot be written",
     "export CASE --out there": "expected a folder",
     "export CASE --out .": "expected a folder below",
+}
+
+ASKED = "size CASE --objective centre-shift --rotation-deg 45 --aspect 0.5 --starts 1"
+LINKAGE = "size four_bar_of_flexures --objective stress"
+HINGE, GUIDE = "size living_hinge --objective", "size parallel_strip_guide --objective"
+#: The same of a sizing: also numbers that a mechanism lacks or has no gradients for, and what only the other
+#: kind of design has.
+WORDS |= {
+    "size CASE": "size: the following arguments are required: --objective",
+    f"{ASKED} --width-mm 20:5": "--width-mm: got 20:5, expected a value, or LOW:HIGH with 0 <",
+    f"{ASKED} --length-mm 40 --width-mm 30": "got at least 30, expected no more than 20, --aspect",
+    f"{ASKED} --thickness-mm 6": "got at least 6, expected no more than 4.998, the case's",
+    f"{ASKED} --stiffness=--": "argument --stiffness: expected one argument",
+    f"{ASKED} --crossing-ratio 0.5:1.5": "LOW:HIGH with 0 < LOW <= HIGH < 1",
+    f"{ASKED} --safety-factor 2": "--safety-factor: got 2 without a yield strength, expected",
+    f"{ASKED} --safety-factor 2 --max-stress-MPa 9": "got 2 beside --max-stress-MPa, expected one of them",
+    f"{ASKED} --out /nowhere/x.toml": "/nowhere/x.toml: cannot be written",
+    f"{ASKED} --rotation-deg 0": "drive.rotation_deg: got 0, expected a range to size for",
+    f"{HINGE} stress --free section.thickness_m=1e-9:1": "--free: section.thickness_m at its bound of 1: ",
+    f"{HINGE} stiffness-variation --free section.width_m": "expected what is not zero already: its stiffness",
+    f"{HINGE} centre-shift": "got centre-shift, expected stress or",
+    LINKAGE: "--free: got none, expected a number of the mechanism's file",
+    f"{LINKAGE} --free section.depth_m": "--free: got section.depth_m, expected a number of",
+    f"{LINKAGE} --free strips.rocker_ground.end_m.x": "without bounds, expected strips.rock",
+    f"{LINKAGE} --free section.width_m=2:1": "expected KEY=LOW:HIGH with LOW",
+    f"{LINKAGE} --free bodies.crank.mass_kg": "expected a number of sections, moduli",
+    f"size {FINDS / 'two_bodies_in_series.toml'} --objective stress --free section.thickness_m": (
+        "--free: got section.thickness_m, expected one that the design depends on: all strips have"
+    ),
+    f"{LINKAGE} --free section.width_m --travel-mm 1": "--travel-mm: got it for four_bar",
+    f"{LINKAGE} --free section.width_m --width-mm 9": "--width-mm: got it for four_bar",
+    "size CASE --objective stress": "--objective: got stress, expected centre-shift or",
+    "size CASE --objective centre-shift --free x": "--free: got it for cross_axis",
+    f"{GUIDE} stiffness-variation --free section.width_m": "expected stress of what follows its loads",
 }

@@ -1,4 +1,4 @@
-"""Case files as a designer writes them: sections by their sides, named materials, directions, templates."""
+"""Case files as a designer writes them: sections by sides, named materials, directions, templates, scenes."""
 
 import json
 import math
@@ -6,12 +6,13 @@ import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
+from spline_model import DEFAULT_EFFECTS, REGISTRY
 from studies.cases.design import as_toml, document_of, read_design
-from studies.cases.effects import Effects
+from studies.cases.effects import DEFAULT, Effects
 from studies.cases.keys import EFFECT_KEYS, EFFECTS, MATERIALS, OWN
+from studies.cases.keys import EFFECT_KEYS as KEYS
 from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.cases.problem import FOLDER, CaseError, Problem, named_case
 from studies.commands.case import MECHANISM, PIVOT
@@ -138,25 +139,6 @@ def test_gravity_by_its_direction(table, expected, case):
     assert found == pytest.approx(expected, abs=1e-14)
 
 
-@pytest.mark.parametrize("model", [["--model", "spline"], ["--model", "fe", "--elements", "4"]])
-def test_a_pivot_turned_with_its_gravity_answers_the_same(model, case, command):
-    """Turned with its gravity, a pivot has the same torque and stress, and its centre turns with it."""
-    answers = []
-    for angle in (0.0, 70.0):
-        gravity = f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\ndirection_deg = {angle - 90}'
-        path = case(
-            ("[material]", f"orientation_deg = {angle}\n[material]"),
-            ("[drive]", f"{gravity}\n[drive]"),
-            ("increments = 20", "increments = 2"),
-        )
-        answers.append(json.loads(command("solve", path, *model, "--json", "-").out))
-    plain, turned = answers
-    for name in ("torque_Nm", "max_stress_Pa", "stiffness_Nm_per_rad"):
-        assert np.allclose(turned[name], plain[name], rtol=1e-7, atol=1e-7 * max(map(abs, plain[name])))
-    place = [np.array(each["com_x_m"]) + 1j * np.array(each["com_y_m"]) for each in answers]
-    assert np.allclose(place[1], place[0] * np.exp(1j * math.radians(70.0)), atol=1e-10)
-
-
 SHIPPED = [
     design for path in sorted(FOLDER.glob("*.toml")) if isinstance(design := read_design(path), Problem)
 ]
@@ -211,3 +193,49 @@ def test_a_mechanism_that_is_written_is_read_as_it_was(tmp_path):
     path = tmp_path / "written.toml"
     path.write_text(as_toml(document_of(design)), encoding="utf-8")
     assert read_design(path) == design
+
+
+#: A coarse discretisation of each model; the splines' is nearly exact.
+COARSE = {"spline": [], "fe": ["--elements", 8]}
+
+
+SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
+QUICK = ("cross_axis_pivot", "parallel_strip_guide")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in SHIPPED]
+)
+def test_shipped_cases_take_the_effects_of_their_sides(name, answered):
+    """Every case that comes with the suite names its sides: both models take what asks for them, alike."""
+    words = ("solve", name, "--effects=+clamped_width,+anticlastic,+root_compliance", "--increments", 2)
+    spline, fe = (
+        answered(*words, "--model", model, *coarse)["strain_energy_J"][-1] for model, coarse in COARSE.items()
+    )
+    assert fe == pytest.approx(spline, rel=5e-3)  # eight elements leave 2e-3 of Table 1's at 90 degrees
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_tables_of_effects_are_there_for_the_command_line(model, case, answered):
+    """A table gives the parameters of an effect that --effects adds; without it weight is the earth's. A
+    scene in the case gives the same, and a table that --effects takes out stays behind."""
+    end = ("increments = 20", "increments = 2\n[effects.gravity]\nacceleration_m_per_s2 = [0, -9810]")
+    words = ["--model", model, *COARSE[model], "--rotation-deg", 1, "--increments", 2]
+    bare = answered("solve", case(), *words)
+    assert bare["effects"] == ["bending", "stretching"]
+    shifts = []
+    for changes in ((), (end,)):
+        loaded = answered("solve", case(*changes), *words, "--effects=+gravity")
+        shifts.append(loaded["com_y_m"][0] - bare["com_y_m"][0])
+    named = case((end[0], end[1].replace("[eff", '[scene]\neffects = ["+gravity"]\n[eff')))
+    heavy = answered("solve", named, *words)
+    assert heavy["com_y_m"] == loaded["com_y_m"]
+    assert answered("solve", named, *words, "--effects=-gravity")["com_y_m"] == bare["com_y_m"]
+    assert shifts[0] < 0.0
+    assert shifts[1] == pytest.approx(1000.0 * shifts[0], rel=0.05)  # nearly linear
+
+
+def test_effects_of_case_files_are_those_of_the_splines():
+    """Every effect with keys is in the registry but the elements' shear; the default ones are the same."""
+    assert set(KEYS) - {"shear"} <= set(REGISTRY)
+    assert DEFAULT_EFFECTS == DEFAULT

@@ -42,6 +42,18 @@ def test_stability_at_zero_force_is_checked_first(name, share, answered):
         assert (point["kind"], point["load_factor"], point["rotation_rad"]) == ("limit point", 0.0, 0.0)
 
 
+@pytest.mark.parametrize("model", ["spline", "fe"])
+@pytest.mark.parametrize("asked", ["solve", "modes"])
+def test_weight_that_buckles_the_strips_is_no_bad_input(asked, model, command, tmp_path):
+    """An arch that snaps under 43 % of its weight ends every command with exit code 3, in both models."""
+    arch = (FINDS / "shallow_arch.toml").read_text().partition("[scene]")[0]
+    heavy = tmp_path / "heavy_arch.toml"
+    heavy.write_text(arch.replace("mass_kg = 0", "mass_kg = 1.5") + '[scene]\neffects = ["+gravity"]\n')
+    outcome = command(asked, heavy, "--model", model)
+    assert outcome.code == 3
+    assert "limit point" in outcome.err and "of weight" in outcome.err.replace("the weight", "weight")
+
+
 def test_strips_in_a_row_are_loaded_by_what_the_weakest_bears(answered):
     """Requirement: a chain of long strips and one that is 500 times shorter is not loaded by the Euler
     load of the short one: both models have the force at which it turns by 5 degrees."""

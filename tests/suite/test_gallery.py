@@ -1,4 +1,4 @@
-"""The problems of the gallery: both models print the number that is known of each."""
+"""Problems of the gallery and inputs of users: both models print the number that is known of each."""
 
 import math
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from scipy.integrate import quad, solve_ivp
 
 from studies.record.source import ROOT
 
-GALLERY = ROOT / "docs" / "gallery"
+GALLERY, FINDS = ROOT / "docs" / "gallery", ROOT / "tests" / "suite" / "finds"
 #: EI of the gallery's usual strip [N m^2].
 EI = 205e9 * 0.01 * 0.0005**3 / 12.0
 MODELS = {"spline": (), "fe": ("--model", "fe", "--accuracy", 1e-4)}
@@ -49,6 +49,8 @@ def sprung(answer: dict) -> float:
     return answer["spring_energy_J"][-1] / (0.1 * crank**2 + 0.05 * (coupler - crank) ** 2)
 
 
+#: Stiffness at rest of a pivot whose strips are longer by the compliance of their supports [N m/rad].
+SUPPORTED = 2.0 * 205e9 * 0.01 * 0.001**3 / 12.0 / (0.08 + 2.0 * 0.416 * 0.001)
 #: What is asked, the number in its JSON, its value, and the part of it that finite axial stiffness (which the
 #: closed form leaves out) or the source's own digits may take [1].
 KNOWN = {
@@ -60,6 +62,9 @@ KNOWN = {
     "tapered_spring": ("solve", last("spring_tip_displacement_y_m"), tapered_tip(), 1e-4),
     "follower_cantilever": ("solve", last("beam_tip_displacement_y_m"), 0.1 * follower_tip(4.0)[1], 1e-4),
     "four_bar_with_springs": ("solve", sprung, 1.0, 1e-6),
+    "half_circle": ("solve", last("torque_Nm"), -1e6, 1e-4),
+    "round_rod": ("solve", last("max_stress_Pa"), 32.0 * 25.0 * 0.15 / (math.pi * 0.008**3), 1e-4),
+    "supports_by_default": ("solve", lambda a: a["stiffness_Nm_per_rad"][0], SUPPORTED, 1e-4),
     "l_hinge": ("solve", lambda a: a["bodies"]["end"]["y_m"][-1] - 0.04, -0.01 * 0.216e-3 / EI, 1e-3),
 }
 
@@ -70,7 +75,8 @@ def test_the_known_number(name, model, answered):
     """A closed form, or the number of the source, is what `solve` or `critical-load` prints."""
     command, number, value, limit = KNOWN[name]
     how = (FIXED if command == "critical-load" else MODELS)[model]
-    assert number(answered(command, GALLERY / f"{name}.toml", *how)) == pytest.approx(value, rel=limit)
+    (case,) = (path for folder in (GALLERY, FINDS) if (path := folder / f"{name}.toml").is_file())
+    assert number(answered(command, case, *how)) == pytest.approx(value, rel=limit)
 
 
 def test_models_agree_on_the_pre_loaded_pivot(answered):

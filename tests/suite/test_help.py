@@ -102,23 +102,6 @@ def test_every_option_is_documented(name):
     assert {option: lack for option, lack in lacks.items() if lack} == {}
 
 
-@pytest.mark.parametrize(
-    ("keywords", "lack"),
-    [
-        ({"help": "a length in m", "type": float, "metavar": "L"}, "no default"),
-        ({"help": "a length, default 1", "type": float, "metavar": "L"}, "no unit"),
-        ({"help": "a file, default none"}, "no name of its value"),
-        ({}, "no help"),
-        ({"help": "a length in m, default 1", "type": float, "metavar": "L"}, ""),
-        ({"help": "a length in m", "type": float, "metavar": "L", "required": True}, ""),
-        ({"help": "a switch", "action": "store_true"}, ""),
-    ],
-)
-def test_what_an_option_lacks_is_found(keywords, lack):
-    """The check finds options without help, default, unit or the name of their value."""
-    assert undocumented(Parser().add_argument("--option", **keywords)) == lack
-
-
 @pytest.mark.skipif(not shutil.which("bash"), reason="bash is not installed")
 @pytest.mark.parametrize(
     ("before", "word", "completed"),

@@ -11,7 +11,6 @@ import pytest
 
 from studies.record.source import ROOT
 from tests.bench import conftest as bench
-from tests.docs.blocks import PAGES
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
@@ -69,20 +68,6 @@ def test_no_machine_is_named():
             f"{name}: {word}" for word in (str(ROOT), f"@{host}", f"{getpass.getuser()}@") if word in text
         ]
     assert faults == []
-
-
-def test_what_the_pages_write_stays_out():
-    """Who follows README.md and the first hour in the repository has nothing to commit afterwards."""
-    text = "\n".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES)
-    files = set(re.findall(r"--(?:out|plot|json|csv) ([a-z_.]+)(?!\S)|\.save\(\"([\w.]+)\"\)", text))
-    written = sorted({file or saved for file, saved in files} | {"my_pivot.toml", "designs.toml"})
-    names = [name if "." in name else f"{name}/file" for name in written]
-    words = ["git", "check-ignore", "--no-index", *names]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
-    if done.returncode == 128:
-        pytest.skip("not a git working tree")
-    assert len(names) >= 15
-    assert done.stdout.split() == names
 
 
 #: Tests that read a clock, and why; those of the browser (tests/interactive) live in its time.

@@ -1,4 +1,4 @@
-"""Sections of case files: their outermost fibre, tapers, and what is refused of them."""
+"""Sections of case files: outermost fibre, tapers, what is refused of them; and strips without a body."""
 
 import json
 import math
@@ -12,7 +12,7 @@ from tests.one_strip import SECOND_MOMENT, one_strip
 DIAMETER, LENGTH, LOAD = 8e-3, 0.1, 25.0
 AREA, MOMENT = math.pi * DIAMETER**2 / 4.0, math.pi * DIAMETER**4 / 64.0
 SCENE = f"""
-effects = ["bending", "stretching", "tip_force"]
+effects = ["bending", "stretching", "strip_inertia", "tip_force"]
 [effects.tip_force]
 strip = "strip"
 force_N = [0, {-LOAD}]
@@ -27,18 +27,6 @@ def rod(shared="", own=""):
     return text.replace(f"= {SECOND_MOMENT}", f"= {MOMENT}")
 
 
-@pytest.mark.parametrize(
-    "given", [{"shared": FIBRE}, {"own": f"{FIBRE}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}"}]
-)
-def test_stress_of_a_round_rod(given, tmp_path, command):
-    """A section names its outermost fibre in [section] or of its own: the stress is that of the rod."""
-    (tmp_path / "rod.toml").write_text(rod(**given))
-    found = json.loads(command("solve", tmp_path / "rod.toml", "--json", "-").out)
-    right = 32.0 * LOAD * LENGTH / (math.pi * DIAMETER**3)
-    assert found["strength"]["max_stress_Pa"] == pytest.approx(right, rel=1e-3)
-    assert not any("outer_fibre_m" in each for each in found["validity"]["outside"])
-
-
 @pytest.mark.parametrize("model", ["spline", "fe"])
 def test_no_stress_without_an_outermost_fibre(model, tmp_path, command):
     """Of a section by area and second moment alone no stress is printed, and the answer names the key."""
@@ -50,13 +38,14 @@ def test_no_stress_without_an_outermost_fibre(model, tmp_path, command):
     assert found["strength"] == {} and set(found["max_stress_Pa"]) == {None}
 
 
-def test_the_older_name_of_the_outermost_fibre(tmp_path, command, caplog):
-    """The depth of a section is read as twice the distance of its outermost fibre, with a warning."""
-    found = []
-    for name, given in (("old", f"section_depth_m = {DIAMETER}"), ("new", FIBRE)):
-        (tmp_path / f"{name}.toml").write_text(rod(given))
+def test_the_outermost_fibre_stands_in_several_places(tmp_path, command, caplog):
+    """It is named in [section] or of a strip's own, or is half the depth of a section, with a warning."""
+    own, found = f"{FIBRE}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}", []
+    texts = {"old": rod(f"section_depth_m = {DIAMETER}"), "new": rod(FIBRE), "own": rod(own=own)}
+    for name, text in texts.items():
+        (tmp_path / f"{name}.toml").write_text(text)
         found.append(json.loads(command("solve", tmp_path / f"{name}.toml", "--json", "-").out)["strength"])
-    assert found[0] == found[1]
+    assert found[0] == found[1] == found[2]
     assert "old.toml: section_depth_m will be removed in the next version (use: outer_fibre_m" in caplog.text
 
 
@@ -105,3 +94,36 @@ def test_a_byte_order_mark_is_no_fault(tmp_path, command):
     path = tmp_path / "rod.toml"
     path.write_text(rod(), encoding="utf-8-sig")
     assert command("solve", path).code == 0
+
+
+@pytest.fixture
+def strip(tmp_path):
+    """Path of a case of one strip with a small force at its free tip."""
+    path = tmp_path / "strip.toml"
+    path.write_text(one_strip(SCENE.replace(f"{-LOAD}", "-0.5")), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear"])
+def test_modes_of_strips_alone(model, strip, command):
+    """The table has the frequencies of a strip; no body moves in its modes."""
+    ended = command("modes", strip, "--model", model, "--elements", 4, "--count", 2)
+    assert ended.code == 0
+    first = next(line.split() for line in ended.out.splitlines() if line.split()[0] == "1")
+    assert [float(value) for value in first[2:]] == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
+def test_release_of_strips_alone_is_refused(model, strip, refused):
+    """A release reports the swing of a body: without one it is refused in one line that says what can be."""
+    text = "studies: bodies: got none, expected a body whose motion is computed; `export"
+    assert refused("release", strip, "--model", model, says=text).startswith(text)
+
+
+@pytest.mark.parametrize("model", ["fe", "fe-shear"])
+def test_motion_of_strips_alone_is_exported(model, strip, command, tmp_path):
+    """The motion of strips alone is written with its drawing, whose states are named by their time."""
+    words = ("--model", model, "--elements", 4, "--analysis", "release", "--duration", 1e-5, "--records", 2)
+    ended = command("export", strip, *words, "--formats", "svg", "--out", tmp_path / "out")
+    assert ended.code == 0
+    assert list((tmp_path / "out").glob("*.svg"))

@@ -1,9 +1,11 @@
-"""The hash of a study's source changes with the code of the modules that it imports, and nothing else."""
+"""The hash of a study follows the code of all that it imports; kernels of another code are dropped."""
 
+import shutil
 from graphlib import TopologicalSorter
 
 import pytest
 
+from studies.record.files import forget_stale
 from studies.record.source import PACKAGES, ROOT, imported, reached, source_hash
 from studies.record.store import inputs
 from studies.registry import STUDIES
@@ -17,24 +19,33 @@ FILES = {
     "studies/commands/__init__.py": "",
     "studies/commands/solve.py": "import studies.apart\n",
     "spline_model/__init__.py": "from studies import apart\n",
-    "spline_model/deep.py": "def f():\n    from studies import other\n    return other.VALUE * 1.0\n",
+    "spline_model/deep.py": "from spline_model.numbers import HALF\ndef f():\n    from studies import other\n"
+    "    return other.VALUE * 1.0\n",
+    "spline_model/numbers.py": "HALF = 0.5\n",
+    "fe_reference/__init__.py": "",
 }
 
 
-def hash_of(root, changed=None):
-    """Return the hash of the study in a small repository of its own, with other texts of some files."""
+def written(root, changed=None):
+    """Write a small repository of its own, with other texts of some files, and return its place."""
     for name, text in {**FILES, **(changed or {})}.items():
         path = root / name
         path.parent.mkdir(exist_ok=True, parents=True)
         path.write_text(text, encoding="utf-8")
-    return source_hash("studies.study", root=root)
+    return root
+
+
+def hash_of(root, changed=None):
+    """Return the hash of the study in the small repository."""
+    return source_hash("studies.study", root=written(root, changed))
 
 
 def test_modules_are_reached_by_imports(tmp_path):
     """Imports inside functions count; a package around a module counts, but what only it imports does not."""
     hash_of(tmp_path)
-    expected = "spline_model spline_model.deep studies studies.other studies.part studies.study"
-    assert set(reached("studies.study", root=tmp_path)) == set(expected.split())
+    expected = {"spline_model", "spline_model.deep", "spline_model.numbers"}
+    expected |= {"studies", "studies.other", "studies.part", "studies.study"}
+    assert set(reached("studies.study", root=tmp_path)) == expected
     assert "studies.apart" in reached("spline_model", root=tmp_path)
 
 
@@ -89,3 +100,27 @@ def test_imports_make_no_circle():
     ]
     modules = {".".join(file.parts).removesuffix(".__init__") for file in files}
     TopologicalSorter({name: imported(name, ROOT) for name in modules}).prepare()  # an error names the circle
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "dropped"),
+    [
+        ("numbers", "HALF = 0.25\n", True),
+        ("numbers", '"""A number."""\n\nHALF = 0.5\n', False),
+        ("apart", "VALUE = 4.0\n", False),
+    ],
+)
+def test_kernels_of_another_code_are_dropped_once(name, text, dropped, tmp_path):
+    """What was compiled of an unknown or of another code is dropped, once; words and code that no kernel sees
+    cost no compilation."""
+    root, kernel = written(tmp_path / "before"), "spline_model/__pycache__/deep.f-6.py311.1.nbc"
+    (root / "spline_model" / "__pycache__").mkdir()
+    (root / kernel).write_bytes(b"of an unknown source")
+    assert (forget_stale(root), (root / kernel).exists()) == (True, False)
+    (root / kernel).write_bytes(b"machine code")
+    assert not forget_stale(root)
+    changed = tmp_path / "now"  # a process reads each file once
+    shutil.copytree(root, changed)
+    (changed / "spline_model" / f"{name}.py").write_text(text)
+    assert (forget_stale(changed), (changed / kernel).exists()) == (dropped, not dropped)
+    assert not forget_stale(changed)

@@ -1,10 +1,15 @@
-"""The engine of studies: tables, findings, and points beside each other."""
+"""The engine of studies: tables, findings, points beside each other; progress and timing out of their way."""
 
+import gc
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from studies.asking import whole
+import pytest
+
+from studies.commands.results import whole
 from studies.engine import Claim, Part, Study, finding
-from studies.record.progress import silent
+from studies.record import progress
+from studies.record.progress import Bar, measure, silent
 
 ASKED: list[int] = []
 
@@ -75,3 +80,29 @@ def test_what_must_be_alone_comes_after_all_others():
     assert [name for name, _, _ in found] == [__name__, place]
     assert ASKED == [2, 1, 2, 4, 1]
     assert all(seconds > 0.0 for _, _, seconds in found)
+
+
+def test_timing_warms_up_and_counts_repeats():
+    """The work runs warm_up + repeat times; collection is off while timed and then restored."""
+    seen = []
+    timing = measure(lambda: seen.append(gc.isenabled()) or len(seen), repeat=3, warm_up=2)
+    assert seen == [True, True, False, False, False]
+    assert gc.isenabled()
+    assert timing.result == 5
+    assert len(timing.seconds) == 3
+    assert min(timing.seconds) <= timing.median <= max(timing.seconds)
+    with pytest.raises(ValueError, match="got 0, expected at least 1"):
+        measure(lambda: None, repeat=0)
+
+
+def test_bar_shows_long_work_on_a_terminal_only(capsys, monkeypatch):
+    """Work that lasts is shown on the error stream where this is a terminal, short work is not."""
+    for terminal, delay, shown in ((True, 60.0, False), (False, 0.0, False), (True, 0.0, True)):
+        monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
+        monkeypatch.setattr(progress, "DELAY", delay)
+        with Bar("work") as bar:
+            bar(1, 2)
+            bar(2, 2)
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert ("work" in captured.err) is shown

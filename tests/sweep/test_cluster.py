@@ -14,7 +14,7 @@ from studies.errors import BadInput
 from studies.record.source import ROOT
 from studies.sweep.read import read_plan
 from studies.sweep.run import cluster, sweep
-from tests.sweep.sweeps import RANDOM, plan
+from tests.sweep.sweeps import RANDOM
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
 
@@ -100,29 +100,3 @@ def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
     for name in ("designs.parquet", "sweep.json"):
         local, remote = (tmp_path / place / name for place in ("local", "cluster"))
         assert local.read_bytes() == remote.read_bytes()
-
-
-def soon_given_up():
-    """Return a context in which Dask waits a second for what does not answer."""
-    from dask import config
-
-    return config.set({"distributed.comm.timeouts.connect": "1s"})
-
-
-@with_dask
-@pytest.mark.slow
-def test_cluster_that_is_lost_is_gone_on_without(tmp_path):
-    """Requirement: when the scheduler dies the command ends with one line, and goes on elsewhere."""
-    out, state = tmp_path / "out", {}
-    with soon_given_up(), loopback(1) as lost:
-
-        def kill_all(done, total):
-            if done >= 500 and not state:
-                state["done"] = True
-                lost.sync(lost.scheduler.close)  # kills its process
-
-        with pytest.raises(BadInput, match="no worker could solve them"):
-            sweep(plan(MANY), out, pool=cluster(lost.scheduler_address), progress=kill_all)
-    kept = 100 * len(list((out / "parts").glob("part-*")))
-    assert 500 <= kept < 4000
-    assert sweep(plan(MANY), out) == 4000 - kept
