@@ -20,7 +20,7 @@ from studies.answers.quantities import (
     QUANTITIES,
     Quantity,
 )
-from studies.answers.response import PLACES
+from studies.answers.response import PLACES, REACTIONS
 from studies.cases.design import Design
 from studies.cases.mechanism import Point
 from studies.kinds import Array
@@ -77,6 +77,7 @@ def _reactions(design: Design) -> Iterator[Quantity]:
             meaning=f"{'moment' if turns else f'force along {part}'} that is exerted on {body} from outside",
             of=methodcaller("exerted", body, part),
             floor=FORCE_FLOOR,
+            estimated=REACTIONS,
         )
 
 
