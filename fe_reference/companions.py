@@ -2,10 +2,10 @@
 
 Errors of elements and of steps go with their squares. Where a mesh can be made coarser twice, companions have
 a fraction of the elements and longer steps in proportion, and cost little. Their differences show how far the
-errors are those of that order: then a part of the difference is the error, else more or all of it. Elements make a
-motion too fast and implicit steps too slow; one more companion, of fewer elements alone, tells one from the
-other, lest they cancel. A mesh of few elements, or one whose companions fail, has one of twice as many and
-half the step.
+errors are those of that order: then a part of the difference is the error, else more or all of it.
+Elements make a motion too fast and implicit steps too slow; one more companion, of fewer elements alone,
+tells one from the other, lest they cancel. A mesh of few elements, or one whose companions fail, has one of
+twice as many and half the step.
 """
 
 import math

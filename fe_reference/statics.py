@@ -103,7 +103,8 @@ def solve_mechanism(
         rotation grow with the load factor.
     accuracy : float, 1, default None
         Wanted error of path, torque, stiffness, strain energy, largest stress and what is exerted on bodies,
-        relative to the largest of each. The mesh is doubled until the estimate is below it, and the answer is the limit.
+        relative to the largest of each. The mesh is doubled until the estimate is below it, and the answer is
+        the limit.
     check : bool, default True
         Confirm critical points and an early end by twice the elements, see ``fe_reference.refined``.
     raise_on_failure : bool, default True
@@ -187,8 +188,10 @@ def _answered(
 
 
 def _shares(answer: StaticSolution, first: StaticSolution, unit: Array) -> Array:
-    """Return what is exerted on bodies (S, D), but the torque of the drive, in parts of the largest of a first
-    answer: forces of the largest force, moments of the largest moment, or of their `unit` where there is none."""
+    """Return what is exerted on bodies (S, D), but the torque of the drive, in parts of what is largest.
+
+    That is the largest force of a `first` answer, of moments its largest moment; the unit where none is.
+    """
     own = [at for at, part in enumerate(answer.prescribed) if part != (answer.driven, WAYS[2])]
     turns = np.array([answer.prescribed[at][1] == WAYS[2] for at in own], dtype=np.int64)
     largest = np.zeros(2)

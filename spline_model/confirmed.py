@@ -196,7 +196,7 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
-    held = error(partial(_exerted, turns=False), moment / length), error(partial(_exerted, turns=True), moment)
+    pushed, turned_by = (partial(_exerted, turns=turns) for turns in (False, True))
     return {
         "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
@@ -205,7 +205,7 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         "energy": error(lambda path: path.energies.sum(axis=1), moment),
         "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
         "stress": error(lambda path: _stress(design, path), stress),
-        "reactions": largest(held),
+        "reactions": largest((error(pushed, moment / length), error(turned_by, moment))),
     }
 
 

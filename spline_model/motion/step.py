@@ -253,8 +253,8 @@ def guess_step(h, state, strips, masses, work):
 def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
     """Solve one step for dy; True if the residual came below tolerance, or corrections are round-off.
 
-    Where the way that velocities lead to ends in none, the step begins where the last one ended. Of parts whose
-    mass is next to none velocities say nothing: they ring about the equilibrium that these parts follow.
+    Where the way that velocities lead to ends in none, the step begins where the last one ended. Of parts
+    whose mass is next to none velocities say nothing: they ring about the equilibrium that the parts follow.
     """
     prepare(time, h, state, arrays.strips, masses, work)
     for ahead in (h, 0.0):

@@ -162,8 +162,8 @@ def answer_modes(
 def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     """Return a motion that starts in equilibrium; its message reports this, and an unstable equilibrium.
 
-    Not asked where a load or a drive has a history, as modes are about the state under full loads. A load that
-    follows its body has no modes: the stability is not judged then, which the message says.
+    Not asked where a load or a drive has a history, as modes are about the state under full loads. A load
+    that follows its body has no modes: the stability is not judged then, which the message says.
     """
     design, effects = answer.design, answer.design.effects
     every = [own for name in effects.tables for own in effects.every(name)]
