@@ -1,11 +1,11 @@
 """How far elements and steps resolve a motion: by companions of other elements and steps.
 
 Errors of elements and of steps go with their squares. Where a mesh can be made coarser twice, companions have
-a fraction of the elements and longer steps in proportion, and cost little. Their differences show whether the
-errors are those of that order: then a part of the difference is the error, else all of it. Elements make a
-motion too fast and implicit steps too slow; one more companion, of fewer elements alone, tells one from the
-other, lest they cancel. A mesh of few elements, or one whose companions fail, has one of twice as many and
-half the step.
+a fraction of the elements and longer steps in proportion, and cost little. Their differences show how far the
+errors are those of that order: then a part of the difference is the error, else more or all of it.
+Elements make a motion too fast and implicit steps too slow; one more companion, of fewer elements alone,
+tells one from the other, lest they cancel. A mesh of few elements, or one whose companions fail, has one of
+twice as many and half the step.
 """
 
 import math
@@ -34,8 +34,8 @@ STILL = 1e-6
 SAFETY = 0.8
 #: Fewest elements of a strip in a companion, and most that one of its elements stands for.
 FEWEST, COARSEST = 4, 10
-#: Ratio of two differences over that of errors of second order, from which on they are of that order, and the
-#: inverse of that up to which they are.
+#: Ratio of two differences over that of errors of second order, down to which they have a part of that order,
+#: and the inverse of that up to which they are of it.
 OF_ORDER = 0.75
 #: What errors are more than coarser companions tell: fast motions are lost to all of them. On random releases
 #: the estimate was down to 0.41 of the error without it.
@@ -113,7 +113,9 @@ def _errors(found: list[Array], ratios: list[float]) -> Array:
     first, second = (np.abs(each).max(axis=0) for each in apart)
     # too little growth: out of phase in all of them; too much: errors of the first companion cancel
     most = np.where(second > growth / OF_ORDER * first, np.maximum(np.abs(apart[1]), most), most)
-    return np.asarray(SHARED * np.where(second < OF_ORDER * growth * first, 1.0, part) * most)
+    short = 1.0 - second / np.where(first > 0.0, growth * first, np.inf)
+    part = np.interp(short, (0.0, 1.0 - OF_ORDER), (part, 1.0))
+    return np.asarray(SHARED * part * most)
 
 
 def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:

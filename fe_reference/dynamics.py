@@ -15,7 +15,7 @@ from .mass import about_mass_centre, carried_over, couplings
 from .model import Model, require_model
 from .modes import first_frequency
 from .motion import ENERGIES, Samples, Scheme, Trajectory, course, trajectory
-from .refined import limit_of
+from .refined import limit_of, places_of
 from .run import STEPS_PER_PERIOD, Run
 from .schemes import Explicit, Implicit, critical_step
 from .solution import Stopwatch
@@ -132,7 +132,7 @@ def solve_motion(
 def _limit(model: Model, run: Run, accuracy: float) -> Trajectory:
     """Return the limit of a motion's meshes at the same instants; its rotations and places are judged."""
     units = {**dict.fromkeys((*ENERGIES, "bodies", "rates"), 1.0), "shape": structure_of(model).length}
-    turns: dict[str, Callable[[Array], Array]] = {"rotation": lambda places: places[..., 2]}
+    turns: dict[str, Callable[[Trajectory], Array]] = {"rotation": lambda found: places_of(found)[..., 2]}
     judged = ("rotation", "shape")
     motion = limit_of(model, accuracy, partial(_moved, run=run), units, turns, judged, relative=False)
     errors = {} if motion.estimate is None else motion.estimate.errors

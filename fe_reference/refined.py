@@ -108,12 +108,17 @@ def _size(values: Array, unit: float) -> float:
 ALONG = ("shape", "axial_force", "shear_force", "bending_moment")
 
 
+def places_of(answer: StaticSolution | Trajectory, name: str = "bodies") -> Array:
+    """Return the places (B, S, 3) of the bodies of an answer [m, m, rad], or of what else is so called."""
+    return np.array([*getattr(answer, name).values()]).reshape(-1, len(answer.shape), 3)
+
+
 def limit_of(
     model: Model,
     accuracy: float,
     solve: Callable[[Model], Solved],
     units: Mapping[str, float],
-    derived: Mapping[str, Callable[[Array], Array]],
+    derived: Mapping[str, Callable[[Solved], Array]],
     judged: Collection[str],
     relative: bool = True,
 ) -> Solved:
@@ -122,7 +127,7 @@ def limit_of(
     Args:
         model, accuracy, solve, judged, relative: as in `refine`.
         units: of the answer's attributes that are taken to their limits. derived: quantities of one, by what
-            makes them from the places of the bodies (B, S, 3).
+            makes them from it (S, ..., D); none of those without a column.
     """
 
     def quantities(answer: Solved) -> Quantities:
@@ -132,10 +137,11 @@ def limit_of(
         for name, unit in units.items():
             values = getattr(answer, name)
             if isinstance(values, Mapping):
-                values = np.array(list(values.values())).reshape(-1, len(answer.shape), 3)
+                values = places_of(answer, name)
             if np.isfinite(values).all():
                 found[name] = (values[:, :, ::every] if name in ALONG else values, unit)
-        return found | {name: (make(found["bodies"][0]), 1.0) for name, make in derived.items()}
+        made = {name: (make(answer), 1.0) for name, make in derived.items()}
+        return found | {name: own for name, own in made.items() if own[0].shape[-1]}
 
     found, refined, estimate = refine(model, accuracy, solve, quantities, judged, relative)
     if estimate is None:

@@ -13,7 +13,7 @@ from .law import FORCES
 from .loading import WAYS, DrivenDisplacement, Prescribed
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
-from .refined import confirmed, limit_of
+from .refined import NOTHING, confirmed, limit_of, places_of
 from .rigid import require_balance
 from .section_forces import strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
@@ -22,7 +22,7 @@ from .structure import structure_of
 #: How loads and a rotation meet.
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 #: What an accuracy is asked of.
-JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress")
+JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress", "exerted")
 
 
 def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
@@ -101,8 +101,9 @@ def solve_mechanism(
         "loads first" (default): loads grow with the body held, and then are constant. "together": loads and
         rotation grow with the load factor.
     accuracy : float, 1, default None
-        Wanted error of path, torque, stiffness, strain energy and largest stress, relative to the largest of
-        each. The mesh is doubled until the estimate is below it, and the answer is the limit.
+        Wanted error of path, torque, stiffness, strain energy, largest stress and what is exerted on bodies,
+        relative to the largest of each. The mesh is doubled until the estimate is below it, and the answer is
+        the limit.
     check : bool, default True
         Confirm critical points and an early end by twice the elements, see ``fe_reference.refined``.
     raise_on_failure : bool, default True
@@ -165,20 +166,37 @@ def _answered(
     units |= dict.fromkeys(("bodies", "tips", "shape"), length)
     units["largest_stress"] = moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area))
 
-    def path(places: Array) -> Array:
+    def path(answer: StaticSolution) -> Array:
+        places = places_of(answer)
         moved: Array = (places - places[:, :1]) / np.array([length, length, 1.0])
         return moved
 
     solved: list[StaticSolution] = []
 
+    def exerted(answer: StaticSolution) -> Array:
+        return _shares(answer, solved[0], np.array([force, moment]))
+
     def kept(mesh: Model) -> StaticSolution:
         solved.append(solve(mesh))
         return solved[-1]
 
-    found = limit_of(model, accuracy, kept, units, {"path": path}, JUDGED)
+    found = limit_of(model, accuracy, kept, units, {"path": path, "exerted": exerted}, JUDGED)
     found = confirmed(found.model, found, solved, solve)
     every = (len(found.stations) - 1) // (found.shape.shape[2] - 1)
     return replace(found, stations=found.stations[::every])
+
+
+def _shares(answer: StaticSolution, first: StaticSolution, unit: Array) -> Array:
+    """Return what is exerted on bodies (S, D), but the torque of the drive, in parts of what is largest.
+
+    That is the largest force of a `first` answer, of moments its largest moment; the unit where none is.
+    """
+    own = [at for at, part in enumerate(answer.prescribed) if part != (answer.driven, WAYS[2])]
+    turns = np.array([answer.prescribed[at][1] == WAYS[2] for at in own], dtype=np.int64)
+    largest = np.zeros(2)
+    np.maximum.at(largest, turns, np.abs(first.reactions[:, own]).max(axis=0, initial=0.0))
+    shares: Array = answer.reactions[:, own] / np.where(largest > NOTHING * unit, largest, unit)[turns]
+    return shares
 
 
 def settled_state(

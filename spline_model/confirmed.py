@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,6 +196,7 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
+    pushed, turned_by = (partial(_exerted, turns=turns) for turns in (False, True))
     return {
         "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
@@ -203,7 +205,15 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         "energy": error(lambda path: path.energies.sum(axis=1), moment),
         "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
         "stress": error(lambda path: _stress(design, path), stress),
+        "reactions": largest((error(pushed, moment / length), error(turned_by, moment))),
     }
+
+
+def _exerted(path: StaticSolution, *, turns: bool) -> Array:
+    """Forces [N], or moments [N m] (S, D), that are exerted on bodies, but the torque of the drive."""
+    own = [part for part in path.prescribed if part != (path.driven, "rotation")]
+    kind = [path.prescribed.index(part) for part in own if (part[1] == "rotation") is turns]
+    return np.asarray(path.reactions[:, kind])
 
 
 def _by_state(stiffness: Array, better: Array) -> float:

@@ -27,6 +27,7 @@ ERRORS = (
     "energy",
     "section_forces",
     "stress",
+    "reactions",
 )
 """What an accuracy of a static path is about."""
 TORQUE_SHARE = 4.5
@@ -220,7 +221,8 @@ class ErrorEstimate:
     trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
     not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
     energy, section_forces, stress (the largest over a strip of the rectangular section that A and I imply):
-    largest error over the largest magnitude on the path. nan of what a path does not have.
+    largest error over the largest magnitude on the path. reactions: the same of the forces that drives and
+    supports exert, and of the moments, whichever is more. nan of what a path does not have.
     segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
     were tried.
     Leaves out what more control points do not mend: the theory's own simplifications.
@@ -234,6 +236,7 @@ class ErrorEstimate:
     energy: float
     section_forces: float
     stress: float
+    reactions: float
     segments: int
     control_points: int
     trials: tuple[int, ...]

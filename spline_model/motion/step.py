@@ -213,7 +213,7 @@ def improve(strips, masses, local, work):
 
 @part()
 def guess_step(h, state, strips, masses, work):
-    """Initial dy from velocities and accelerations."""
+    """Initial dy from velocities and accelerations over a time h; none, but for the axial forces, over 0."""
     poses, modes, dy = masses.inertia.size, strips.compliance.shape[1], work.dy
     own = work.line.size - 6
     for i in range(poses):
@@ -250,16 +250,28 @@ def guess_step(h, state, strips, masses, work):
 def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
     """Solve one step for dy; True if the residual came below tolerance, or corrections are round-off.
 
+    Where the way that velocities lead to ends in none, the step begins where the last one ended. Of parts
+    whose mass is next to none velocities say nothing: they ring about the equilibrium that the parts follow.
+    """
+    prepare(time, h, state, arrays.strips, masses, work)
+    for ahead in (h, 0.0):
+        guess_step(ahead, state, arrays.strips, masses, work)
+        for d in range(masses.drive_at.size):
+            if active[d] == 1:
+                i = masses.drive_at[d]
+                dy = driven_to(d, time + h, masses) - state.y[i]
+                work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
+        if _corrected(h, state, arrays, masses, tolerance, work, counters):
+            return True
+    return False
+
+
+@part()
+def _corrected(h, state, arrays, masses, tolerance, work, counters):
+    """Correct dy by Newton's method; True if the residual came below tolerance, or corrections are round-off.
+
     Rotations of more than a quarter turn in one step are refused: the Cayley map has a pole at a half turn.
     """
-    strips = arrays.strips
-    prepare(time, h, state, strips, masses, work)
-    guess_step(h, state, strips, masses, work)
-    for d in range(masses.drive_at.size):
-        if active[d] == 1:
-            i = masses.drive_at[d]
-            dy = driven_to(d, time + h, masses) - state.y[i]
-            work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
     before, size, last = math.inf, math.inf, math.inf
     for _ in range(MOST_ITERATIONS):
         norm = assemble(h, state, arrays, masses, work)
@@ -272,7 +284,7 @@ def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
                 largest = max(largest, abs(work.dy[i]))
             return largest <= 2.0
         before, last = norm, size
-        size = improve(strips, masses, arrays.local, work)
+        size = improve(arrays.strips, masses, arrays.local, work)
         if size < 0.0:
             return False
         counters[NEWTON] += 1

@@ -6,7 +6,7 @@ from typing import Any
 
 from studies.answers.answer import Answer
 from studies.answers.models import Asked, model_of, put
-from studies.answers.motion import NOTHING_MOVES, UNSTABLE, Motion, Spectrum
+from studies.answers.motion import NOT_JUDGED, NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
@@ -162,13 +162,15 @@ def answer_modes(
 def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     """Return a motion that starts in equilibrium; its message reports this, and an unstable equilibrium.
 
-    Not asked where a load or a drive has a history, as modes are about the state under full loads, nor where
-    a load follows its body, which has no modes.
+    Not asked where a load or a drive has a history, as modes are about the state under full loads. A load
+    that follows its body has no modes: the stability is not judged then, which the message says.
     """
     design, effects = answer.design, answer.design.effects
     every = [own for name in effects.tables for own in effects.every(name)]
-    if design.history or design.held or any(own.get("history") or own.get("follower") for own in every):
+    if design.history or design.held or any(own.get("history") for own in every):
         return answer
+    if any(own.get("follower") for own in every):
+        return replace(answer, message=NOT_JUDGED, resolution="")
     fall = answer_modes(design, settings, rotation=start, count=1).falls_in
     message = NOTHING_MOVES if fall is None else UNSTABLE.format(fall)
     return replace(answer, message=message, resolution="")

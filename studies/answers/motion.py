@@ -27,6 +27,10 @@ UNSTABLE = (
     "the start is an unstable equilibrium, where a disturbance grows e-fold in {:.3g} s: what moves, if "
     "anything, has grown from round-off; rotate a body slightly before its release"
 )
+NOT_JUDGED = (
+    "the start is in equilibrium, whose stability is not judged, as a load follows its body: what moves, if "
+    "anything, has grown from round-off; rotate a body slightly before its release"
+)
 
 
 #: Amplitude of a mode in a record over that of the largest that counts: less is a ripple.

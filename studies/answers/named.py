@@ -13,7 +13,7 @@ import numpy as np
 
 from studies.answers.answer import centre_shift
 from studies.answers.quantities import MOTION, PATH, QUANTITIES, Quantity
-from studies.answers.response import PLACES
+from studies.answers.response import PLACES, REACTIONS
 from studies.cases.design import Design
 from studies.cases.mechanism import Point
 from studies.kinds import Array
@@ -69,6 +69,7 @@ def _reactions(design: Design) -> Iterator[Quantity]:
             group=f"exerted on {body}",
             meaning=f"{name} that is exerted on {body} from outside",
             of=methodcaller("exerted", body, part),
+            estimated=REACTIONS,
         )
 
 

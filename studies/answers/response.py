@@ -11,8 +11,9 @@ from studies.answers.models import Asked
 from studies.answers.quantities import stress_of
 from studies.kinds import Array
 
-#: What the models call the error of the bodies' places.
+#: What the models call the errors of the bodies' places, and of what is exerted on bodies.
 PLACES = ("trajectory", "path")
+REACTIONS = ("reactions", "exerted")
 #: Turn below which a path is not one of a rotation [rad].
 TURNED = 1e-9
 
