@@ -95,22 +95,23 @@ def _own_inertia(structure: Structure) -> Array:
 def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
     (attached, carried, offsets, rigid), own = structure.carried, _own_inertia(structure)
-    carried = carried - structure.nodes
-    nodes = lumped_nodes(structure)[attached]
-    centres = structure.model.centres
-    carrier = np.append(carried, np.arange(len(own)))
-    masses = np.append(nodes[:, 0], own[:, 0])
-    places = np.vstack([offsets + structure.points[carried], centres])
-    total = np.bincount(carrier, masses, len(own)).astype(np.float64)
-    moments = np.stack([np.bincount(carrier, masses * part, len(own)) for part in places.T], axis=1)
-    with_mass = total > 0.0
-    centre = centres.copy()
-    centre[with_mass] = moments[with_mass] / total[with_mass, None]
-    spread = masses * np.sum((places - centre[carrier]) ** 2, axis=1)
-    inertia = own[:, 1] + np.bincount(
-        carrier, spread + np.append(nodes[:, 2] * rigid, 0.0 * own[:, 1]), len(own)
+    nodes, centres, carried = (
+        lumped_nodes(structure)[attached],
+        structure.model.centres,
+        carried - structure.nodes,
     )
-    return RigidBodies(mass=total, centre=centre, moment_of_inertia=inertia)
+    carrier = np.append(carried, np.arange(len(own)))
+    masses, turning = np.append(nodes[:, 0], own[:, 0]), np.append(nodes[:, 2] * rigid, own[:, 1])
+    places = np.vstack([offsets + structure.points[carried], centres])
+
+    def summed(values: Array) -> Array:
+        return np.bincount(carrier, values, len(own)).astype(np.float64)
+
+    total, centre = summed(masses), centres.copy()
+    moments = np.stack([summed(masses * part) for part in places.T], axis=1)
+    np.divide(moments, total[:, None], out=centre, where=total[:, None] > 0.0)
+    spread = masses * np.sum((places - centre[carrier]) ** 2, axis=1)
+    return RigidBodies(mass=total, centre=centre, moment_of_inertia=summed(spread + turning))
 
 
 def about_mass_centre(structure: Structure, led: Sequence[int] = ()) -> tuple[Structure, RigidBodies]:

@@ -1,20 +1,17 @@
 """Rigid motions that nothing resists, and the coordinates that are held in their place.
 
-Parts of a model that hang on no clamp can move rigidly along x, along y and about the origin. What their held
-coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones that
-the null space moves, make a path determinate. In equilibrium they bear nothing.
+Strips and bodies can move rigidly along x, along y and about the origin. What the ends of strips, springs and
+held coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones
+that the null space moves, make a path determinate. In equilibrium they bear nothing.
 """
 
 from collections.abc import Iterable
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
-from .arrays import Array, Flags, Indices
+from .arrays import Array, Indices
 from .errors import InvalidParameter
-from .model import Model
 from .places import FREE, GROUND
 from .structure import Structure
 
@@ -36,58 +33,39 @@ class NothingHolds(InvalidParameter):
 
 def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
     """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
-    part, many = _parts(structure.model)
-    if not many:
-        return np.zeros(0, dtype=np.int64)
-    first, bodies = structure.first_body, part[len(structure.model.strips) : -1]
-    own = [_motions(structure, *each, many) for each in zip(bodies, structure.points, strict=True)]
-    motions = np.vstack([np.zeros((0, 3 * many)), *own])
-    ties = [motions[[at - first for at in held]], *_tied(structure, part, many)]
-    free = null_space(np.vstack([*ties, np.zeros((1, 3 * many))]), rcond=RIGID)
+    first, strips, places = structure.first_body, len(structure.model.strips), structure.points
+    motions = [_motions(structure, k, place) for k, place in enumerate(places, start=strips)]
+    rates = np.vstack([np.zeros((0, 3 * (strips + len(places)))), *motions])
+    free = null_space(np.vstack([*_tied(structure), rates[[at - first for at in held]]]), rcond=RIGID)
     chosen: list[int] = []
-    for place, row in enumerate(motions, start=first):
+    for place, row in enumerate(rates, start=first):
         if np.abs(row @ free).max(initial=0.0) > RIGID:
             chosen.append(place)
             free = free @ null_space((row @ free)[None], rcond=RIGID)
     return np.array(chosen, dtype=np.int64)
 
 
-def _parts(model: Model) -> tuple[Indices, int]:
-    """Return the part of strips, bodies and ground (G + B + 1,), and how many there are beside the ground's.
-
-    A part hangs together by ends that are not hinged. The ground's is the last one.
-    """
-    first, size = len(model.strips), len(model.strips) + len(model.bodies) + 1
-    strip, end = np.nonzero((model.ends != FREE) & ~_hinged(model))
-    there = np.where(model.ends == GROUND, size - 1, first + model.ends)[strip, end]
-    graph = coo_matrix((np.ones(len(strip)), (strip, there)), shape=(size, size))
-    many, label = connected_components(graph, directed=False)
-    return (label - label[-1] - 1) % many, many - 1
-
-
-def _hinged(model: Model) -> Flags:
-    """Return which ends of the strips are hinged (G, 2)."""
-    return np.array([strip.hinges for strip in model.strips])
-
-
-def _tied(structure: Structure, part: Indices, many: int) -> Iterable[Array]:
-    """Yield the rates (K, 3 many) that hinges and springs resist in the rigid motions of the parts."""
-    model, first = structure.model, len(structure.model.strips)
-    for strip, end in np.argwhere(_hinged(model)):
-        place, there = model.rest[strip, -end], model.ends[strip, end]
-        ends = part[strip], part[-1 if there == GROUND else first + there]
-        yield np.subtract(*(_motions(structure, each, place, many) for each in ends))[:2]
+def _tied(structure: Structure) -> Iterable[Array]:
+    """Yield the rates (K, 3 (G + B)) that ends of strips and springs resist in rigid motions of all parts."""
+    model, strips = structure.model, len(structure.model.strips)
+    ground = strips + len(model.bodies)
+    for (strip, end), there in np.ndenumerate(model.ends):
+        if there != FREE:
+            place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
+            ties = _motions(structure, strip, place) - _motions(structure, on, place)
+            yield ties[: 2 if model.strips[strip].hinges[end] else 3]
     (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
     for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
-        one, other = (_motions(structure, part[first:][b], centres[b], many) for b in pair)
+        one, other = (_motions(structure, strips + b, centres[b]) for b in pair)
         yield (one - other)[stiffness > 0.0]
 
 
-def _motions(structure: Structure, part: int, point: Array, many: int) -> Array:
-    """Return the rates of a point [over L] and a turn in the rigid motions of its part (3, 3 many).
+def _motions(structure: Structure, part: int, point: Array) -> Array:
+    """Return the rates (3, 3 (G + B)) of a point [over L] and a turn in the rigid motions of its part.
 
-    Nothing moves in the part of the ground, which is the last.
+    Parts are the strips, then the bodies, and last the ground, which does not move.
     """
+    many = len(structure.model.strips) + len(structure.model.bodies)
     rates, (x, y) = np.zeros((3, 3 * many + 3)), point / structure.length
     rates[:, 3 * part : 3 * part + 3] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
     return rates[:, : 3 * many]
