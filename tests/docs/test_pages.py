@@ -1,11 +1,13 @@
-"""Every code block of README.md, CONTRIBUTING.md and docs/ works as it is written."""
+"""Every code block of README.md, CONTRIBUTING.md and docs/ works as it is written, as does the notebook."""
 
 import ast
+import json
 import re
 import shlex
 import subprocess
 import tomllib
 
+import matplotlib
 import pytest
 
 from studies.record.source import ROOT
@@ -75,3 +77,22 @@ def test_links_lead_somewhere(page):
         if heading:
             titles = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.MULTILINE)
             assert heading in [re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles]
+
+
+NOTEBOOK = ROOT / "docs" / "designers_hour.ipynb"
+
+
+@pytest.mark.slow
+def test_notebook_runs_and_its_design_meets_the_requirement(monkeypatch, tmp_path, capsys):
+    """Requirement: all cells run in order; their assertions hold for a design that is not the first one."""
+    matplotlib.use("agg")
+    monkeypatch.chdir(tmp_path)
+    cells = [cell for cell in json.loads(NOTEBOOK.read_text("utf-8"))["cells"] if cell["cell_type"] == "code"]
+    assert len(cells) >= 8
+    names: dict[str, object] = {}
+    for cell in cells:
+        assert (cell["outputs"], cell["execution_count"]) == ([], None), "clear the outputs before a commit"
+        exec("".join(cell["source"]), names)
+    assert names["ratio"] != 0.5
+    assert names["path"].stiffness[0] == pytest.approx(names["STIFFNESS"], rel=0.02)
+    assert "torque of the finite elements" in capsys.readouterr().out

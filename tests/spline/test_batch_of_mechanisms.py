@@ -3,11 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from spline_model import (
     Mechanism,
     compliant_mechanism,
     cross_axis_pivot,
+    sensitivities,
     solve_many,
     solve_mechanism,
     solve_statics,
@@ -16,6 +18,7 @@ from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
+from tests.fe.cases import extrapolated
 from tests.table_one import BARE, TABLE_ONE
 
 #: What strips with sides of their own have of the third dimension.
@@ -82,6 +85,20 @@ def batch_error(thickness: float = 1.0) -> float:
 def test_a_batch_of_mechanisms_equals_single_solves():
     """Requirement: a mechanism over its numbers, weight included, gives the answers of single solves."""
     gates.hold("spline_batch_mechanism", batch_error)
+
+
+@pytest.mark.parametrize(("name", "own"), [("crank_coupler.end_y", 0.1), ("coupler.centre_x", 0.05)])
+def test_sensitivities_are_the_differences_of_a_batch(name, own):
+    """Requirement: of any mechanism torque and stiffness change by an end and by a centre as in its batch."""
+    given, asked = linkage(), {"body": "crank", "rotation": 0.3, "increments": 3}
+    steps = 2e-3 / 2 ** np.arange(4)[:, None]
+    batch = solve_many(given, {name: own + np.concatenate((steps, -steps))[:, 0]}, **asked)
+    found = sensitivities(given, solve_mechanism(given, **asked), parameters=(name,), body="crank")
+    for quantity in ("torque", "stiffness"):
+        up, down = np.split(getattr(batch, quantity), 2)
+        expected, exact = extrapolated((up - down) / (2.0 * steps)), getattr(found, quantity)
+        scale = max(np.abs(expected).max(), 1e-2 * np.abs(exact.value).max())
+        gates.check("sensitivities", np.abs(exact.derivative[..., 0] - expected).max() / scale)
 
 
 def sides_error(**coarse: float) -> float:
