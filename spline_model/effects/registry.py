@@ -278,8 +278,8 @@ def build(names: Sequence[str], parameters: Parameters, design: Design) -> list[
     their own."""
     built: list[Effect | Body] = []
     for name in names:
-        given = parameters.get(name, {})
-        for each in [given] if isinstance(given, Mapping) else given:
+        given = parameters.get(name)
+        for each in ({},) if given is None else [given] if isinstance(given, Mapping) else given:
             try:
                 built += REGISTRY[name](design, **each)
             except TypeError as error:

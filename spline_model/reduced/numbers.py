@@ -154,16 +154,17 @@ def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes
     """What changes along the strips (S, P, 11 + K), at the points of a shape; speeds: as of ``speeds_of``."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     bends, u, degree = bends_of(scene), shape.rule[WHERE], scene.strips[0].basis.degree
-    speed, rest = speeds
+    (speed, rest), at = speeds, u.tobytes()
     along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]))
     along[..., SPEED] = speed
-    along[..., CURVATURE] = rest + np.array([[e.natural_curvature * length] for e in bends])
-    along[..., RIGIDITY] = np.array([e.rigidity_at(degree, u) for e in bends]) / (energy * length)
+    along[..., CURVATURE] = rest
     for row, bend, parts, back in zip(along, bends, _mixed_of(scene).values(), to_modes, strict=True):
+        row[:, CURVATURE] += bend.natural_curvature * length
+        row[:, RIGIDITY] = bend.rigidity_at(degree, u) / (energy * length)
         if bend.curl is not None:
             row[:, DROP:MODES], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
         if parts:
-            row[:, MODES:] = _values(tuple(e.modes for e in parts), u.tobytes()) @ back
+            row[:, MODES:] = _values(tuple(e.modes for e in parts), at) @ back
     return along
 
 
