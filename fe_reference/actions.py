@@ -231,7 +231,7 @@ def advance(
 
     v += h a(u, v), u += h v for the free nodes (`compliance`: 1/mass (nodes, 3) there, else 0) and the
     bodies, whose rows of zero are led; dampers act at the velocities before the step. `totals` gathers the
-    work of loads and drives, exactly that of the scheme, and what the dampers take [J].
+    work of loads and drives, exactly that of the scheme, and the energy that the dampers dissipate [J].
     """
     (_, carried, _, _), dissipative, _, histories, written, (resultants, pulls) = acting
     u, v, bodies, bodies_v = state

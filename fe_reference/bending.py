@@ -1,8 +1,8 @@
 """The moment of a strip whose section curls across its width no more than clamps and curvature let it.
 
 A section that is free to curl (anticlastic bending) has the rigidity EI, one that is held flat
-EI / (1 - nu^2). With f the share of its curl that its own curvature leaves and P(f) what the clamps leave of
-this (`plate`), times nu^2, the energy per length and what follows from it are
+EI / (1 - nu^2). Let f be the share of the curl that remains at this curvature, and P(f) its reduction by the
+clamps (`plate`); times nu^2, the energy per length and what follows from it are
 
     U = (1/2) D kappa^2 (1 - P(f)),    D = EI / (1 - nu^2),    M = dU/dkappa
 

@@ -313,7 +313,7 @@ def _cheaper(model: Model, run: Run, steps: int) -> str:
         ways = [f"--integrator generalised-alpha takes about {implicit:.2g}"]
         if implicit > run.most_steps:
             ways = [
-                "leave out strip_inertia, if strips are light, and take --integrator generalised-alpha with "
+                "remove strip_inertia, if strips are light, and take --integrator generalised-alpha with "
                 f"a --step (its own are about {implicit:.2g})"
             ]
     if steps <= FAR_MORE * MOST_STEPS:

@@ -4,7 +4,7 @@ scikit-fem assembles the pattern once; afterwards entries of elements go to thei
 The factors are K = L D L^T within the envelope of the rows, without pivoting: the coordinates are those of
 the nodes along the strips, then those of the bodies, which leaves a band and a border, and no fill. By
 Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
-coordinates are left out of the elimination.
+coordinates are excluded from the elimination.
 
 Products of two vectors, which are not symmetric, are added to a matrix by their low rank.
 
@@ -202,7 +202,7 @@ class Symmetric:
 
 @dataclass(eq=False)
 class Factors:
-    """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out."""
+    """Factors of a matrix; negative: the number of its negative eigenvalues, without the held rows."""
 
     pattern: Envelope
     held: Flags

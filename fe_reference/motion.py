@@ -171,7 +171,7 @@ def course(
         y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = samples.kinetic(scheme, y, caught) - samples.kinetic(scheme, y, v)
-        # what a catch takes from the motion is lost; what a drive gives it, by a jump of rates too, is work
+        # a re-clamping dissipates energy; a drive does work on the motion, also by a jump of its rate
         samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = samples.beside(scheme, now)

@@ -213,8 +213,8 @@ def _trail(state: State) -> tuple[tuple[float, Array, Array], ...]:
 def _ahead(state: State, parameter: float) -> Array:
     """Return the coordinates at a parameter by the polynomial through the last states and their rates.
 
-    States that are too close for a step so long are left out: round-off would be carried far. A step that
-    was halved often is straight: next to a critical point the rest is round-off.
+    States that are too close for so long a step are not used: extrapolation would amplify their round-off.
+    A step that was halved often is straight: next to a critical point the rest is round-off.
     """
     step, back = abs(parameter - state.parameter), _trail(state)
     far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]

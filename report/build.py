@@ -72,7 +72,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--allow-stale",
         action="store_true",
-        help="take stale results too, and say so on the first page",
+        help="use stale results too, with a warning on the first page",
     )
     arguments = parser.parse_args(words)
     try:

@@ -106,7 +106,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
             break
     doubt, other = answer.critical_points[known:], better.critical_points[known:]
     if doubt and not at_limit(answer):
-        there = _place(other[0].load_factor, other[0].rotation) if other else "nowhere"
+        there = _place(other[0].load_factor, other[0].rotation) if other else "no state"
         what = f"a {doubt[0].kind} at {_place(doubt[0].load_factor, doubt[0].rotation)}"
         what += f" is at {there} with {more[1]}"
     else:

@@ -2,9 +2,9 @@
 
 Of the modes that carry energy at the start each wants steps enough. A companion has two control points more:
 where the scene is undamped and free and the steps are not much longer than explicit ones it is the leapfrog,
-whose steps resolve all, so that the difference shows what the motion's own steps and its control points leave
-out together. Else it has the motion's own integrator and step, and shows what the control points leave out; a
-second one of a quarter of the step shows what the steps do, and the estimate is the sum.
+whose steps resolve all, so that the difference is the error of time steps and control points together. Else
+it has the motion's own integrator and step, and shows the error of the control points; a second one of a
+quarter of the step shows the error of the steps, and the estimate is the sum.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
 
     About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and
     y' = phi^T M v: its energy is c^2 / (2 w^2) + y'^2 / 2. Exact for the motion linearised
-    about the state; what later couples into other modes is left out. A state at rest in
+    about the state; later coupling into other modes is neglected. A state at rest in
     equilibrium has no energy; there the swing counts for all of it.
     """
     system = motion.system
@@ -103,7 +103,7 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
 
 
 def _resolution(content: list[Content], swing: float, step: float) -> str:
-    """What a step leaves unresolved, or an empty string.
+    """Message on the frequencies that a step does not resolve, or an empty string.
 
     content: of the start; swing: frequency of the lowest mode at rest [Hz], which a release
     tends to. The highest mode that carries energy and has too few steps is named.

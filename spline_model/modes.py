@@ -54,7 +54,7 @@ class Modes:
     frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi), 0 of a rigid motion;
     shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
     the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
-    name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
+    name; slide_frequency: those excluded as slide modes [Hz]; rotation of the static state [rad],
     nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
     static state (N,); segments of a strip and control_points of each; estimate: of the error, where an
     accuracy was asked for.

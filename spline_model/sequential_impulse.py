@@ -98,7 +98,7 @@ class ImpulseSolver:
         """A state at the unknowns z (N or more,), at rest or with velocity v (Q,).
 
         z may be another system's of the same strips and bodies, such as of statics with other drives:
-        what it has beyond this one's is left out. The constraints should hold in both.
+        its additional unknowns are ignored. The constraints should hold in both.
         """
         layout = self.system.layout
         count = layout.coordinate_count

@@ -34,7 +34,7 @@ TORQUE_SHARE = 4.5
 0.05 to 0.95, inclinations 10 to 80 degrees and rotations to 180 degrees, with 4 to 10 control points."""
 UNCERTAIN = 0.03
 """Estimated error of the torque from which an answer says that it is not resolved: at the ends of what
-designs may be the factor above is exceeded, and no error of 0.05 shall pass in silence."""
+designs may be the factor above is exceeded, and no error of 0.05 may pass without a message."""
 
 
 class Status(Enum):
@@ -208,7 +208,7 @@ def resolution(defect: NDArray[np.float64]) -> str:
 
 
 def largest(errors: Iterable[float]) -> float:
-    """The largest of errors, those left out that are nan: of what there is none of."""
+    """Return the largest of relative errors [1], nan (no error is estimated) ignored; nan if all are."""
     return max((each for each in errors if not math.isnan(each)), default=math.nan)
 
 
@@ -222,7 +222,7 @@ class ErrorEstimate:
     largest error over the largest magnitude on the path. nan of what a path does not have.
     segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
     were tried.
-    Leaves out what more control points do not mend: the theory's own simplifications.
+    Excludes errors that more control points do not reduce: the simplifications of beam theory.
     """
 
     accuracy: float

@@ -1,4 +1,4 @@
-"""From the states of a static path to what a user asks for: energies, sections, reactions, stiffness."""
+"""Compute energies, section forces, reactions and stiffness from the states of a static path."""
 
 from __future__ import annotations
 

@@ -234,7 +234,7 @@ def static_state(
     """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
 
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
-    pre-strain act in full; the multipliers of displacements that are released are left out. starts: as in
+    pre-strain act in full; the multipliers of released displacements are excluded. starts: as in
     ``solve_mechanism``.
     """
     mechanism = mechanism.propped(rotation is not None, body)

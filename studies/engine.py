@@ -123,7 +123,7 @@ class Study:
         made: tables that follow from those before them, by name.
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
         figures: name -> what draws it from the tables as they come back from their files; none by default.
-        varying: tables that differ from run to run, beside those whose name says time.
+        varying: tables that differ from run to run, in addition to those with "time" in their name.
         digits: tolerances that are not those of `studies.record.store`, by "table.column" or "column"; None
             for a column that is not compared.
         missing: says in a line what this machine lacks for it, and nothing where it can be run.

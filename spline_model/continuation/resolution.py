@@ -28,8 +28,8 @@ def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
     """Root of the energy of the moment defect over the bending energy at z (N,); share: of the preload.
 
     The constitutive moment M = EI (kappa - kappa_0) satisfies the balance M_b, of the root's
-    reaction and the weight, in the mean only; M - M_b is what the discretisation leaves
-    out. Zero for the exact solution. Strips that are not clamped at their root are left out.
+    reaction and the weight, in the mean only; M - M_b is the discretisation error. Zero for the exact
+    solution. Strips that are not clamped at their root are skipped.
     Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error in energy of two dual fields.
     """
     table = system.points if share == 1.0 else system.points.with_share(share)

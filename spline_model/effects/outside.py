@@ -1,4 +1,4 @@
-"""What a design makes of the effects that act from outside, each of which may act several times."""
+"""Values of a design for loads, supports, springs and drives, each of which may act several times."""
 
 from __future__ import annotations
 

@@ -30,7 +30,8 @@ A and l are such that the strip has both factors of its plate in the linear rang
 
     1 / f_b = int EI/R ds,      1 / f_s = 12 int u^2 EI/R ds,
 
-so that nothing is fitted to an answer. Left out: what the plate does beyond these two at large rotations.
+so that nothing is fitted to an answer. Neglected: all other nonlinear effects of the plate at large
+rotations.
 """
 
 from __future__ import annotations

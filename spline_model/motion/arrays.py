@@ -214,7 +214,8 @@ class Poses(NamedTuple):
 
     y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
     slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    what the last step's, of length last [s], left out; system, x: what is solved; still: what has no mass.
+    the curvature that the tangent of the last step, of length last [s], neglects; system, x: what is solved;
+    still: what has no mass.
     """
 
     y: Annotated[Array, "Y"]

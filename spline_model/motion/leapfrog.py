@@ -47,7 +47,7 @@ stress stiffens the strips on the way."""
 LARGEST_GAIN = 1e-2
 """Of energy over that at the start: it is kept in the limit of short steps only."""
 SHARPNESS = 0.1
-"""O h of inextensible strips: what a step leaves of their strain dies out over a few steps."""
+"""O h of inextensible strips: the strain that remains after a step decays over a few steps."""
 
 
 class _Grid(NamedTuple):

@@ -136,9 +136,10 @@ class Trajectory(Tabulated):
     time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
     (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,), springs' in it [J]; gravity_energy
     against rest, work of loads and drives so far, dissipated so far (T,) [J];
-    whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
-    the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
-    found; way: critical points that statics passed before the start; effects: names of the scene's effects;
+    whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: message
+    on the frequencies that the step does not resolve, likewise; still: whether the start is in equilibrium;
+    checked: what companions found; way: critical points that statics passed before the start; effects: names
+    of the scene's effects;
     counters: steps, halved_steps, newton_iterations, ...;
     seconds: by part (``newton.Laps``), "start" the static state that is released; estimate: of the error,
     where an accuracy was asked for;

@@ -115,7 +115,7 @@ def kernel(*, pipeline_class=_Short, entered=False, **options):
     def decorated(function):
         try:
             made = compiled(cache=True)(function)
-        except RuntimeError:  # of numba, which finds nowhere to keep it
+        except RuntimeError:  # numba has no folder in which it can store the kernel
             _say_unkept()
             made = compiled()(function)
         if isinstance(made, CPUDispatcher):

@@ -143,8 +143,8 @@ def quasi_static_frequency(
 
         T = 4 integral_0^Theta sqrt((J + m |dg/dtheta|^2) / (2 (U(Theta) - U(theta)))) dtheta
 
-    with theta = Theta sin(phi), which takes the singularity at the end away. Leaves out the inertia of the
-    strips; exact for massless strips of a design whose path is symmetric about rest.
+    with theta = Theta sin(phi), which removes the singularity at the end. Neglects the inertia of the strips;
+    exact for massless strips of a design whose path is symmetric about rest.
 
     Args:
         rotation: (S,) from 0 to the amplitude Theta [rad], one sign.

@@ -183,7 +183,8 @@ def read_points(path: str, content: Mapping[str, Any], bodies: Sequence[str]) ->
 
 
 def _keywords(part: Strip | Body) -> dict[str, Any]:
-    """Return what the models take of a part; the sides of a section only where they are given."""
+    """Return the keyword arguments of a part for the models; the sides of a section only if they are
+    given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     sides = [key.attribute for key in (*SIDES, *TAPER)]
     joints = [name for name in ("root_joint", "tip_joint") if given.get(name) == CLAMP]

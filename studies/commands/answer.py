@@ -108,7 +108,7 @@ def asked(
 
 
 def _put(target: Path, text: str, form: str) -> None:
-    """Write the answer to a file and say so, or to the output stream."""
+    """Write the answer to a file and print its name, or write it to the output stream."""
     if target == STREAM:
         sys.stdout.write(text)
     else:

@@ -6,8 +6,8 @@
 
 vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; svg: a drawing of
 the design at rest and deformed; csv, parquet: tables NAME_states, NAME_strips, NAME_bodies, NAME_reactions;
-json: the same tables in one file. NAME is the analysis: static, release or modes. docs/data.md says what the
-files hold; units stand in the names of columns and arrays. The folder must be new or empty, or hold a
+json: the same tables in one file. NAME is the analysis: static, release or modes. docs/data.md describes the
+files; the names of columns and arrays contain the units. The folder must be new or empty, or hold a
 former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done; 2: bad
 input; 3: not converged, and then the converged part of a path or a motion is written.
 """

@@ -71,7 +71,7 @@ class Strips:
         stations of strips with control points (S, n, 2) [m], by the constitutive laws of both models.
 
         Exact for the discretised strip: change of the material curvature times E h / 2, and the stretch
-        projected on the axial modes times E; leaves out what the clamps' fillets add.
+        projected on the axial modes times E; neglects the stress concentration at the fillets of the clamps.
         """
         shape, turn, speed = _strained(points)
         spread = _tables(points.shape[1])[2]

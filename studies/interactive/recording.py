@@ -61,7 +61,7 @@ def _setup(session: Session) -> dict[str, Any]:
 
 class Recorder:
     """Gives a session's events as lines to `keep`, or keeps them up to a number of characters; begins with a
-    session made anew."""
+    new session."""
 
     MOST = 20_000_000
 

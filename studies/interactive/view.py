@@ -100,7 +100,7 @@ SENTENCES = {
     "mirrored": "The camera picture is mirrored: switch off mirroring in the camera's settings.",
     "swapped": "The markers look swapped: marker 0 belongs on the ground, marker 1 on the moving body.",
     "jump": "The pose jumped: waiting for a second picture that agrees.",
-    "absurd": "The pose is out of reach and was left out.",
+    "absurd": "The pose is out of reach and was ignored.",
     "no-equilibrium": "No equilibrium was found for this pose: the last good state is kept.",
     "unstable": "Unstable under this load: only the hand holds the body. Contact with the ground is not "
     "modelled.",

@@ -13,8 +13,8 @@ from tests.agreement import loaded
 from tests.agreement.loaded import ROTATION
 from tests.agreement.test_loads_release import ELEMENTS, SPLINE, STEP, apart, largest, places, released
 
-#: A rotation that is held and then let go, one that is led back and let go as it moves, and the centre led
-#: on. Corners are off the grid of steps.
+#: A rotation that is locked and then released, one that is driven back and released while it moves, and the
+#: centre driven on. Corners are off the grid of steps.
 HELD, LED_BACK = (0.0, 0.00301), ((0.0, 1.0), (0.00503, 0.7))
 AWAY = ((0.0, 1.0), (0.00307, 0.8), (0.00611, 1.0))
 

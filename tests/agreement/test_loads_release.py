@@ -1,4 +1,5 @@
-"""Releases under every load, from rotations of either sign and from rest: what starts, holds and lets go."""
+"""Releases under every load, from rotations of either sign and from rest: loads that start, hold and
+release."""
 
 from dataclasses import replace
 from functools import cache, partial

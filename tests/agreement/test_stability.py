@@ -1,4 +1,4 @@
-"""Critical points of the spline against those of the finite elements, and against those in print."""
+"""Critical points of the spline against those of the finite elements, and against published ones."""
 
 import math
 

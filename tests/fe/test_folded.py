@@ -9,7 +9,7 @@ from tests.fe.cases import MOMENT, cantilever
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
-    """Two elements rolled by 1.2 whole turns stop where each is bent by half a turn, and say so."""
+    """Two elements rolled by 1.2 whole turns stop where each is bent by half a turn, with a message."""
     model = cantilever(elements=2, element=element, moment=2.4 * np.pi * MOMENT)
     answer = solve_mechanism(model, increments=12, check=False, raise_on_failure=False)
     assert answer.status is Status.NOT_CONVERGED

@@ -191,8 +191,8 @@ def test_picture_fits_every_design(page, name):
 
 
 def test_unstable_load_is_named_on_the_page(page):
-    """Requirement: beyond its critical load the page says so, with the load, the negative stiffness, and that
-    contact is not modelled."""
+    """Requirement: beyond its critical load the page shows a message with the load, the negative stiffness,
+    and that contact is not modelled."""
     typed(page, "load, downward in N", "0.4")
     text = page.wait("(t => /critical load/.test(t) && t)(document.getElementById('faults').textContent)")
     assert re.search(r"Unstable under this load.*Contact.*not modelled.*283 mN.*stiffness -", text)
@@ -242,7 +242,8 @@ def test_sliders_are_live_and_undone_at_once(page):
     assert page.ask(SLIDE) >= 15
     page.wait("studio.curve.moment.at(-1) > 2 * studio.ghost.moment.at(-1)")
     assert page.ask("studio.ghost.moment.at(-1)") == moment
-    page.wait("studio.state.values.thickness === JSON.parse(sessionStorage.design ?? 'null')?.values.thickness")
+    kept = "JSON.parse(sessionStorage.design ?? 'null')?.values.thickness"
+    page.wait(f"studio.state.values.thickness === {kept}")
     page.key("z")
     page.wait(f"studio.state.values.thickness === {before}")
 

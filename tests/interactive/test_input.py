@@ -15,7 +15,8 @@ from tests.interactive.events import FRAME, codes, seen, session, turned
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_jumps_keep_a_good_state(preset):
-    """Requirement: jumps of 60 degrees and 20 mm give an equilibrium or keep the last state and say so."""
+    """Requirement: jumps of 60 degrees and 20 mm give an equilibrium, or keep the last state and show a
+    message."""
     made, rng = session(preset, drive="pose"), np.random.default_rng(3)
     refused = 0
     state = turned(made, 0)

@@ -1,4 +1,4 @@
-"""A reader that has enough, as `head` has, ends a command in silence."""
+"""A reader that closes the pipe early, as `head` does, ends a command without an error message."""
 
 import os
 import subprocess

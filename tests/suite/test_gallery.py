@@ -50,7 +50,7 @@ def sprung(answer: dict) -> float:
 
 
 #: What is asked, the number in its JSON, its value, and the part of it that finite axial stiffness (which the
-#: closed form leaves out) or the source's own digits may take [1].
+#: closed form neglects) or the source's own digits may take [1].
 KNOWN = {
     "pinned_column": ("critical-load", lambda a: a["critical_load_N"], math.pi**2 * EI / 0.2**2, 1e-4),
     "bistable_half_beam": ("solve", lambda a: min(a["shuttle_force_y_N"]), -3.231e-6, 5e-4),

@@ -1,4 +1,4 @@
-"""A motion that its discretisation does not resolve says so without being asked."""
+"""A motion that its discretisation does not resolve has a warning by default."""
 
 import math
 
@@ -13,7 +13,8 @@ from tests.table_one import TABLE_ONE
 
 
 def test_swing_of_a_light_body_says_that_it_is_not_resolved():
-    """Table 1 with a body of 0.4 times the mass of its strips, from 92 deg, is not resolved and says so."""
+    """Table 1 with a body of 0.4 times the mass of its strips, from 92 deg, is not resolved and has a
+    warning."""
     light = TABLE_ONE | {"body_mass": 0.0265, "body_moment_of_inertia": 2.65e-5}
     motion = solve_release(cross_axis_pivot(**light), start=math.radians(92.0), duration=0.02)
     assert "the motion is not resolved" in motion.resolution

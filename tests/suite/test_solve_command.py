@@ -36,8 +36,8 @@ def test_stiffness_over_that_of_the_rotation(command):
 
 
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
-    """`--json FILE` writes the same object as `--json -`, time aside, says so below the table, and leaves no
-    other file."""
+    """`--json FILE` writes the same object as `--json -`, time aside, prints its name below the table, and
+    leaves no other file."""
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")

@@ -174,7 +174,7 @@ class Causes:
         return best if self.weights[best] > least else ""
 
     def unexplained(self, seen: View) -> Array:
-        """Return the residual (R,) [px] less what the causes leave."""
+        """Return the residual (R,) [px] that the causes do not explain."""
         return np.asarray(seen.gap + seen.pattern @ self.sizes)
 
     def spread_of(self, seen: View, *, own: bool) -> float:

@@ -218,7 +218,7 @@ function pair(label, unit) {
   range.type = "range";
   number.type = "number";
   number.addEventListener("beforeinput", (event) => {
-    if (event.data !== ",") return; // which browsers leave out: 0,6 would become 6
+    if (event.data !== ",") return; // browsers ignore a comma: 0,6 would become 6
     event.preventDefault();
     document.execCommand("insertText", false, ".");
   });
