@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
-from spline_model.discretisation import swinging_slide_stiffness
+from spline_model.discretisation import motion_penalty_stiffness
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
@@ -101,14 +101,14 @@ class Task:
 
     @cached_property
     def with_points(self) -> Callable[[int], Mechanism]:
-        """The mechanism with n control points, and a slide stiffness in proportion; one object a number."""
+        """The mechanism with n control points, and a penalty stiffness in proportion; one object a number."""
         mechanism, grid = self.mechanism, self.mechanism.design.discretisation
 
         def made(n: int) -> Mechanism:
             if n == grid.points:
                 return mechanism
-            slide = grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)
-            return mechanism.with_discretisation(control_points=n, slide_stiffness=slide)
+            slide = grid.slide * motion_penalty_stiffness(n) / motion_penalty_stiffness(grid.points)
+            return mechanism.with_discretisation(control_points=n, penalty_stiffness=slide)
 
         return cache(made)
 
@@ -116,7 +116,7 @@ class Task:
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
     """The motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a strip.
 
-    Control points are raised from those of the mechanism on, and the slide stiffness with
+    Control points are raised from those of the mechanism on, and the penalty stiffness with
     them. The estimate is the correction that the order of the scheme and two control points
     more suggest, and how far the runs depart from that order. An accuracy that is not reached
     is the status NOT_CONVERGED of the best motion.

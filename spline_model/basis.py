@@ -180,7 +180,7 @@ def singular(basis: Bezier, points: int, axial: LegendreModes | None, slides: bo
         return f"{work}: use more gauss_points or fewer axial_modes"
     if rank < shapes:
         free = f"{rank} axial modes leave {shapes - rank} of {shapes} strains free"
-        return f"{free}, along which control points slide: use slide_stiffness > 0 or more axial_modes"
+        return f"{free}, along which control points slide: use penalty_stiffness > 0 or more axial_modes"
     return ""
 
 

@@ -190,7 +190,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     system.require_plain("designs")
     model = reduced(system)
     if model is None:
-        raise InvalidParameter("discretisation", "printed forces", "what the elements know")
+        raise InvalidParameter("discretisation", "published forces", "measure material or spatial")
     return model
 
 

@@ -35,7 +35,7 @@ from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW,
 Array = NDArray[np.float64]
 
 PRINTED = 2
-"""Code of the forces as printed, of which ``spline_model.strip.laws`` knows nothing: they have no energy."""
+"""Code of the published forces, which ``spline_model.strip.laws`` does not have: they have no energy."""
 
 
 def evaluate(

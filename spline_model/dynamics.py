@@ -247,7 +247,7 @@ def _moved(
         settings={
             "integrator": ran,
             "step_s": steps.step,
-            "slide_stiffness": mechanism.design.discretisation.slide,
+            "penalty_stiffness": mechanism.design.discretisation.slide,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
         way=_way_to_start(path) if path else "",

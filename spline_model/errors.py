@@ -3,9 +3,25 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from numbers import Real
 from typing import Any
+
+FORMER = {
+    "slide_stiffness": "penalty_stiffness",
+    "swinging_slide_stiffness": "motion_penalty_stiffness",
+    "printed": "published",
+}
+"""Former names of keywords, functions and values, with the present ones: accepted until version 0.3."""
+
+
+def present(name: str) -> str:
+    """Return the present name of a keyword, function or value; a former name causes a FutureWarning."""
+    if name in FORMER:
+        text = f"{name} is now called {FORMER[name]}; version 0.3 ends {name}"
+        warnings.warn(text, FutureWarning, stacklevel=3)
+    return FORMER.get(name, name)
 
 
 class InvalidParameter(ValueError):

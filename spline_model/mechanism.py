@@ -11,7 +11,7 @@ from typing import Any, Literal, Self, Unpack
 import numpy as np
 
 from spline_model.design import HINGE, BodyDesign, Design, StripDesign
-from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
+from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
 from spline_model.effects import GROUND, Carried, Clamp, Driven, DrivenDisplacement, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import STEADY, Sized
@@ -70,7 +70,7 @@ class Mechanism:
         return self.with_discretisation(segments=segments, control_points=control_points, **own)
 
     def in_motion(self) -> Self:
-        """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
+        """The mechanism as it swings: with ``motion_penalty_stiffness`` where no penalty stiffness was given.
 
         Motions and modes, and the static states that they begin from, are those of this mechanism, whose
         number of control points is settled. It is made once.
@@ -80,10 +80,10 @@ class Mechanism:
     @cached_property
     def _swinging(self) -> Self:
         grid = self.design.discretisation
-        if None not in (grid.slide_stiffness, grid.control_points):
+        if None not in (grid.penalty_stiffness, grid.control_points):
             return self
-        stiffness = swinging_slide_stiffness(grid.points) if grid.slide_stiffness is None else grid.slide
-        return self.with_discretisation(control_points=grid.points, slide_stiffness=stiffness)
+        stiffness = motion_penalty_stiffness(grid.points) if grid.penalty_stiffness is None else grid.slide
+        return self.with_discretisation(control_points=grid.points, penalty_stiffness=stiffness)
 
     def driven(self, rotation: float, body: str | None = None) -> Scene:
         """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
@@ -104,13 +104,13 @@ class Mechanism:
     def released(self) -> Scene:
         """The scene in motion (``in_motion``), without the drives that hold the start alone.
 
-        Refused if none of its effects has inertia, and with printed forces, which have no energy.
+        Refused if none of its effects has inertia, and with published forces, which have no energy.
         """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
-        if self.design.discretisation.measure == "printed":
-            expected = "material or spatial for motions and modes: printed forces are of static paths alone"
-            raise InvalidParameter("measure", "printed", expected)
+        if self.design.discretisation.measure == "published":
+            expected = "material or spatial for motions and modes: published forces are for static paths only"
+            raise InvalidParameter("measure", "published", expected)
         scene = self.in_motion().scene
         kept = (e for e in scene.effects if not (isinstance(e, Driven) and e.lets_go))
         return replace(scene, effects=tuple(kept))
@@ -171,7 +171,7 @@ def compliant_mechanism(
     >>> tip = BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5)
     >>> mechanism = compliant_mechanism(strips=[strip], bodies=[tip], control_points=6)
     """
-    grid = Discretisation(**described)
+    grid = Discretisation.described(**described)
     arcs = (2.0 * abs(strip.opening) for strip in strips if strip.rise)
     fewest = max((math.ceil(arc / LARGEST_OPENING) for arc in arcs), default=1)
     if fewest > grid.segments:

@@ -28,7 +28,7 @@ from spline_model.statics import static_state
 Array = NDArray[np.float64]
 
 SLIDE_SHARE = 0.5
-"""A mode with more of its strain energy than this in the slide stiffness is one of the control
+"""A mode with more of its strain energy than this in the penalty stiffness is one of the control
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""

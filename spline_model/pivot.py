@@ -104,8 +104,8 @@ def cross_axis_pivot(
     effects, parameters : sequence of str, mapping
         Names of the effects, and the parameters of each effect by name.
     described
-        `control_points` ... `slide_stiffness`, as in ``spline_model.discretisation.Discretisation``. Without
-        `control_points`, solvers choose the number for an accuracy of 1e-4.
+        `control_points` ... `penalty_stiffness`, as in ``spline_model.discretisation.Discretisation``.
+        Without `control_points`, solvers choose the number for an accuracy of 1e-4.
 
     Returns
     -------

@@ -67,13 +67,13 @@ def sensitivities(
     Raises
     ------
     InvalidParameter
-        Published forces (measure "printed"), which the elements do not have, or a path of another design.
+        Forces as published (measure "published"), which are not supported, or a path of another design.
 
     Notes
     -----
     The parameters enter through the arrays of the strips, by a complex step with which the kernels of the
     path are evaluated again: exact to round-off for the discrete answer, in either measure, under loads and
-    pre-strain, with lateral clamping, anticlastic stiffening and support compliance. The slide stiffness
+    pre-strain, with lateral clamping, anticlastic stiffening and support compliance. The penalty stiffness
     changes with the design. Bodies keep their mass.
 
     References

@@ -98,7 +98,7 @@ class Path:
     at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
     drives since the first state [J]; history: residual norms by increment.
     inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
-    stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
+    stable state, -1 where the published forces have no potential; moment_defect (S,): what the
     strips' moments differ from balance by, relative (``continuation.resolution``);
     critical_points in the order of the path; settled: whether it begins under all of its weight and
     pre-strain; if not, its one state is the shape at rest without them.

@@ -214,7 +214,7 @@ class StaticSolution(Tabulated, Path):
         equilibrium: K_bb - K_br K_rr^-1 K_rb with the body's coordinates b and the rest r of the tangent,
         multipliers included. What drives the body is released, what drives others holds them. Exact for the
         discretisation; dead loads have a stiffness where they act beside centres. nan where a strip that
-        cannot stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
+        cannot stretch leaves a direction none. Raises InvalidParameter for the published forces.
         """
         body = body or self._watched_name
         return self.own_stiffness if body == self.asked else self._stiffness_of(body)
@@ -222,7 +222,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def own_stiffness(self) -> Array:
         """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
-        without one, and for printed forces."""
+        without one, and for the published forces."""
         body = self.asked or self.driven or (next(iter(self.bodies)) if len(self.bodies) == 1 else None)
         if body is None or reduced(self.system) is None:
             return np.full((len(self.work), 3, 3), np.nan)

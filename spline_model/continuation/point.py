@@ -22,7 +22,7 @@ forces of 1e11, round-off in the place of a pivot gives 1e15."""
 NO_STIFFNESS = 1e-14
 """Stiffness of a driven rotation that is none, over the sum of the terms that cancel in it."""
 NOT_TRACKED = -1
-"""Inertia of a state of printed forces, which have no potential: its tangent is not symmetric."""
+"""Inertia of a state of published forces, which have no potential: its tangent is not symmetric."""
 
 WORK_MISMATCH = 0.02
 """Largest difference between the potential gained in a step and the integral of its rate, over
@@ -127,7 +127,7 @@ def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
 
 
 def _sign(work: Followed) -> int:
-    """1 where the determinant of the reduced tangent is below zero, else 0; NOT_TRACKED of printed forces.
+    """1 where the determinant of the reduced tangent is below zero, else 0; NOT_TRACKED of published forces.
 
     That of the whole one has another sign for each axial force and each constraint.
     """

@@ -21,7 +21,7 @@ from spline_model.strip.laws import TERMS, curl_factors
 
 Array = NDArray[np.float64]
 
-MEASURES = ("material", "spatial", "printed")
+MEASURES = ("material", "spatial", "published")
 """Measure names; the position is the code that the kernels read."""
 CLAMPED_WIDTH = "clamped_width"
 ANTICLASTIC = "anticlastic"
@@ -115,7 +115,7 @@ class Bending(StrainEnergy):
 
     material    V = 1/2 int EI (phi / J0 - kappa_0 - kappa_n)^2 J0 du              [J]
     spatial     V = 1/2 int EI (phi / |C'| - kappa_0 - kappa_n)^2 |C'| du  (Eq 10) [J]
-    printed     the spatial energy with the forces of Eq 12 as published: d|C'|/dq
+    published   the spatial energy with the forces of Eq 12: d|C'|/dq
                 is neglected. The forces are no gradient, so the work of the drive
                 differs from the stored energy. For comparison only.
 
@@ -184,7 +184,7 @@ class Stretching(StrainEnergy):
 
     material    V = 1/2 int EA eps^2 J0 du                                         [J]
     spatial     V = 1/2 int EA eps^2 |C'| du                           (Eq 13)     [J]
-    printed     the spatial energy with the forces of Eq 15 as they are printed.
+    published   the spatial energy with the forces of Eq 15.
 
     Parameters: strip, axial_rigidity EA >= 0 [N], natural_strain eps_0 of the stress-free
     strip against the one at rest, gauss_points. eps is less by eps_0.

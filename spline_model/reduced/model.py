@@ -120,9 +120,9 @@ def reduced(system: System) -> Reduced | None:
 def require_reduced(system: System) -> Reduced:
     """The reduced mechanism of a scene; InvalidParameter where there is none."""
     model = reduced(system)
-    if model is None and any(e.measure == "printed" for e in system.scene.of(Bending)):
-        expected = "material or spatial: printed forces are of static paths alone"
-        raise InvalidParameter("measure", "printed", expected)
+    if model is None and any(e.measure == "published" for e in system.scene.of(Bending)):
+        expected = "material or spatial: published forces are for static paths only"
+        raise InvalidParameter("measure", "published", expected)
     if model is None:
         raise InvalidParameter("scene", "strips of several kinds", "what the strips' elements know")
     return model
@@ -155,7 +155,7 @@ def _known(scene: Scene) -> bool:
     return (
         len(bases) == 1
         and len(grids) == 1
-        and "printed" not in {measure for _, measure in grids}
+        and "published" not in {measure for _, measure in grids}
         and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)
         and all(e.flexural_rigidity > 0.0 for e in bending)
         and next(iter(bases)).control_points >= 4

@@ -40,7 +40,7 @@ class Asked:
 
     Attributes:
         design: of the case; settings: of the model.
-        moving: whether it is asked in motion, where a spline has another slide stiffness.
+        moving: whether it is asked in motion, where a spline has another penalty stiffness.
         modelled: the design in the model.
     """
 
@@ -126,7 +126,7 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
 
 
 def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]:
-    """Return keywords of a discretisation with the slide stiffness of control points that are in motion."""
+    """Return keywords of a discretisation with the penalty stiffness of control points that are in motion."""
     if not moving or "control_points" not in given:
         return given
-    return {"slide_stiffness": model.swinging_slide_stiffness(given["control_points"])} | given
+    return {"penalty_stiffness": model.motion_penalty_stiffness(given["control_points"])} | given

@@ -109,7 +109,7 @@ class Response(Answer):
     def body_stiffness(self) -> Array:
         """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
         [N/m, N, N m/rad]; found when it is first asked for; nan with the paper's printed forces."""
-        if self.settings.get("measure") == "printed":
+        if self.settings.get("measure") == "published":
             return read_only(np.full((len(self.load_factor), 3, 3), np.nan))
         return read_only(np.asarray(self.solution.body_stiffness(self.body)))
 

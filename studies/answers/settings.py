@@ -13,11 +13,11 @@ class SplineSettings:
             answer then names.
         axial_modes: m axial-force modes per segment [1]; None for the model's default, n - 2.
         segments: Bezier curves that a strip is cut into, each with those control points and modes [1].
-        measure: "material", "spatial" (the paper's energy) or "printed" (the paper's generalised forces as
-            printed), the latter two with stretch "consistent".
+        measure: "material", "spatial" (the paper's energy) or "published" (the paper's generalised
+            forces), the latter two with stretch "consistent".
         stretch: "mixed", "consistent" (the paper's quadrature) or "inextensible".
         gauss_points: quadrature points [1]; None for the model's default.
-        slide_stiffness: of the strains that the axial modes do not see [EI/L^2]; None for the model's
+        penalty_stiffness: of the strains that the axial modes do not see [EI/L^2]; None for the model's
             default, which differs between statics and motion.
     """
 
@@ -27,7 +27,7 @@ class SplineSettings:
     measure: str = "material"
     stretch: str = "mixed"
     gauss_points: int | None = None
-    slide_stiffness: float | None = None
+    penalty_stiffness: float | None = None
 
     model: ClassVar[str] = "spline"
 
@@ -40,8 +40,8 @@ class SplineSettings:
 
     def keywords(self) -> dict[str, Any]:
         """Return the discretisation keywords of `spline_model.pivot.cross_axis_pivot`; control points and a
-        slide stiffness only if they are set."""
-        said = ("control_points", "slide_stiffness")
+        penalty stiffness only if they are set."""
+        said = ("control_points", "penalty_stiffness")
         return {name: v for name, v in asdict(self).items() if v is not None or name not in said}
 
 

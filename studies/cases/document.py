@@ -1,6 +1,7 @@
 """Case files as documents: parsing, and refusals that name file, key, what was got and what was expected."""
 
 import difflib
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -11,6 +12,13 @@ from studies.errors import BadInput
 
 #: Names that a line can list, and how many of a longer list it shows.
 MANY, SHOWN = 40, 3
+#: Former name of a command, an option, a setting or a choice -> present name; accepted until version 0.3.
+FORMER: dict[str, str] = {
+    "capacity": "critical-load",
+    "--slide-stiffness": "--penalty-stiffness",
+    "slide_stiffness": "penalty_stiffness",
+    "printed": "published",
+}
 
 
 class CaseError(BadInput):
@@ -132,6 +140,16 @@ def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what
         return "one of " + ", ".join(listed or known)
     few = difflib.get_close_matches(name, known, n=SHOWN, cutoff=0.0)
     return f"{', '.join(few)} or another of {len(known)} {what}s"
+
+
+def present(word: str) -> str:
+    """Return a name, or `--name=value`, under its present name; a former name is accepted with a warning."""
+    former, sign, value = word.partition("=")
+    if former not in FORMER:
+        return word
+    name = FORMER[former]
+    print(f"studies: warning: {former} is now called {name}; version 0.3 ends {former}", file=sys.stderr)
+    return name + sign + value
 
 
 def one_of(where: str, label: str, value: Any, names: Sequence[str]) -> str:

@@ -1,7 +1,8 @@
 """The effects of a scene as case files and the command line name them, with the units of their parameters.
 
 A table `[effects.NAME]` gives the parameters of an effect that the scene names, in the case file or by
-`--effects=+NAME`; parameters of what nothing names are refused, so that no load is forgotten without a message.
+`--effects=+NAME`; parameters of an effect that is not named are an error, so that no load is
+forgotten.
 """
 
 import difflib

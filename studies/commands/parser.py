@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-from studies.cases.document import nearest
+from studies.cases.document import nearest, present
 from studies.cases.rules import number
 from studies.errors import BadInput
 from studies.record.files import require_writable_file
@@ -24,7 +24,8 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse the words of a command; of an option=-- argparse would make a list without a value."""
-        for word in args or ():
+        args = [present(word) if word.startswith("--") else word for word in args or ()]
+        for word in args:
             if word.startswith("--") and word.endswith("=--"):
                 self.error(f"argument {word[:-3]}: expected one argument")
         return super().parse_args(args, namespace)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from spline_model.errors import FORMER
 from studies.cases.rules import TRUTH, Rule, choice, number, text, whole
 from studies.errors import BadInput
 from studies.interactive.design import Snapshot
@@ -38,7 +39,13 @@ _THREE = Rule(
     ),
     read=lambda value: np.array(value, dtype=float),
 )
-_DRIVE, _SOLVER, _SWEEPS = choice(*DRIVES), choice(*SOLVERS), whole(1, MOST_SWEEPS)
+#: Session files of former versions are read with the former name of a solver.
+_SOLVER = Rule(
+    expected=choice(*SOLVERS).expected,
+    admits=lambda value: isinstance(value, str) and FORMER.get(value, value) in SOLVERS,
+    read=lambda value: FORMER.get(value, value),
+)
+_DRIVE, _SWEEPS = choice(*DRIVES), whole(1, MOST_SWEEPS)
 #: Actions of events, each a method of the session, with their fields; fields with a question mark are
 #: optional.
 EVENTS: Events = {

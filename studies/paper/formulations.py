@@ -42,7 +42,7 @@ NAMED: dict[str, tuple[Settings | None, Look, str]] = {
         "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
     ),
     PRINTED: (
-        replace(_AS_PAPER, measure="printed"),
+        replace(_AS_PAPER, measure="published"),
         Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
         "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
     ),

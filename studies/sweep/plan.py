@@ -135,7 +135,7 @@ _SETTING_RULES: dict[str, Rule] = {
     "axial_modes": whole(1, 100),
     "gauss_points": whole(1, 200),
     "elements": whole(1, 10_000),
-    "slide_stiffness": not_negative("EI/L^2"),
+    "penalty_stiffness": not_negative("EI/L^2"),
 }
 
 

@@ -106,7 +106,8 @@ def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, An
         if name not in ("case", "model", *SECTIONS):
             expected = document.nearest(name, ["case", "model", *SECTIONS])
             raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")
-    return {name: document.table(where, content, name) for name in SECTIONS}
+    tables = {name: document.table(where, content, name) for name in SECTIONS}
+    return tables | {"settings": {document.present(key): value for key, value in tables["settings"].items()}}
 
 
 def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:

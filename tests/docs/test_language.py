@@ -1,4 +1,4 @@
-"""All texts use plain English and the terms of the glossary; README and how-to guides have short sentences."""
+"""Texts use plain English and the terms of the glossary; README and how-to guides have short sentences."""
 
 import re
 from pathlib import Path
@@ -27,7 +27,7 @@ REPLACED = {
 }
 #: Folders whose texts follow these rules: docstrings, comments, help, messages and the text of the report.
 FOLDERS = ("docs", "fe_reference", "report", "spline_model", "studies", "tests")
-ENDINGS = {".py", ".typ", ".toml", ".html", ".js"}
+ENDINGS = {".md", ".py", ".typ", ".toml", ".html", ".js"}
 #: Pages whose sentences are at most so many words long.
 SHORT, LONGEST = ("README.md", "docs/how_to.md"), 30
 

@@ -122,7 +122,7 @@ def test_solvers_are_chosen_by_their_names(page):
     assert names[0] == "impulses at once (Eq 30), stable form"
     assert "impulses by sweeps over constraints, as printed" in names
     assert page.ask("document.getElementById('sweeps-row').hidden")
-    chosen(page, "solver", "printed")
+    chosen(page, "solver", "published")
     page.wait("!document.getElementById('sweeps-row').hidden")
     chosen(page, "sweeps", "7")
     page.wait("studio.state.sweeps === 7")

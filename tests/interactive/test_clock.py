@@ -53,7 +53,7 @@ def test_simulated_time_is_added_up_and_starts_again_with_a_design():
         {"do": "parameter", "name": "relaxation_time", "value": 0.0},
         {"do": "parameter", "name": "body_mass", "value": 0.1},
         {"do": "solver", "name": "energy"},
-        {"do": "solver", "name": "printed"},
+        {"do": "solver", "name": "published"},
     ],
     ids=lambda change: change["name"],
 )
@@ -116,8 +116,8 @@ def test_every_solver_swings_the_pivot(solver):
 def test_sweeps_are_as_many_as_are_chosen():
     """Requirement: the number of sweeps that is typed is the most that a step of the printed form makes."""
     most = 71 * 4  # printed steps of a frame
-    assert swung("printed", 1, sweeps=2)["iterations"] <= 2 * most
-    assert swung("printed", 1, sweeps=30)["iterations"] > 5 * most
+    assert swung("published", 1, sweeps=2)["iterations"] <= 2 * most
+    assert swung("published", 1, sweeps=30)["iterations"] > 5 * most
 
 
 def test_time_goes_slower_where_there_is_no_room_for_its_steps():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from spline_model import cross_axis_pivot, solve_statics
-from studies.interactive.presets import OWN, PRESETS, SLIDE_STIFFNESS, opened
+from studies.interactive.presets import OWN, PENALTY_STIFFNESS, PRESETS, opened
 from studies.interactive.session import Session
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, turned
@@ -124,7 +124,7 @@ def test_load_is_that_of_the_model(degrees):
     force = {"applied_force": {"force": (0.0, -load)}}
     given = {"effects": ("bending", "stretching", "applied_force"), "parameters": force}
     given["control_points"] = state["control_points"]
-    pivot = cross_axis_pivot(**TABLE_ONE, **given, slide_stiffness=SLIDE_STIFFNESS)
+    pivot = cross_axis_pivot(**TABLE_ONE, **given, penalty_stiffness=PENALTY_STIFFNESS)
     path = solve_statics(pivot, rotation=math.radians(degrees))
     assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-9
     assert state["force"][2] == pytest.approx(path.torque[-1], rel=1e-9)

@@ -67,7 +67,7 @@ def test_absurd_poses_are_left_out(pose):
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
         ({"do": "drive", "by": "will"}, 'by: got the text "will"'),
         (
-            {"do": "solver", "name": "printed", "sweeps": 0},
+            {"do": "solver", "name": "published", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",
         ),
         ({"do": "setup", "preset": "polymer"}, "values: got None"),

@@ -90,7 +90,7 @@ def balance_error(form, step=4e-6):
     return np.abs(balance - balance[0]).max() / balance[0]
 
 
-@pytest.mark.parametrize("form", ["printed", "stable"])
+@pytest.mark.parametrize("form", ["published", "stable"])
 def test_damping_is_booked(form):
     """Requirement: what damping takes is counted, to the accuracy of the step."""
     gates.hold(f"impulse_{form}_balance", partial(balance_error, form))

@@ -48,13 +48,6 @@ def test_strips_in_a_row_are_loaded_by_what_the_weakest_bears(answered):
     assert forces[0] == pytest.approx(forces[1], rel=1e-6)
 
 
-def test_the_former_name_prints_the_new_one(command):
-    """Requirement: `capacity` still works and prints the new name on the error stream."""
-    outcome = command("capacity", FINDS / "heavy_pivot.toml")
-    warning = "studies: warning: capacity is now called critical-load; version 0.3 ends capacity\n"
-    assert (outcome.code, outcome.err) == (0, warning)
-
-
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])
 def test_too_few_control_points_are_not_physics(name):
     """Requirement: a path that stops for lack of control points is not resolved, does not buckle, is cut."""

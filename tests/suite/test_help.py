@@ -126,7 +126,7 @@ def test_what_an_option_lacks_is_found(keywords, lack):
         ("crosspivot", "crit", ["critical-load"]),
         ("crosspivot solve", "titan", ["titanium_pivot"]),
         ("crosspivot solve titanium_pivot", "--incr", ["--increments"]),
-        ("crosspivot solve --measure", "", ["material", "spatial", "printed"]),
+        ("crosspivot solve --measure", "", ["material", "spatial", "published"]),
         ("crosspivot run", "convergence/el", ["convergence/elements"]),
     ],
 )

@@ -139,7 +139,7 @@ def test_every_key_of_a_sweep(tmp_path, refused):
 BEYOND = {
     **dict.fromkeys(("duration", "step", "accuracy", "tolerance", "stiffness"), ("0", "-1", "nan", "inf")),
     **dict.fromkeys(("repeat", "count", "records", "processes", "workers"), ("0", "-1", "1.5")),
-    "slide-stiffness": ("-1", "nan", "inf"),
+    "penalty-stiffness": ("-1", "nan", "inf"),
     "rotation-deg": ("nan", "720", "-400", "inf"),
     "increments": ("0", "100001", "2.5"),
     "model": ("fe,fe", "spline,rod", ""),

@@ -9,7 +9,7 @@ import pytest
 
 def test_printed_forces_leave_the_stiffness_of_the_body_out(case, command):
     """A path of the paper's printed forces has torques, no stiffness of the body, and a line about that."""
-    words = ["solve", case(), "--measure", "printed", "--stretch", "consistent", "--control-points", 4]
+    words = ["solve", case(), "--measure", "published", "--stretch", "consistent", "--control-points", 4]
     words += ["--rotation-deg", 5, "--increments", 2]
     answer = json.loads(command(*words, "--json", "-").out)
     assert answer["torque_Nm"][-1] > 10.0

@@ -180,7 +180,7 @@ export class Controls {
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;
-    at("sweeps-row").hidden = state.solver !== "printed";
+    at("sweeps-row").hidden = state.solver !== "published";
     if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]),
