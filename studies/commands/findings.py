@@ -196,8 +196,7 @@ def _cost(row: Mapping[str, Any]) -> str:
 
 
 def hard_cases(store: Store) -> Iterator[str]:
-    """Yield the counts of outcomes: a row a family, a column a model, "right / refused / wrong / bad input" a
-    cell."""
+    """Yield a row per family with cells per model: correct / stopped / wrong / invalid input."""
     cells: dict[str, dict[Any, str]] = {}
     for study in (each for each in STUDIES if each.startswith("stability/")):
         counts = stored_table(store, study, "counts").set_index("model")[list(OUTCOMES)]
