@@ -123,10 +123,10 @@ def section(curl: Array, rigidity: float, left: Array, reach: float, curvature: 
 
 @inlined(fastmath={"contract"})
 def bent_element(curl: Array, row: Array, rate: float, first: float, second: float) -> Bent:
-    """Return energy [J], both end moments [N m] and their slopes 11, 12, 22 of an element with two points.
+    """Return energy [J], end moments [N m] and their slopes 11, 12, 22 [N m] of an element with two points.
 
     Args:
-        row: of the element, as in `law`. rate: 1 / l0 [1/m].
+        curl: as of `section`. row: of the element, as in `law`. rate: 1 / l0 [1/m].
         first, second: turns of its end sections from the chord [rad].
     """
     even, odd = (second - first) * rate, ROOT_3 * (first + second) * rate

@@ -87,7 +87,10 @@ def _slopes(links: Links, turns: Array) -> Array:
 
 
 def add_links(links: Links, turns: Array, constants: Array, whole: Symmetric) -> None:
-    """Add what stiffness or damping (K, 3) of the links makes at the turns of bodies (B,) to a matrix."""
+    """Add the stiffness (K, 3) [N/m, N/m, N m] or damping (K, 3) [N s/m, N m s] of links to a matrix.
+
+    turns: rotations of the bodies (B,) [rad].
+    """
     for at, slope, own in zip(whole.pattern.links, _slopes(links, turns), constants, strict=True):
         np.add.at(whole.data, at[at >= 0], (slope.T * own @ slope)[at >= 0])
 
@@ -103,10 +106,11 @@ def between(links: Links, turns: Array, one: Array, other: Array) -> float:
 
 
 def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> float:
-    """Return what no ratio of constants (K, 3) of links to masses and inertias (B,) exceeds [1/s^2 or 1/s].
+    """Return an upper bound of the ratios of constants (K, 3) of links to masses and inertias (B,) [1/s^2 or
+    1/s].
 
-    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass
-    1 / (1/m + o^2/J) at least.
+    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass 1 / (1/m + o^2/J)
+    at least.
     """
     (ends, offsets, _, _), total = links, 0.0
     with_ground = np.append(1.0 / mass, 0.0), np.append(1.0 / inertia, 0.0)

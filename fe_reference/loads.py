@@ -179,7 +179,7 @@ def _factor_at(instants: Array, factors: Array, begin: int, end: int, time: floa
 
 @kernel()
 def load_forces(histories: Histories, time: float, u: Array, bodies: Array, pulls: Array) -> None:
-    """Write the generalised forces (K, 3) of the loads at an instant."""
+    """Write the generalised forces `pulls` (K, 3) [N, N, N m] of the loads at an instant [s]."""
     targets, rows, begins, instants, factors = histories
     for k in range(len(targets)):
         factor, moment = _factor_at(instants, factors, begins[k], begins[k + 1], time), rows[k, 2]
@@ -194,7 +194,8 @@ def load_forces(histories: Histories, time: float, u: Array, bodies: Array, pull
 
 @kernel()
 def load_power(targets: Indices, pulls: Array, v: Array, bodies_v: Array) -> float:
-    """Return the power of the loads [W]."""
+    """Return the power [W] of the loads `pulls` (K, 3) at velocities of nodes v (nodes, 3) and bodies (B,
+    3)."""
     power = 0.0
     for k in range(len(targets)):
         rate = bodies_v[targets[k]] if targets[k] >= 0 else v[-1 - targets[k]]
@@ -204,7 +205,8 @@ def load_power(targets: Indices, pulls: Array, v: Array, bodies_v: Array) -> flo
 
 @kernel()
 def put_loads(targets: Indices, pulls: Array, force: Array, resultants: Array) -> None:
-    """Take the loads from the forces that resist."""
+    """Subtract the loads `pulls` (K, 3) [N, N m] from the resisting forces of nodes (nodes, 3) and bodies (B,
+    3)."""
     for k in range(len(targets)):
         for i in range(3):
             if targets[k] >= 0:

@@ -154,7 +154,10 @@ def couple(coupled: Array, bodies: Array, rates: Array, out: Array) -> None:
 
 
 def coupled_energy(coupled: Array, bodies: Array, rates: Array) -> float:
-    """Return the kinetic energy beside that of the diagonal mass [J]."""
+    """Return the kinetic energy [J] of the coupled masses (C, 6), which the diagonal mass does not have.
+
+    bodies: places (B, 3) [m, m, rad]; rates: their velocities [m/s, rad/s].
+    """
     total = 0.0
     for row in coupled:
         body, free = int(row[0]), int(row[1])
@@ -164,9 +167,9 @@ def coupled_energy(coupled: Array, bodies: Array, rates: Array) -> float:
 
 
 def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
-    """Return coordinates y of one structure in another that is reduced about other points of the bodies.
+    """Return coordinates y (size,) [m, rad] of one structure in another with other points of the bodies.
 
-    With velocities v return those instead.
+    With velocities v (size,) [m/s, rad/s], return the velocities instead.
     """
     moved = y.copy() if v is None else v.copy()
     for k in range(0 if after is before else len(before.points)):
@@ -177,7 +180,8 @@ def carried_over(before: Structure, y: Array, after: Structure, v: Array | None 
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
-    """Return the mass matrix (size, size) of strips and bodies at y, "consistent" or "lumped"."""
+    """Return the mass matrix (size, size) [kg, kg m, kg m^2] of strips and bodies at y, "consistent" or
+    "lumped"."""
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
         masses = np.eye(6)[:, :, None] * lumped_elements(structure)
     elif structure.shear:
@@ -190,9 +194,9 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
 
 
 def body_blocks(structure: Structure, y: Array, values: Array, whole: Symmetric) -> None:
-    """Add to a matrix what (B, 2) values make, for translation of the bodies' centres and for rotation.
+    """Add the values (B, 2) of bodies, for translation of their centres and for rotation, to a matrix.
 
-    They are masses and moments of inertia, or the coefficients of dampers.
+    The values are masses [kg] and moments of inertia [kg m^2], or damper coefficients [N s/m, N m s].
     """
     for k, (translation, rotation) in enumerate(values):
         at, offset = structure.body_slice(k), structure.model.bodies[k].centre - structure.points[k]

@@ -35,12 +35,13 @@ class Singular(ArithmeticError):
 def assemble(
     matrices: Array, ends: Indices, carried: Carried, turns: Array, places: Indices, data: Array
 ) -> None:
-    """Add element matrices (E, 8, 8) to the entries of a matrix.
+    """Add element matrices (E, 8, 8) [N/m, N, N m] to the entries `data` of a matrix.
 
-    What the turns of bodies at the ends carry comes into the last two rows and columns, which are zero.
+    The contributions of body rotations at attached ends are added to the last two rows and columns, which are
+    zero.
 
     Args:
-        ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies.
+        ends (E, 2): which attached node the ends are, or -1. turns (B,): of the bodies [rad].
         places (E, 8, 8): of the entries in data, or -1.
     """
     _, carrier, offsets, _ = carried
@@ -166,7 +167,8 @@ def _pairs(numbers: Indices) -> tuple[Indices, Indices]:
 
 @dataclass(eq=False)
 class Symmetric:
-    """A symmetric matrix (size, size) on a pattern."""
+    """A symmetric matrix (size, size) on a pattern; data: its entries, in the unit of its rows and
+    columns."""
 
     pattern: Envelope
     data: Array
@@ -202,7 +204,11 @@ class Symmetric:
 
 @dataclass(eq=False)
 class Factors:
-    """Factors of a matrix; negative: the number of its negative eigenvalues, without the held rows."""
+    """Factors L D L^T of a symmetric matrix (size, size) without the rows of `held` (size,).
+
+    low, d: entries of L by the rows of the pattern, and of D (size,); negative: number of negative
+    eigenvalues [1].
+    """
 
     pattern: Envelope
     held: Flags
@@ -242,9 +248,9 @@ class Factors:
 
 @dataclass(eq=False)
 class Bordered(Factors):
-    """Factors of a matrix with products left (x) right of vectors (R, size).
+    """Factors of a matrix (size, size) with products left (x) right of vectors (R, size).
 
-    solved (R, size): the matrix's solutions for left. core (R, R): inverse of 1 + right.solved.
+    solved (R, size): the matrix's solutions for left. core (R, R): inverse of 1 + right.solved [1].
     """
 
     right: Array
@@ -259,7 +265,7 @@ class Bordered(Factors):
 
 @dataclass(eq=False)
 class Unsymmetric(Symmetric):
-    """A symmetric matrix with products left (x) right of vectors (R, size) added."""
+    """A symmetric matrix (size, size) with products left (x) right of vectors (R, size) added."""
 
     left: Array
     right: Array

@@ -47,21 +47,23 @@ Tables = tuple[Given, Carried, Weights, Springs]
 
 @kernel()
 def turned(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return R (x, y) with the matrix R of a turn."""
+    """Return the vector R (x, y), in its own unit, with the matrix R of a rotation by `angle` [rad]."""
     c, s = math.cos(angle), math.sin(angle)
     return c * x - s * y, s * x + c * y
 
 
 @kernel()
 def swept(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return (R - 1) (x, y), written with sines: no cancellation at small turns."""
+    """Return (R - 1) (x, y), in its own unit, of a rotation by `angle` [rad], without cancellation at small
+    angles."""
     sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
     return -less * x - sine * y, sine * x - less * y
 
 
 @kernel()
 def carry(bodies: Array, carried: Carried, u: Array) -> None:
-    """Move the attached nodes with their bodies (B, 3) (displacement x, y and turn): exact rigid motion."""
+    """Write the displacements u (nodes, 3) [m, m, rad] of attached nodes, moved rigidly with their bodies (B,
+    3)."""
     attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
@@ -73,7 +75,8 @@ def carry(bodies: Array, carried: Carried, u: Array) -> None:
 
 @kernel()
 def carry_velocity(bodies: Array, bodies_v: Array, carried: Carried, v: Array) -> None:
-    """Write the velocities of the attached nodes."""
+    """Write the velocities v (nodes, 3) [m/s, rad/s] of attached nodes, moved rigidly with their bodies (B,
+    3)."""
     attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
@@ -165,7 +168,10 @@ def spring_forces(
 def potential(
     tables: Tables, share: float, asked: int, u: Array, bodies: Array, written: Written, resultants: Array
 ) -> tuple[Energies, float]:
-    """Write forces and resultants; return energies of the strips and of the full weight."""
+    """Write forces and resultants (B, 3) [N, N m]; return energies of the strips and of the full weight [J].
+
+    share: of the weight that acts [1]. u (nodes, 3), bodies (B, 3): displacements [m, m, rad].
+    """
     (given, carried, weights, springs), force = tables, written[0]
     bending, axial, shear = elements(given, share, asked, u, written)
     body_forces(share, bodies, carried, weights, force, resultants)

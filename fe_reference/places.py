@@ -11,7 +11,11 @@ GROUND, FREE = -1, -2
 
 
 def index_of(bodies: Sequence[str], name: str | None) -> int:
-    """Return the place of a body among the names of all; None means the only one there is."""
+    """Return the place of a body among the names of all; None means the only one.
+
+    Raises:
+        InvalidParameter: an unknown name, or None where there is not one body.
+    """
     known = ", ".join(bodies) or "no bodies"
     if len(bodies) != 1 if name is None else name not in bodies:
         raise InvalidParameter("body", name, f"one of {known} [name]")
@@ -39,9 +43,12 @@ def check_places(effects: Effects, bodies: Sequence[str], strips: Sequence[str],
 def prescribed(
     effects: Effects, bodies: Sequence[str], body: int | None
 ) -> dict[int, tuple[float, History | None]]:
-    """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+    """Return the prescribed coordinates of drives and supports: end [m, rad] and history of each.
 
-    Coordinate k of body b stands under 3 b + k. body: where the effects name none; None: the only one.
+    Coordinate k of body b has the key 3 b + k. body: where the effects name none; None: the only one.
+
+    Raises:
+        InvalidParameter: a coordinate that is prescribed twice, or an unknown body.
     """
     found: dict[int, tuple[float, History | None]] = {}
     for effect in effects.every(Prescribed):

@@ -36,7 +36,10 @@ class NothingHolds(InvalidParameter):
 
 
 def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
-    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
+    """Return the coordinates (P,) of bodies that remove all free rigid motions if they are locked too.
+
+    held: coordinates that are locked already.
+    """
     part, many = _parts(structure.model)
     if not many:
         return np.zeros(0, dtype=np.int64)
@@ -95,7 +98,10 @@ def _motions(structure: Structure, part: int, point: Array, many: int) -> Array:
 
 
 def require_balance(structure: Structure, props: Indices, residual: Array, load: Load | None) -> None:
-    """Refuse a state in which coordinates that are held for want of anything else bear something."""
+    """Raise InvalidParameter if coordinates that are locked only to remove rigid motions carry a force.
+
+    props: these coordinates (P,). residual: (size,) [N, N m]. load: that acts, if any.
+    """
     largest = 0.0 if load is None else float(np.abs(load.constant).max())
     for k in props:
         if abs(residual[k]) > NONE * (structure.scale[k] + largest):

@@ -64,7 +64,7 @@ def typeset(content: Mapping[str, Any]) -> bytes:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Compile the report; return the exit code."""
+    """Compile the report; return the exit code, 2 for a missing or stale result."""
     parser = argparse.ArgumentParser(
         prog="python -m report.build", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )

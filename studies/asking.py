@@ -26,14 +26,16 @@ Timed = tuple[Answer, float]
 def whole(
     studies: Mapping[str, Study], progress: Progress, pool: Executor | None = None
 ) -> Iterator[tuple[str, dict[str, pd.DataFrame], float]]:
-    """Ask all points, and yield each study as soon as it is whole: its place, its tables, and what all its
-    answers took, one after the other [s].
+    """Compute all points, and yield each study as soon as it is complete: its place, its tables and its time
+    [s].
+
+    The time is the sum over all points.
 
     Args:
         studies: by their places, as of `study_at`, where other processes find them.
-        progress: is told how many points of how many of all studies are done.
-        pool: has points of all studies beside each other, but for those that must be alone, which come when
-            it has done the others. Without it one study comes after the other.
+        progress: receives the number of completed points and of all points of all studies.
+        pool: computes points of all studies in parallel. Points that must be alone follow after the others.
+            Without a pool, the studies are computed one after the other.
     """
     points = {key: one for place, study in studies.items() for key, one in _points(place, study).items()}
     found: dict[Key, Timed] = {}

@@ -82,7 +82,7 @@ def records(rows: pd.DataFrame | Iterable[Row]) -> Iterable[Row]:
 
 
 def percent(value: float) -> str:
-    """Return a ratio in percent with two significant digits, in powers of ten where it is tiny."""
+    """Return a ratio [1] in percent with two significant digits, as a power of ten if it is tiny."""
     if value == 0.0 or abs(value) >= 1e-5:
         hundredfold = 100.0 * value
         digits = 0 if hundredfold == 0.0 else max(0, 1 - math.floor(math.log10(abs(hundredfold))))

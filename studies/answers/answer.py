@@ -19,13 +19,16 @@ CHOSEN = ("accuracy", "segments", "control_points", "trials", "meshes")
 
 
 def read_only(array: Array) -> Array:
-    """Return the array, no longer to be written."""
+    """Return the array, of any shape and unit, after a change of its flag: it cannot be written any more."""
     array.flags.writeable = False
     return array
 
 
 def own(name: str) -> "cached_property[Array]":
-    """Return the property that is an array of the model's own answer; empty where there is no answer."""
+    """Return the property that is an array of the model's own answer, in its shape and unit.
+
+    The array is empty (0,) where there is no answer.
+    """
     return cached_property(
         lambda answer: read_only(np.array(getattr(answer.solution, name, ()), dtype=float))
     )

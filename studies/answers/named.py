@@ -39,14 +39,15 @@ def named(design: Design) -> tuple[Quantity, ...]:
 
 
 def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
-    """Yield the quantities of an answer with their values (S,)."""
+    """Yield the quantities of an answer with their values (S,), in the SI unit of each quantity."""
     for quantity in (*QUANTITIES, *named(answer.design)):
         if answer.analysis in quantity.analyses:
             yield quantity, np.asarray(quantity.of(answer))
 
 
 def numbers_of(answer: Any) -> dict[str, Array]:
-    """Return the quantities of an answer by their keys, but for those of a drive where nothing is driven."""
+    """Return the quantities (S,) of an answer in SI units by key, without those of a drive if nothing is
+    driven."""
     return {each.key: values for each, values in quantities_of(answer) if answer.driven or not each.drive}
 
 

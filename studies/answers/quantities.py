@@ -34,14 +34,17 @@ PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p",
 
 
 def power_of(largest: float, highest: int = max(PREFIXES), lowest: int = min(PREFIXES)) -> int:
-    """Return the power of ten of the prefix that leaves a value three digits before the point at most, within
-    these; of zero the one that is nearest to none."""
+    """Return the power of ten of the SI prefix with at most three digits before the decimal point.
+
+    Args:
+        largest: value in the SI unit; 0 has the power nearest to none. highest, lowest: of the power [1].
+    """
     power = 3 * math.floor(math.log10(largest) / 3.0) if largest > 0.0 else 0
     return max(lowest, min(highest, power))
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
+    """Return a number, of any unit, with so many decimals; zero has no sign, and NaN is a dash."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
 
 
@@ -53,7 +56,10 @@ def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: A
 
 
 def peak(values: Array) -> Array:
-    """Return the largest value along the last axis, by parabolas through neighbours, evenly spaced (...)."""
+    """Return the largest value (...) of values (..., P), of any unit, along the last axis.
+
+    A parabola through the neighbours of the largest value is used; the values are evenly spaced.
+    """
     left, middle, right = values[..., :-2], values[..., 1:-1], values[..., 2:]
     bend = 2.0 * middle - left - right
     at_top = (middle >= left) & (middle >= right) & (bend > 0.0)
@@ -268,7 +274,7 @@ ALONG = {
 
 
 def along_of(answer: Any) -> dict[str, Array]:
-    """Return the numbers along the strips (S, G, P) by their key."""
+    """Return the numbers along the strips (S, G, P) in SI units by key."""
     names = {key: name for key, (name, _) in ALONG.items()}
     return {
         key: answer.stress if name == "stress" else getattr(answer.along, name) for key, name in names.items()

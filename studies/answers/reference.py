@@ -177,9 +177,9 @@ class SwingReference(SolvedMotion):
 
 
 def sampled(motion: Any, instants: Array) -> SolvedMotion:
-    """Return a motion at `instants` [s] by cubic interpolation between its records.
+    """Return a motion at `instants` (T,) [s] by cubic interpolation between its records.
 
-    A last record may fall short of the last instant by round-off.
+    The last record may precede the last instant by round-off.
     """
     known = {name: array for name in SWUNG if (array := getattr(motion, name)) is not None}
     at = np.minimum(instants, motion.time[-1])
@@ -188,8 +188,8 @@ def sampled(motion: Any, instants: Array) -> SolvedMotion:
 
 
 def rotation_error(motion: Any, against: Any, instants: Array) -> float:
-    """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]; a
-    motion that stopped at once has its start alone."""
+    """Return the largest difference [rad] of the rotations of two motions at those instants (T,) [s] that
+    both reach; a motion that stopped at once has only its start."""
     last = min(motion.time[-1], against.time[-1])
     both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
     one, other = (
@@ -215,7 +215,11 @@ def swing_reference(
     meshes: Sequence[int] = SWING_MESHES,
     element: str = "corotational",
 ) -> SwingReference:
-    """Release `problem` from the end of its path on the meshes and return their limit at `instants` [s].
+    """Release `problem` from the end of its path on the meshes and return their limit at `instants` (T,) [s].
+
+    Args:
+        duration: of the motion [s]. meshes: elements per strip, coarse to fine [1].
+        element: "corotational" or "reissner".
 
     Raises:
         NoReference: a motion stopped early.
@@ -226,7 +230,7 @@ def swing_reference(
 
 
 def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
-    """Return the limit of motions on meshes that are each finer by `RATIO` than the one before.
+    """Return the limit of motions at `instants` (T,) [s], on meshes that are refined by `RATIO` each.
 
     Raises:
         NoReference: one of them stopped early.

@@ -34,7 +34,8 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
 
 def design_of(where: str, document: Mapping[str, Any], changes: str | None = None) -> Design:
-    """Return the design of a parsed case file, a mechanism if it has [[strips]]; as of `read_design`."""
+    """Return the design of a parsed case file, a mechanism if it has [[strips]]; CaseError as of
+    `read_design`."""
     read = read_mechanism if is_mechanism(document) else read_problem
     design: Design = read(where, document, changes)
     refuse_unknown_sides(where, design.effects, design.strips)

@@ -50,12 +50,16 @@ def is_mechanism(document: Mapping[str, Any]) -> bool:
 
 
 def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:
-    """Return the values of a table by the attributes they fill, in SI; an optional key that is not there is
-    omitted.
+    """Return the values of a table by the attributes that they fill, in SI units.
+
+    An optional key that is not in the file is omitted.
 
     Args:
-        where: file that errors name. keys: of the table. content: what stands in it.
-        label: how errors name the table.
+        where: file name for error messages. keys: of the table. content: the parsed table.
+        label: name of the table for error messages.
+
+    Raises:
+        CaseError: an unknown key, a missing key or a value outside its rule; one line.
     """
     keys = list(keys)
     refuse_unknown(where, label, content, [key.name for key in keys])

@@ -182,7 +182,7 @@ def named_case(case: str | Path = TABLE_1) -> Problem:
 
 
 def read_problem(path: str, content: Mapping[str, Any], changes: str | None = None) -> Problem:
-    """Return the pivot of a parsed case file with its effects changed; errors as of `named_case`."""
+    """Return the pivot of a parsed case file with its effects changed; CaseError as of `named_case`."""
     if is_mechanism(content):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))

@@ -137,7 +137,8 @@ def out_of_scale(strip: Any) -> str:
 
 
 def too_heavy(mass: float, inertia: float) -> str:
-    """Return in words that a body's mass or moment of inertia is more than any solve can bear, or nothing."""
+    """Return a phrase if a body's mass [kg] or moment of inertia [kg m^2] is too large to solve; otherwise
+    ""."""
     none = (0.0, SCALES[1])
     return _beyond({"mass [kg]": (mass, none), "moment of inertia [kg m^2]": (inertia, none)})
 

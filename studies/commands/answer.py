@@ -138,7 +138,8 @@ def keyed(answer: Any, *keys: str) -> dict[str, Any]:
 
 
 def pose(answer: Answer) -> dict[str, Array]:
-    """Return how the only body moves, as files have it."""
+    """Return the motion of the only body as columns (S,) by names with units: x [m], y [m], rotation
+    [rad]."""
     x, y = answer.centre.T
     return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
 

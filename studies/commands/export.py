@@ -74,7 +74,7 @@ DRAWN = (0.5, 1.0)
     ),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Solve and write; return the exit code."""
+    """Solve and write; return the exit code. BadInput: options that do not fit the formats or the design."""
     design = take.driven(take.chosen_design(arguments), arguments)
     if arguments.analysis == "modes" and arguments.rotation is None:
         design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more

@@ -160,6 +160,7 @@ def rows_by(table: pd.DataFrame, column: str) -> Mapping[str, Any]:
 
 
 def percent(value: float) -> str:
+    """Return a ratio [1] in percent, as text."""
     return f"{100.0 * value:.2g} %" if abs(value) < 1.0 else f"{100.0 * value:.0f} %"
 
 

@@ -139,12 +139,12 @@ not_negative = _number("of at least 0", low=0.0, closed="low")
 
 
 def degrees_list(text: str) -> tuple[float, ...]:
-    """Parse comma-separated angles in degrees."""
+    """Return the angles [deg] of a text with commas."""
     return tuple(degrees(part) for part in text.split(","))
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
-    """Return a parser of comma-separated names, each one of `known` and none twice."""
+    """Return a parser of names with commas, each one of `known` and none twice; it raises BadInput."""
     choices = tuple(known)
 
     def parse(text: str) -> tuple[str, ...]:
@@ -159,6 +159,6 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
 
 
 def writable_file(text: str) -> Path:
-    """Parse a file that is to be written, refused before anything is computed where it cannot be."""
+    """Return the path of a file to write; BadInput, before any computation, if it cannot be written."""
     require_writable_file(Path(text))
     return Path(text)

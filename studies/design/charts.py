@@ -87,7 +87,10 @@ def turned(ratios: Array, inclinations: Array, largest: float, slenderness: floa
 
 
 def dimensionless(found: Batch, ratios: Array, inclinations: Array, slenderness: float) -> dict[str, Array]:
-    """Return the charts' quantities, (D, S) each."""
+    """Return the quantities of the charts (D, S) [1] by name.
+
+    ratios, inclinations: crossing ratio [1] and inclination [rad] of the D pivots; slenderness: L/t [1].
+    """
     rigidity = WIDTH / slenderness**3 / 12.0
     stiffness = found.stiffness / rigidity
     most, least = (extreme.accumulate(stiffness, axis=1) for extreme in (np.maximum, np.minimum))
@@ -180,7 +183,10 @@ def _points() -> Answer:
 
 
 def loaded(ratio: float, inclination: float, direction: str) -> Answer:
-    """Return the stiffness of a pivot at rest under a growing load, and the load at which it buckles."""
+    """Return the stiffness [1] of a pivot at rest under a growing load, and its buckling load in EI/L^2 [1].
+
+    ratio: crossing ratio [1]; inclination: [rad]; direction: of the load.
+    """
     problem = _at_crossing(ratio, inclination)
     angle = DIRECTIONS[direction]
     unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length**2

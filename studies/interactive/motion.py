@@ -116,9 +116,9 @@ Motion = _Energy | _Impulses
 
 
 def motion(solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> Motion:
-    """Return the motion of the released design from unknowns z (N or more,) and velocities v (Q,).
+    """Return the motion of the released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI].
 
-    sweeps: most of them for one linear system of the published form.
+    sweeps: largest number for one linear system of the published form [1].
     """
     if solver == "energy":
         return _Energy(design, z, v)
@@ -184,18 +184,20 @@ class Pull:
 
 
 def softness(spread: Array | None, force: float) -> float:
-    """Return the stiffness of the spring from the centre to where the hand is seen [N/m].
+    """Return the stiffness [N/m] of the spring from the centre to the place where the hand is seen.
 
-    It is a finger's, in series with one that turns the columns of the pose's `spread` into no more force than
-    the strips' bending hides; `force`: EI / L^2 [N].
+    It is that of a finger, in series with a spring that turns the `spread` (3, K) of the pose [m, rad] into
+    no more force than the bending of the strips hides; force: EI / L^2 [N].
     """
     seen = POINTER if spread is None else float(np.linalg.norm(spread[:2], axis=1).max())
     return 1.0 / (1.0 / FINGER + seen / (SHARE * force))
 
 
 def ways(tangent: Array | None, drive: str, stiffness: float) -> Array:
-    """Return the body's pose over that of the hand (3, 3), as a spring of `stiffness` and a `drive` hold it,
-    to first order."""
+    """Return the body's pose over that of the hand (3, 3) [1, m, 1/m], to first order.
+
+    tangent: (3, 3) stiffness of the body, None if it is free; stiffness: of the hand's spring [N/m].
+    """
     rigid = np.eye(3)
     if drive == "pose" or tangent is None:
         return rigid

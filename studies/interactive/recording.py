@@ -40,7 +40,7 @@ def _events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
 
 
 def replay(lines: Iterable[str], session: Session | None = None) -> Iterator[tuple[dict[str, Any], bool]]:
-    """Feed a session file to a new session; yield each state, and whether it is the one that was recorded."""
+    """Feed a session file to a session; yield each state, and whether it equals the recorded one."""
     session = session or Session()
     for event in _events(lines):
         known = event.pop("mark", None)

@@ -70,7 +70,7 @@ def budget(tables: Tables, states: int) -> Iterator[Row]:
 
 
 def draw(tables: Tables) -> Figure:
-    """Draw the largest errors of torque and trajectory as bars over decades."""
+    """Return the figure of the largest errors of torque and trajectory as bars over decades."""
     rows = tables["budget"].sort_values("error_torque")
     drawn = page(9.5, 4.4)
     panels = drawn.subplots(1, 2, sharey=True)

@@ -191,7 +191,7 @@ def published(name: str) -> _Published:
 
 
 def read_published(path: Path) -> _Published:
-    """Read the case file of a published problem.
+    """Return the published problem of a case file.
 
     Raises:
         CaseError: one line: file, key, got, expected.

@@ -39,7 +39,7 @@ def meshed(pivot: Problem, mesh: tuple[int, int, int], **how: Any) -> SolidStrip
 
 
 def turned(pivot: Problem, strip: SolidStrip, degrees: Sequence[float]) -> SolidPath:
-    """Return the path of a pivot on its strips as solids."""
+    """Return the path of a pivot on strips of solid elements, through the rotations `degrees` (S,) [deg]."""
     ends = [(each.start, each.end) for each in pivot.strips]
     return solve_solids(strip, ends, np.radians(degrees).tolist(), centre=pivot.bodies[0].centre)
 
@@ -62,8 +62,8 @@ def limits_of(
 ) -> pd.DataFrame:
     """Return the limits of the states of meshes for the first order, behind labels, with their uncertainty.
 
-    The uncertainty is the largest of three: the change of the limit without the finest mesh, its change with
-    the second order, and another difference.
+    The uncertainty, in the unit of the limit, is the largest of three numbers: the change of the limit
+    without the finest mesh, its change with the second order, and the difference `other`.
     """
     meshes = refined(rows)
     found = limit(meshes, orders[0])
@@ -77,13 +77,14 @@ def limits_of(
 
 
 def refined(rows: pd.DataFrame) -> list[tuple[float, Array]]:
-    """Return fineness, and torque and place of the states (S, 3), of the meshes from the coarsest on."""
+    """Return fineness [1], and torque [N m] and place [m] of the states (S, 3), of the meshes, the coarsest
+    first."""
     ordered = rows.sort_values("rotation_rad").groupby("fineness")
     return [(float(str(fineness)), mesh[VALUES].to_numpy()) for fineness, mesh in ordered]
 
 
 def limit(meshes: list[tuple[float, Array]], order: float = ORDER) -> Array:
-    """Return what the two finest meshes tend to for an order of the error (S, 3)."""
+    """Return the limit (S, 3) [N m, m] of the two finest meshes for an order of the error [1]."""
     (coarse, before), (fine, after) = meshes[-2:]
     found: Array = after + (after - before) / ((fine / coarse) ** order - 1.0)
     return found

@@ -60,7 +60,8 @@ def read_plan(path: str | Path) -> Plan:
 
 
 def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
-    """Return the sweep of a parsed file whose relative paths start from `folder`; errors as there."""
+    """Return the sweep of a parsed file whose relative paths start from `folder`; CaseError as of
+    `read_plan`."""
     tables = _tables(where, content)
     if not tables["vary"] and "file" not in tables["sample"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
