@@ -58,8 +58,10 @@ MOST_STEPS = 500_000
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """A motion of a mechanism from the static state at the rotation ``start`` of a body; as ``solve_motion``,
-    which is ``solve``."""
+    """A motion of a mechanism from the static state at the rotation ``start`` [rad] of a body.
+
+    The attributes are the arguments of ``spline_model.dynamics.solve_motion``, which is ``solve``.
+    """
 
     mechanism: Mechanism
     start: float | None
@@ -114,12 +116,13 @@ class Task:
 
 
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
-    """The motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a strip.
+    """Return the motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a
+    strip.
 
-    Control points are raised from those of the mechanism on, and the penalty stiffness with
-    them. The estimate is the correction that the order of the scheme and two control points
-    more suggest, and how far the runs depart from that order. An accuracy that is not reached
-    is the status NOT_CONVERGED of the best motion.
+    Control points are raised from those of the mechanism on, and the penalty stiffness with them. The
+    estimate is the correction that the order of the scheme and two control points more suggest, and how far
+    the runs depart from that order. An accuracy that is not reached is the status NOT_CONVERGED of the best
+    motion.
     """
     instants, every = _comparison(task, records)
     n = task.mechanism.design.discretisation.points

@@ -234,7 +234,7 @@ def _stiffness(system: System) -> Array:
 
 
 def compile_scene(scene: Scene) -> System:
-    """The scene as a system."""
+    """Return the scene as a system of equations."""
     return System(scene=scene)
 
 

@@ -59,7 +59,7 @@ def motion_penalty_stiffness(control_points: int) -> float:
 
 
 class Described(TypedDict, total=False):
-    """Keywords of ``Discretisation``."""
+    """Keywords of ``Discretisation``, with their types and units."""
 
     control_points: int | None
     segments: int
@@ -72,18 +72,32 @@ class Described(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Discretisation:
-    """How every strip is described.
+    """Discretisation of every strip.
 
-    control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
-    FIRST_POINTS where nothing estimates its error), of a Bezier curve of degree n - 1; segments: such curves
-    that a strip is cut into, with equal lengths and frames between them that both are built into;
-    axial_modes m in 1 ... n - 1 of each, default n - 2; measure "material", or with consistent stretch
-    "spatial" (Eqs 10, 13) or "published" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by
-    quadrature) or "inextensible"; gauss_points of each, default degree + 3, which follows the
-    primary branch to a half turn where n - 1 points lose it; penalty_stiffness of the strains
-    that the axial modes do not see, in EI/L^2, 0 for none, default PENALTY_STIFFNESS in statics
-    and ``motion_penalty_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
-    the tangent of a straight strip singular is refused with the reason (``spline_model.basis.singular``).
+    Parameters
+    ----------
+    control_points : int, default None
+        Number n >= 4 of a Bezier curve of degree n - 1. None: as many as the accuracy of an answer needs
+        (``spline_model.accuracy``), and FIRST_POINTS if no error is estimated.
+    segments : int, default 1
+        Number of curves per strip, of equal lengths, that are clamped to frames between them.
+    axial_modes : int, default n - 2
+        Number m of each curve, from 1 to n - 1.
+    measure : str, default "material"
+        "material"; with consistent stretch also "spatial" (Eqs 10, 13) or "published" (forces of Eqs 12, 15).
+    stretch : str, default "mixed"
+        "mixed", "consistent" (Eq 13 by quadrature) or "inextensible".
+    gauss_points : int, default degree + 3
+        Of each curve. The default follows the primary branch to a half turn; n - 1 points lose it.
+    penalty_stiffness : float, EI/L^2, default None
+        Of the strains that the axial modes do not see, 0 for none. Default: PENALTY_STIFFNESS in statics and
+        ``motion_penalty_stiffness`` in motions and modes (``Mechanism.in_motion``).
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, or one for which the tangent of a straight strip is singular
+        (``spline_model.basis.singular``).
     """
 
     control_points: int | None = None

@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 
 
 class Frames(NamedTuple):
-    """C frames, psi = r_frame - r - R(theta) o = 0 each.
+    """C frames with the constraints psi = r_frame - r - R(theta) o = 0 [m, m, rad].
 
-    place (C, 3): of the frame's x, of its body's and of its first multiplier among the unknowns; lever (C,
-    2): o at rest.
+    place (C, 3): of the frame's x, of its body's x and of its first multiplier among the unknowns; lever (C,
+    2): o at rest [m].
     """
 
     place: NDArray[np.int64]

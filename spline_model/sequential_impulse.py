@@ -212,9 +212,9 @@ def impulse_solver(
 
 
 def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
-    """2 / omega [s] of the highest frequency about the static state at a rotation [rad], or undriven.
+    """Return the limit 2 / omega [s] of the step of the published form.
 
-    The step of the published form must stay below it.
+    omega is the highest frequency about the static state at a rotation [rad]; None drives no rotation.
     """
     mechanism = pivot.in_motion()
     system = compile_scene(mechanism.released())

@@ -56,15 +56,27 @@ class Status(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalPoint:
-    """Where a path loses or regains stability, or where its load or torque is stationary.
+    """Point of a path where stability is lost or regained, or where load or torque is stationary.
 
-    kind: "limit point" of the load factor, or of a driven rotation's torque, where its stiffness
-    at fixed loads vanishes; "turning point" of a drive, where the driven coordinate itself goes
-    back; "bifurcation" otherwise.
-    load_factor; rotation of the driven body [rad], nan without one; z (N,) unknowns; mode (Q,)
-    change of the coordinates, its largest entry one strip length or 1 rad (for a limit of the
-    torque the turn at fixed loads); inertia: that of the tangent after it; preload: the share of weight and
-    pre-strain that acts.
+    Attributes
+    ----------
+    kind : str
+        "limit point" of the load factor, or of a driven rotation's torque, where its stiffness at fixed loads
+        vanishes; "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation"
+        otherwise.
+    load_factor : float, 1
+    rotation : float, rad
+        Of the driven body; nan without one.
+    z : (N,) m, rad and N
+        Unknowns.
+    mode : (Q,) m and rad
+        Change of the coordinates, its largest entry one strip length or 1 rad. For a limit of the torque it
+        is
+        the rotation at fixed loads.
+    inertia : int
+        Negative eigenvalues of the tangent after the point.
+    preload : float, 1
+        Share of weight and pre-strain that acts.
     """
 
     kind: str
@@ -78,7 +90,7 @@ class CriticalPoint:
 
 @dataclass(frozen=True, eq=False)
 class Later:
-    """An array that is made when it is first asked for; last: the model and what its last row is in it."""
+    """An array (R, N) that is computed at its first access; last: the model and its last row in it."""
 
     make: Callable[[], Array]
     last: tuple[Any, Array] | None = None
@@ -91,17 +103,34 @@ class Later:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Path:
-    """An equilibrium path, S converged states, the unloaded one first.
+    """An equilibrium path of S converged states, the unloaded state first.
 
-    load_factor (S,); poses (S, 3 B): x, y, theta of the bodies [m, rad]; reactions (S, D) of the drives, as
-    multipliers; unknowns: z (S, N) of all states; stiffness (S,) d(torque)/d(rotation) of a driven rotation
-    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
-    drives since the first state [J]; history: residual norms by increment.
-    inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
-    stable state, -1 where the published forces have no potential; moment_defect (S,): what the
-    strips' moments differ from balance by, relative (``continuation.resolution``);
-    critical_points in the order of the path; settled: whether it begins under all of its weight and
-    pre-strain; if not, its one state is the shape at rest without them.
+    Attributes
+    ----------
+    load_factor : (S,) 1
+    poses : (S, 3 B) m and rad
+        x, y, theta of the bodies.
+    reactions : (S, D) N and N m
+        Of the drives, as multipliers.
+    unknowns : (S, N) m, rad and N
+        z of all states.
+    stiffness : (S,) N m/rad
+        d(torque)/d(rotation) of a driven rotation at fixed loads; nan without one.
+    energies : (S, 2) J
+        Bending and axial energy.
+    work : (S,) J
+        Of loads and drives since the first state.
+    history : residual norms by increment, 1
+    inertia : (S,)
+        Negative eigenvalues of the reduced tangent with the drives held: 0 for a stable state, -1 if the
+        published forces have no potential.
+    moment_defect : (S,) 1
+        Relative deviation of the strips' moments from balance (``continuation.resolution``).
+    critical_points : tuple of CriticalPoint
+        In the order of the path.
+    settled : bool
+        Whether the path begins under all of its weight and pre-strain; if not, its one state is the shape at
+        rest without them.
     """
 
     status: Status
@@ -150,7 +179,7 @@ def _some(unknowns: Later, kept: slice) -> Array:
 
 
 def joined(parts: Sequence[Later]) -> Array:
-    """Rows of several arrays, one after another."""
+    """Return the rows (R, N) of several arrays [m, rad, N], one after another."""
     return np.concatenate([part.array for part in parts])
 
 
@@ -183,7 +212,7 @@ class Tabulated:
 
 
 def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
-    """Columns of x, y, theta (S, 3) of bodies, named after them where there are several."""
+    """Return columns of x [m], y [m], theta [rad] of bodies (S, 3), named after them if there are several."""
     return {
         part if len(bodies) == 1 else f"{name}_{part}": place[:, k]
         for name, place in bodies.items()
@@ -192,10 +221,10 @@ def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def resolution(defect: NDArray[np.float64]) -> str:
-    """How uncertain a path of moment defects (S,) is; empty where its torque is resolved.
+    """Return a message on the uncertainty of a path with moment defects (S,) [1]; empty if it is resolved.
 
-    The defect (``continuation.resolution``) is the error of the moments in the energy norm,
-    and the error of torque and energy goes with its square.
+    The defect (``continuation.resolution``) is the error of the moments in the energy norm, and the error of
+    torque and energy is proportional to its square.
     """
     worst = int(np.argmax(defect))
     error = TORQUE_SHARE * float(defect[worst]) ** 2
@@ -214,15 +243,30 @@ def largest(errors: Iterable[float]) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class ErrorEstimate:
-    """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
+    """Estimated relative errors [1] of a static path that was solved to an ``accuracy``.
 
-    trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
-    not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
-    energy, section_forces, stress (the largest over a strip of the rectangular section that A and I imply):
-    largest error over the largest magnitude on the path. nan of what a path does not have.
-    segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
-    were tried.
-    Excludes errors that more control points do not reduce: the simplifications of beam theory.
+    Attributes
+    ----------
+    accuracy : float
+        Wanted error.
+    trajectory : float
+        Largest error of a body's place over the largest displacement, and of its rotation if it is not
+        driven.
+    torque, stiffness, energy, section_forces, stress : float
+        Largest error over the largest magnitude on the path. The stress is the largest one of a strip, for
+        the
+        rectangular section that A and I imply.
+    body_stiffness : float
+        Error for the reported body, over the stiffness of the same state.
+    segments, control_points : int
+        Chosen numbers per strip and per segment.
+    trials : tuple of int
+        Control points of a strip that were tried.
+
+    Notes
+    -----
+    An error is nan if the path does not have the quantity. Errors that more control points do not reduce, the
+    simplifications of beam theory, are excluded.
     """
 
     accuracy: float
@@ -253,12 +297,13 @@ class ErrorEstimate:
 
 
 def named(segments: int, points: int) -> str:
-    """A discretisation in words."""
+    """Return a discretisation in words."""
     return f"{points} control points" if segments == 1 else f"{segments} segments of {points} control points"
 
 
 def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
-    """Empty, or which errors of an answer with a discretisation are above its accuracy."""
+    """Return the names of the relative errors [1] of an answer that exceed its accuracy; empty if none
+    does."""
     missed = ", ".join(
         f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
     )
@@ -267,9 +312,14 @@ def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class FrequencyEstimate:
-    """Estimated error of natural frequencies that were solved to an ``accuracy``, relative [1].
+    """Estimated relative error [1] of natural frequencies that were solved to an ``accuracy``.
 
-    frequency: the largest of all modes; segments, control_points and trials as of ``ErrorEstimate``.
+    Attributes
+    ----------
+    frequency : float
+        Largest error of all modes.
+    segments, control_points, trials
+        As in ``ErrorEstimate``.
     """
 
     accuracy: float
@@ -283,9 +333,16 @@ class FrequencyEstimate:
 class MotionEstimate:
     """Estimated error of a motion that was solved to an ``accuracy`` [rad].
 
-    rotation: the largest error over the motion, of rotations [rad] and of places over the longest strip [1],
-    of the steps (``time``) and of the control points (``space``) together, which may cancel in part;
-    control_points that were chosen; runs that it took.
+    Attributes
+    ----------
+    rotation : float, rad
+        Largest error over the motion, of rotations [rad] and of places over the longest strip [1].
+    time, space : float, rad
+        Errors of the steps and of the control points, which may cancel in part.
+    control_points : int
+        Chosen number.
+    runs : int
+        Number of computed motions.
     """
 
     accuracy: float

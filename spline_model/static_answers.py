@@ -38,15 +38,29 @@ SINGULAR = 1e15
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StaticSolution(Tabulated, Path):
-    """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
+    """Static solution of a mechanism or pivot: S states, G strips, P stations.
 
-    A path whose load_factor (S,) is the share of the loads that acts, below zero where they act the other
-    way; stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) is that at fixed loads and driven
-    displacements, from the tangent. What is known along the strips is made when it is asked for;
-    balanced: see ``Sections``; effects: names of what was assembled;
-    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a segment of a strip;
-    estimate: of the error, where the control points were chosen for an accuracy; asked: the body that was
-    asked for, if one was.
+    It is a ``spline_model.solution.Path``. Its load_factor (S,) is the share of the loads that acts [1],
+    negative if they act in the opposite direction. stiffness (S,) is d(torque)/d(rotation) [N m/rad] (Eq 20)
+    at fixed loads and driven displacements, from the tangent. Fields along the strips are computed at their
+    first access.
+
+    Attributes
+    ----------
+    system : System
+        The assembled equations.
+    balanced : bool
+        Whether section forces are by balance, see ``Sections``.
+    effects : tuple of str
+        Names of the assembled effects.
+    seconds : mapping of str to float, s
+        By part, see ``spline_model.newton.Laps``.
+    control_points : int
+        Of a segment of a strip.
+    estimate : ErrorEstimate or None
+        Of the error, if control points were chosen for an accuracy.
+    asked : str or None
+        Name of the reported body, if one was given.
     """
 
     system: System

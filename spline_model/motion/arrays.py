@@ -192,7 +192,7 @@ def _shapes_of(kind: type) -> dict[str, tuple[type, list[str]]]:
 
 
 def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
-    """A record of arrays at zero; sizes: of what its letters stand for."""
+    """Return a record of arrays at zero; sizes: number of each letter in their shapes."""
     return kind(
         **{
             name: np.zeros([int(sizes.get(size, size)) for size in shape], dtype=number)
@@ -202,7 +202,7 @@ def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
 
 
 def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
-    """What the letters of ``State`` and ``Scratch`` stand for."""
+    """Return the number that each letter in the shapes of ``State`` and ``Scratch`` stands for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
     sizes |= {"C": len(masses.frames), "F": len(masses.load_at)}

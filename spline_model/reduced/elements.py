@@ -76,10 +76,10 @@ def _defect_of(y, arrays):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Elements(Followed):
-    """Unknowns z (N,): poses, w and a of all strips, reactions of the drives, forces on carried frames.
+    """System of the condensed strips, with unknowns z (N,), all dimensionless (EI/L, L).
 
-    All is dimensionless. arrays, out (5,): the model to kernels, and energies as ``_gather`` left them;
-    frames: among these unknowns.
+    The unknowns are poses, w and a of all strips, reactions of the drives, forces on carried frames. arrays,
+    out (5,): the model for kernels, and energies as ``_gather`` left them; frames: among these unknowns.
     """
 
     model: Reduced
@@ -324,6 +324,6 @@ def _places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
 
 
 def followed(system: System, method: str = "condensed") -> Followed:
-    """The system to follow a path on: the elements, where they know the scene and are asked for."""
+    """Return the system to follow a path on: the elements, where they know the scene and are asked for."""
     model = reduced(system) if method == "condensed" else None
     return Followed.of(system) if model is None else Elements.of(system)

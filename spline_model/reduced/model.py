@@ -106,10 +106,10 @@ class Reduced:
 
 
 def reduced(system: System) -> Reduced | None:
-    """The reduced mechanism of a scene, or None where the element does not know one of its parts.
+    """Return the reduced mechanism of a scene, or None where the element does not know one of its parts.
 
-    Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
-    or the spatial measure. It is made once a system.
+    Strips of one basis and quadrature, clamped or free at their ends, with bending in the material or the
+    spatial measure. It is made once a system.
     """
     if not _known(system.scene):
         return None
@@ -118,7 +118,7 @@ def reduced(system: System) -> Reduced | None:
 
 
 def require_reduced(system: System) -> Reduced:
-    """The reduced mechanism of a scene; InvalidParameter where there is none."""
+    """Return the reduced mechanism of a scene; InvalidParameter where there is none."""
     model = reduced(system)
     if model is None and any(e.measure == "published" for e in system.scene.of(Bending)):
         expected = "material or spatial: published forces are for static paths only"
@@ -197,7 +197,7 @@ def _bodies_of(system: System, outer: int) -> Bodies:
 
 
 def in_units(system: System, matrix: Array) -> Array:
-    """A matrix over the poses of all bodies, or (0, 0), over units of work."""
+    """Return a matrix over the poses of all bodies, or (0, 0), over units of work."""
     if not matrix.size:
         return matrix
     unit = np.tile(system.scales.pose, len(matrix) // 3)
@@ -205,7 +205,7 @@ def in_units(system: System, matrix: Array) -> Array:
 
 
 def at_rest(model: Reduced) -> Array:
-    """The state y at rest."""
+    """Return the state y at rest."""
     y, bodies = np.zeros(model.size), model.bodies
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
@@ -215,7 +215,7 @@ def at_rest(model: Reduced) -> Array:
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:
-    """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
+    """Return the states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
     for i, body in enumerate(scene.bodies):

@@ -58,7 +58,7 @@ def _place_all(y, poses, shape, strips, local, out, points, forces):
 
 
 def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None = None) -> Array:
-    """The scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
+    """Return the scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
 
     clamped (S, G, 2, 3): what the clamps do to the strips; by default what holds them in equilibrium.
     """
@@ -94,7 +94,8 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
 
 
 def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
-    """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors (S,), in EI/L.
+    """Return the tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors
+    (S,), in EI/L.
 
     nan of a singular strip. Carried frames go with their bodies and have no part of their own.
     """
@@ -122,9 +123,11 @@ def _condense_all(y, load, arrays, tangents, forces):
 
 
 def whole_tangents(model: Reduced, y: Array) -> tuple[Array, Array]:
-    """Gradient (S, Y) and Hessian (S, Y, Y) of the strips' and springs' energy in y (S, Y), in EI/L.
+    """Return gradient (S, Y) and Hessian (S, Y, Y) of the strips' and springs' energy in y (S, Y), over EI/L
+    [1].
 
-    Axial forces are among y. Dead loads on the strips are in it; weight of, and loads on, the bodies are not.
+    Axial forces are among y. Dead loads on the strips are included; weight of, and loads on, the bodies are
+    not.
     """
     count, size = y.shape
     gradient, hessian = np.zeros((count, size)), np.zeros((count, size, size))
@@ -148,8 +151,8 @@ def _assemble(y, poses, strips, shape, local, out, gradient, hessian):
 
 
 def products(model: Reduced, y: Array, rate: Array) -> tuple[Array, Array, Array]:
-    """Gradient (S, Y) as of ``whole_tangents``, its product with the Hessian along rates (S, Y), and energies
-    of bending and stretching (S, 2) [EI/L], at states y (S, Y)."""
+    """Return the gradient (S, Y) as of ``whole_tangents``, its product with the Hessian along rates (S, Y),
+    and energies of bending and stretching (S, 2) [EI/L], at states y (S, Y)."""
     gradient, product = np.zeros((2, *y.shape), dtype=y.dtype)
     energies = np.zeros((len(y), 2), dtype=y.dtype)
     _multiply(y, rate, model.arrays(), gradient, product, energies)
@@ -214,7 +217,8 @@ def add_strip(s, at, first, axial, y, strips, shape, local, out, gradient, hessi
 
 
 def section_forces(model: Reduced, y: Array) -> tuple[Array, Array]:
-    """Axial force and moment (S, G, P), in EI/L^2 and EI/L, at states y (S, Y) and the model's points."""
+    """Return the axial force and moment (S, G, P), in EI/L^2 and EI/L, at states y (S, Y) and the model's
+    points."""
     force, moment = np.zeros((2, len(y), *model.strips.speed.shape), dtype=y.dtype)
     _all_forces(y, len(model.bodies.rest), model.strips, model.shape, model.local(), force, moment)
     return force, moment
@@ -234,7 +238,8 @@ def _all_forces(y, poses, strips, shape, local, force, moment):
 
 
 def coordinates_by(model: Reduced, y: Array) -> Array:
-    """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
+    """Return dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines
+    them."""
     rows = y + 1j * STEP * np.eye(len(y))
     moved = unknowns_of(_stepped(model), rows, np.zeros((len(y), len(model.bodies.held))))
     return np.asarray(moved.imag[:, : model.system.layout.coordinate_count].T / STEP)
