@@ -30,7 +30,7 @@ from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
 PRINTED = {"measure": "published", "stretch": "consistent"}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
-UNSTEADY = "measure: got 'printed', expected material or spatial"
+UNSTEADY = "measure: got 'published', expected material or spatial"
 TAPERED = SIDES | {"thickness_end": 2.0 * SIDES["thickness"]}
 ROOT = 'expected "monolithic" or a number >= 0, its length over the thickness'
 
@@ -228,7 +228,7 @@ ASKED = [
     # which of both is up to round-off: a drive against inextensible strips that cannot give way
     (lambda: solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1), "tangent"),
     (lambda: natural_frequencies(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
-    (lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(), f"{UNSTEADY}: printed"),
+    (lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(), f"{UNSTEADY}: published"),
     (lambda: release(step=1.0), "step: got 1.0, expected at most the duration"),
     (lambda: release(**LONG), WITHIN),
     (lambda: release(records=0), "records: got 0, expected an integer >= 1"),
