@@ -197,14 +197,14 @@ FORMS = {"StaticSolution": Response, "Trajectory": Motion, "Modes": Spectrum}
 
 
 def answer_of(solution: Any, modelled: Any) -> Answer:
-    """Return the neutral answer to what a model was asked directly.
+    """Return the neutral answer of a solution that a model returned directly.
 
     Args:
         solution: static solution, trajectory or modes of `spline_model` or `fe_reference`.
-        modelled: the pivot or mechanism of the model that it is of; it has stress where sections have sides.
+        modelled: its pivot or mechanism in the model. The answer has a stress if the sections have sides.
 
     Raises:
-        BadInput: something else, or of two models; one line.
+        BadInput: another object, or parts of two models; one line.
     """
     package = type(solution).__module__.partition(".")[0]
     form: Any = FORMS.get(type(solution).__name__)

@@ -38,20 +38,21 @@ UNSTABLE, NONE = "unstable at zero force", ""
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalLoad(Answer):
-    """The first force that a design does not bear, in one direction.
+    """The smallest force in one direction at which a design loses stability.
 
-    Its status is "converged" where two discretisations agree, on a force or on none; else its message says
-    what each of them has.
+    The status is "converged" if two discretisations agree on a force, or on none; otherwise the message has
+    the result of each.
 
     Attributes:
-        direction: of the force [rad], from x to y; held: whether the body is kept from turning.
-        force: at which stability is lost [N], 0 where weight and pre-strain alone lose it; None where none is
-            found up to `reached`, the largest force that was borne [N]; turned: rotation of the body there
-            [rad], NaN where weight alone is too much.
+        direction: of the force [rad], from x to y; held: whether the rotation of the body is locked.
+        force: at which stability is lost [N]; 0 if weight and pre-strain alone are critical; None if none is
+            found up to `reached`, the largest stable force [N]; turned: rotation of the body there [rad], NaN
+            if weight alone is critical.
         kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
-        uncertainty: of force or share, relative [1]; NaN where there is none.
-        soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
-            critical load is found; None where they do not. softer: relative uncertainty of both [1].
+        uncertainty: relative, of force or share [1]; NaN if unknown.
+        soft, yields: force at which the rotation exceeds SOFT, and at which a strip yields [N], if no
+        critical
+            load is found; None otherwise. softer: relative uncertainty of both [1].
     """
 
     analysis = "critical load"
@@ -70,13 +71,14 @@ class CriticalLoad(Answer):
 
     @property
     def value(self) -> float:
-        """What discretisations are compared by: the share of the weight, the force, or the rotation."""
+        """Number that discretisations are compared by: the share of the weight [1], force [N], or rotation
+        [rad]."""
         if self.kind == UNSTABLE:
             return self.preload
         return self.turned if self.force is None else self.force
 
     def apart(self, other: "CriticalLoad") -> float:
-        """Return the relative difference to another discretisation; inf where the verdicts differ."""
+        """Return the relative difference [1] to another discretisation; inf if the verdicts differ."""
         if not (self.converged and other.converged) or self.kind != other.kind:
             return math.inf
         if self.kind == NONE:
@@ -85,7 +87,7 @@ class CriticalLoad(Answer):
 
     @property
     def verdict(self) -> str:
-        """What was found, in words."""
+        """The result in words."""
         if not self.converged:
             return f"stops at {self.reached:.6g} N"
         if self.kind == UNSTABLE:
@@ -152,17 +154,18 @@ def critical_load(
 ) -> CriticalLoad:
     """Return the force at a body's centre, in one direction, at which the design first loses stability.
 
-    Weight and pre-strain act in full; other loads and drives of the case are removed. The spline takes more
-    control points until the force settles, or those of its settings and a few more; the elements are doubled
-    twice and their limit is taken.
+    Weight and pre-strain act in full; other loads and drives of the case are removed. The spline increases
+    its control points until the force is constant, or uses those of the settings and a few more. The elements
+    are doubled twice, and the limit is returned.
 
     Args:
         design: the pivot or mechanism. settings: of the model.
         direction: of the force in the axes of the ground [rad].
-        held: whether the rotation of the body is held.
+        held: whether the rotation of the body is locked.
         body: its name; None for that of the case.
 
-    Raises BadInput for what the model refuses, and for a design without bodies.
+    Raises:
+        BadInput: an input that the model rejects, or a design without bodies; one line.
     """
     known, name = [each.name for each in design.bodies], body or design.body
     if name not in known:

@@ -34,7 +34,7 @@ STILL = 1e-12
 
 
 def named(design: Design) -> tuple[Quantity, ...]:
-    """Return the quantities of the named parts of a design; none of a plain pivot."""
+    """Return the quantities of the named parts of a design; a plain pivot has none."""
     return (*_reactions(design), *_free_ends(design), *_points(design), *_springs(design), *_drift(design))
 
 
@@ -52,8 +52,11 @@ def numbers_of(answer: Any) -> dict[str, Array]:
 
 
 def prescribed(design: Design) -> tuple[tuple[str, str], ...]:
-    """Return body and coordinate ("x", "y" or "rotation") of all that drives and supports prescribe, but for
-    the rotation that the path drives, whose torque is a quantity of every path."""
+    """Return body and coordinate ("x", "y" or "rotation") of all prescribed coordinates of drives and
+    supports.
+
+    The rotation that the path drives is excluded: its torque is a quantity of every path.
+    """
     found: list[tuple[str | None, str]] = []
     effects = design.effects
     for own in effects.acting("support"):

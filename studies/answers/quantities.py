@@ -49,7 +49,7 @@ def fixed(value: float, decimals: int) -> str:
 
 
 def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
-    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
+    """Return the extreme fibre stress of strips (S, G, P) [Pa] from their forces (S, G, P) [N, N m]."""
     forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
     pairs = zip(strips, forces, strict=True)
     return np.stack([strip.youngs_modulus * strip.extreme_fibre_strain(*own) for strip, own in pairs], axis=1)
@@ -69,11 +69,11 @@ def peak(values: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """How pictures, and the lines of `compare`, show numbers of one kind.
+    """Form of numbers of one kind in pictures and in the lines of `compare`.
 
     Attributes:
-        heading: what they are called. unit: in SI. highest: power of ten of the largest prefix.
-        factor: to a unit without prefix, such as degrees for radians; 0 of one that has them.
+        heading: name. unit: in SI. highest: power of ten of the largest prefix.
+        factor: to a unit without prefix, such as degrees for radians; 0 for a unit with prefixes.
     """
 
     heading: str
@@ -82,7 +82,7 @@ class Scale:
     factor: float = 0.0
 
     def fitting(self, arrays: Iterable[Array]) -> tuple[float, str]:
-        """Return the factor to the unit that suits these values, and that unit."""
+        """Return the factor to the unit that suits these values (in SI units), and that unit."""
         if self.factor:
             return self.factor, self.unit
         largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)
@@ -90,7 +90,7 @@ class Scale:
         return 10.0**-power, PREFIXES[power] + self.unit
 
     def named(self, unit: str) -> str:
-        """Return what an axis in that unit is called."""
+        """Return the label of an axis in that unit."""
         return f"{self.heading} [{unit}]" if unit else self.heading
 
 
@@ -132,7 +132,7 @@ class Quantity(Scale):
     group: str = ""
 
     def named(self, unit: str) -> str:
-        """Return what an axis in that unit is called, below what it is of."""
+        """Return the label of an axis in that unit, below the name of its part."""
         return f"{self.group}\n{super().named(unit)}" if self.group else super().named(unit)
 
     @property
@@ -141,7 +141,7 @@ class Quantity(Scale):
         return self.swept or self.key
 
     def least(self, design: Design) -> float:
-        """Return the value of a design that is round-off, in its unit."""
+        """Return the round-off value of a design for this quantity, in its SI unit."""
         if self.unit == "Pa":
             return self.floor * max(float(strip.youngs_modulus) for strip in design.strips)
         length = max(strip.length for strip in design.strips)

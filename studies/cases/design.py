@@ -25,7 +25,8 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
     Args:
         path: of the file.
-        changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for what the file says.
+        changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for the effects of the
+        file.
 
     Raises:
         CaseError: the file cannot be used; one line.
@@ -43,7 +44,7 @@ def design_of(where: str, document: Mapping[str, Any], changes: str | None = Non
 
 
 def named_design(name: str) -> Design:
-    """Return the design of that name that comes with the suite."""
+    """Return the design of that name in the suite; CaseError if there is none."""
     return read_design(FOLDER / f"{name}.toml")
 
 
@@ -82,9 +83,9 @@ def _is_nested(value: Any) -> bool:
 
 
 def document_of(design: Design) -> dict[str, Any]:
-    """Return the document of a design's case, which is read as the same design to the digits that a file has.
+    """Return the document of a design's case, which gives the same design to the digits of a file.
 
-    A section with known sides has these.
+    A section with known sides is described by its sides.
     """
     found: dict[str, Any] = {}
     if isinstance(design, Problem):

@@ -44,8 +44,7 @@ def parsed(path: str | Path) -> dict[str, Any]:
 
 
 def is_mechanism(document: Mapping[str, Any]) -> bool:
-    """Return whether a case's document is of any strips and bodies, each a table of its own; if not, of a
-    cross-axis pivot."""
+    """Return whether a case's document describes strips and bodies in tables of their own, not a pivot."""
     return isinstance(document.get("strips"), list)
 
 
@@ -73,7 +72,7 @@ def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: s
 
 
 def admitted(where: str, label: str, rule: Rule, given: Any) -> Any:
-    """Return a value in SI; CaseError, which names it by the label, unless its rule admits it."""
+    """Return a value in SI; CaseError, with the label, unless its rule admits it."""
     try:
         return rule.parse(given)
     except ValueError as error:
@@ -81,7 +80,7 @@ def admitted(where: str, label: str, rule: Rule, given: Any) -> Any:
 
 
 def missing(where: str, key: Key, label: str) -> CaseError:
-    """Return the refusal of a table without a key that it needs."""
+    """Return the error for a table without a key that it needs."""
     return CaseError(f"{where}: {label}.{key.name}: got no such key, expected {key.rule.expected}")
 
 
@@ -118,8 +117,13 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
 def tables(
     where: str, document: Mapping[str, Any], section: str, *, needed: bool = False, within: str = ""
 ) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the tables of an array [[section]] with the label that errors give them: by name, or by place;
-    none if it is not there, which is refused where one is `needed`. `within`: what errors put before it."""
+    """Return the tables of an array [[section]] with their labels for error messages: name, or number.
+
+    Without the section, the list is empty. `within`: prefix of error messages.
+
+    Raises:
+        CaseError: the section is no array of tables, or it is missing and `needed`.
+    """
     found = document.get(section, [])
     if (needed and not found) or not isinstance(found, list) or not all(isinstance(e, dict) for e in found):
         expected = f"tables [[{within}{section}]]"
@@ -133,9 +137,10 @@ def tables(
 
 
 def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
-    """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
+    """Return the known name nearest to `name` as a phrase, or all that are `listed` (default: the known
+    names).
 
-    Beside the nearest stands `what` it is. Of more than `MANY` names the `SHOWN` nearest are listed.
+    `what`: noun for the nearest name. Of more than `MANY` names, the `SHOWN` nearest are listed.
     """
     known = list(known)
     if near := difflib.get_close_matches(name, known, n=1):
