@@ -30,7 +30,7 @@ def process_docstring(app, what, name, obj, options, lines):
 def process_signature(app, what, name, obj, options, signature, returns):
     """Name arrays NDArray[float64] and not by their class with its two parameters (Sphinx's event).
 
-    A default that is made anew for every value becomes "...": Sphinx reads signatures as Python.
+    A default that is created for every value becomes "...": Sphinx reads signatures as Python.
     """
     if signature:
         signature = re.sub(r"<[^<>]*>", "...", signature)

@@ -7,7 +7,7 @@ Data flow one way, and so do the imports:
     control (with Newton's method) -> response -> critical -> path -> statics
     structure -> mass, drives -> actions -> motion -> schemes, run -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
-    plate: one strip as a plate, which says what beams leave out, and the rigidity that has it -> mesh
+    plate: one strip as a plate, the stiffness that beam theory neglects, and the rigidity with it -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies

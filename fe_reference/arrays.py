@@ -26,7 +26,7 @@ def kernel(**options: Any) -> Callable[[F], F]:
         made: Any
         try:
             made = _compiled(cache=True, **options)(function)
-        except RuntimeError:  # of numba, which finds nowhere to keep it
+        except RuntimeError:  # numba has no folder in which it can store the kernel
             _say_unkept()
             made = _compiled(**options)(function)
         return cast(F, made)

@@ -1,8 +1,8 @@
 """The moment of a strip whose section curls across its width no more than clamps and curvature let it.
 
 A section that is free to curl (anticlastic bending) has the rigidity EI, one that is held flat
-EI / (1 - nu^2). With f the share of its curl that its own curvature leaves and P(f) what the clamps leave of
-this (`plate`), times nu^2, the energy per length and what follows from it are
+EI / (1 - nu^2). Let f be the share of the curl that remains at this curvature, and P(f) its reduction by the
+clamps (`plate`); times nu^2, the energy per length and what follows from it are
 
     U = (1/2) D kappa^2 (1 - P(f)),    D = EI / (1 - nu^2),    M = dU/dkappa
 
@@ -123,10 +123,10 @@ def section(curl: Array, rigidity: float, left: Array, reach: float, curvature: 
 
 @inlined(fastmath={"contract"})
 def bent_element(curl: Array, row: Array, rate: float, first: float, second: float) -> Bent:
-    """Return energy [J], both end moments [N m] and their slopes 11, 12, 22 of an element with two points.
+    """Return energy [J], end moments [N m] and their slopes 11, 12, 22 [N m] of an element with two points.
 
     Args:
-        row: of the element, as in `law`. rate: 1 / l0 [1/m].
+        curl: as of `section`. row: of the element, as in `law`. rate: 1 / l0 [1/m].
         first, second: turns of its end sections from the chord [rad].
     """
     even, odd = (second - first) * rate, ROOT_3 * (first + second) * rate

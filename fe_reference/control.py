@@ -173,11 +173,14 @@ def spans(
     first: bool = False,
     starts: bool = False,
 ) -> list[Control]:
-    """Return the spans of a path on which a body is led through `rotations` [rad], one leg each.
+    """Return the spans of a path on which a body is driven through `rotations` [rad], one leg each.
 
-    What else is driven and the load grow with the load factor over all legs, or `first`: in a leg of their
-    own before the rotation, and then they stay. Drives are led to their ends, or to where their histories
-    begin if a motion `starts` there.
+    Other drives and the load grow with the load factor over all legs. With `first` they grow in a leg of
+    their own before the rotation, and then are constant. Drives are led to their ends, or to the begin of
+    their histories if a motion `starts` there.
+
+    Raises:
+        InvalidParameter: a rotation that another drive prescribes too.
     """
     turn = structure.body_slice(0 if body is None else body).stop - 1
     legs = max(len(rotations or ()), 1) + first
@@ -212,10 +215,15 @@ def spans(
 
 
 def equilibrate(control: Control, start: Array, parameter: float, counters: Counter[str]) -> State:
-    """Iterate from `start` to equilibrium at `parameter`, with the consistent tangent at every iteration.
+    """Return the equilibrium at `parameter` by Newton's method with the consistent tangent.
 
-    One compiled call gives residual and tangent; the factors at the equilibrium serve what is asked there.
-    After a failure there are none.
+    One compiled call gives residual and tangent. The state keeps the factors at the equilibrium; after a
+    failure it has none.
+
+    Args:
+        start: reduced coordinates (size,) [m, rad] of the first iteration.
+        parameter: load factor of the span [1].
+        counter: counts iterations, evaluations and factorisations.
     """
     structure, y, norms, before, done = control.structure, start.copy(), [], np.inf, False
     while not done:

@@ -138,7 +138,11 @@ class Span:
 
 
 def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:
-    """Return the spans of a motion, in order: one where nothing is led."""
+    """Return the spans of a motion of `duration` [s], in order; without a drive, one free span.
+
+    Raises:
+        InvalidParameter: two drives of one coordinate.
+    """
     drives: list[tuple[int, float, History, tuple[float, float]]] = []
     if drive is not None:
         turn = 3 * model.body_index(drive.body) + 2

@@ -162,10 +162,11 @@ def checked(
     body: str | None = None,
     drive: DrivenRotation | None = None,
 ) -> Trajectory:
-    """Return a motion with its estimated errors and `resolution`, by companions of fewer elements.
+    """Return a motion with its estimated errors [rad, 1] and `resolution`, by companions of fewer elements.
 
     Args:
-        model, start, body, drive: as of the motion, which began in equilibrium.
+        model, body, drive: of the motion, which began in equilibrium.
+        start: rotation at the start [rad]; None: no rotation is driven.
     """
     names = ("integrator", "spectral_radius")
     settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}

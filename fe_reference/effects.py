@@ -126,7 +126,7 @@ class Effects:
         """Return the effects of these names with their parameters.
 
         Raises:
-            InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" left out,
+            InvalidParameter: a name that is not known or comes twice, "bending" or "stretching" missing,
                 rotary inertia of strips without inertia, parameters that are missing, unknown or of no named
                 effect, several sets of them for an effect that acts once.
         """

@@ -60,7 +60,14 @@ class Checked:
 
 
 def finite(name: str, value: Any, unit: str) -> float:
-    """Return `value` as a float, or refuse it if it is not a finite real number."""
+    """Return `value` as a float.
+
+    Args:
+        name, unit: for the message. value: in `unit`.
+
+    Raises:
+        InvalidParameter: anything but a finite real number.
+    """
     plain = value.item() if getattr(value, "ndim", 1) == 0 else value  # a number of numpy's
     try:
         if isinstance(plain, bool) or not isinstance(plain, int | float) or not math.isfinite(plain):
@@ -71,28 +78,29 @@ def finite(name: str, value: Any, unit: str) -> float:
 
 
 def positive(name: str, value: Any, unit: str) -> float:
-    """Return `value` as a float, or refuse it if it is not finite and above zero."""
+    """Return `value` (in `unit`) as a float; InvalidParameter unless it is finite and above zero."""
     if finite(name, value, unit) <= 0.0:
         raise InvalidParameter(name, value, f"a number above 0 [{unit}]")
     return float(value)
 
 
 def not_negative(name: str, value: Any, unit: str) -> float:
-    """Return `value` as a float, or refuse it if it is not finite or is below zero."""
+    """Return `value` (in `unit`) as a float; InvalidParameter unless it is finite and not below zero."""
     if finite(name, value, unit) < 0.0:
         raise InvalidParameter(name, value, f"a number not below 0 [{unit}]")
     return float(value)
 
 
 def within(name: str, value: Any, low: float, high: float, unit: str) -> float:
-    """Return `value` as a float, or refuse it if it is not strictly between `low` and `high`."""
+    """Return `value` (in `unit`) as a float; InvalidParameter unless it is strictly between `low` and
+    `high`."""
     if not low < finite(name, value, unit) < high:
         raise InvalidParameter(name, value, f"a number between {low:g} and {high:g}, both excluded [{unit}]")
     return float(value)
 
 
 def count(name: str, value: Any, minimum: int = 1) -> int:
-    """Return `value` if it is an integer of at least `minimum`."""
+    """Return `value`; InvalidParameter unless it is an integer of at least `minimum`."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < minimum:
         raise InvalidParameter(name, value, f"an integer of at least {minimum} [1]")
     return int(value)
@@ -106,20 +114,20 @@ def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
 
 
 def choice(name: str, value: Any, known: tuple[str, ...]) -> str:
-    """Return `value` if it is one of the names in `known`."""
+    """Return `value`; InvalidParameter unless it is one of the names in `known`."""
     if value not in known:
         raise InvalidParameter(name, value, f"one of {', '.join(known)} [name]")
     return str(value)
 
 
 def flag(name: str, value: Any) -> bool:
-    """Return `value` if it is True or False."""
+    """Return `value`; InvalidParameter unless it is True or False."""
     require_kind(name, value, bool, "True or False")
     return bool(value)
 
 
 def optional(name: str, value: Any, read: Callable[..., Any], *domain: object) -> Any:
-    """Return None for None, and else what `read` makes of the value."""
+    """Return None for None, and otherwise `read(name, value, *domain)`; InvalidParameter as of `read`."""
     return None if value is None else read(name, value, *domain)
 
 
@@ -129,7 +137,11 @@ def _parts(value: Any) -> list[Any]:
 
 
 def several(name: str, value: Any, unit: str) -> list[float]:
-    """Return a number, or a sequence of such, as a list of floats; refuse anything else, and none at all."""
+    """Return a number, or a sequence of numbers (in `unit`), as a list of floats.
+
+    Raises:
+        InvalidParameter: anything else, or an empty sequence.
+    """
     parts = _parts(value)
     if not parts:
         raise InvalidParameter(name, value, f"at least one finite number [{unit}]")
@@ -137,7 +149,7 @@ def several(name: str, value: Any, unit: str) -> list[float]:
 
 
 def pair(name: str, value: Any, unit: str) -> Pair:
-    """Return `value` as two floats, or refuse it if it is not two finite numbers."""
+    """Return `value` (2,) (in `unit`) as two floats; InvalidParameter unless it is two finite numbers."""
     parts = _parts(value)
     if len(parts) != 2:
         raise InvalidParameter(name, value, f"two finite numbers [{unit}]")
@@ -145,13 +157,18 @@ def pair(name: str, value: Any, unit: str) -> Pair:
 
 
 def not_negatives(name: str, value: Any, unit: str) -> Pair:
-    """Return `value` as two floats, or refuse it if it is not two finite numbers, none below zero."""
+    """Return `value` (2,) (in `unit`) as two floats; InvalidParameter unless both are finite and not below
+    zero."""
     x, y = pair(name, value, unit)
     return not_negative(name, x, unit), not_negative(name, y, unit)
 
 
 def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None]:
-    """Return `value` as two floats, None where it is None, or refuse it if that leaves no finite number."""
+    """Return `value` (2,) (in `unit`) as two floats, None where it is None.
+
+    Raises:
+        InvalidParameter: anything else, or no finite number at all.
+    """
     parts = _parts(value)
     if len(parts) != 2 or all(part is None for part in parts):
         raise InvalidParameter(name, value, f"two finite numbers [{unit}], or one and None where it is free")
@@ -159,7 +176,11 @@ def partly(name: str, value: Any, unit: str) -> tuple[float | None, float | None
 
 
 def read_history(name: str, value: Sequence[Sequence[float]]) -> History:
-    """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through."""
+    """Return the pairs of instant [s] and factor [1] that a piecewise linear history passes through.
+
+    Raises:
+        InvalidParameter: no pair, numbers that are not finite, or instants that do not increase.
+    """
     points = tuple(pair(name, point, "s, 1") for point in value)
     if not points or any(b <= a for (a, _), (b, _) in pairwise(points)):
         raise InvalidParameter(name, value, "pairs of ascending instants [s] and factors [1]")

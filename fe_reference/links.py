@@ -120,8 +120,8 @@ def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> floa
     """Return what no ratio of constants (K, 3) of links to masses and inertias (rows,) exceeds
     [1/s^2 or 1/s], roots left out.
 
-    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass
-    1 / (1/m + o^2/J) at least.
+    It is the sum of the largest ratios of each link alone. At an arm o its end has the mass 1 / (1/m + o^2/J)
+    at least.
     """
     roots, ends, offsets, *_ = links
     pairs, arms, own = (each[roots:] for each in (ends, offsets, constants))

@@ -167,9 +167,9 @@ def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
 
 
 def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:
-    """Return coordinates y of one structure in another that is reduced about other points of the bodies.
+    """Return coordinates y (size,) [m, rad] of one structure in another with other points of the bodies.
 
-    With velocities v return those instead.
+    With velocities v (size,) [m/s, rad/s], return the velocities instead.
     """
     moved = y.copy() if v is None else v.copy()
     for k in range(0 if after is before else len(before.points)):
@@ -180,7 +180,8 @@ def carried_over(before: Structure, y: Array, after: Structure, v: Array | None 
 
 
 def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
-    """Return the mass matrix (size, size) of strips and bodies at y, "consistent" or "lumped"."""
+    """Return the mass matrix (size, size) [kg, kg m, kg m^2] of strips and bodies at y, "consistent" or
+    "lumped"."""
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
         masses = np.eye(6)[:, :, None] * lumped_elements(structure)
     elif structure.shear:

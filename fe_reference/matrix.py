@@ -4,7 +4,7 @@ scikit-fem assembles the pattern once; afterwards entries of elements go to thei
 The factors are K = L D L^T within the envelope of the rows, without pivoting: the coordinates are those of
 the nodes along the strips, then those of the bodies, which leaves a band and a border, and no fill. By
 Sylvester's law of inertia D has as many negative entries as K has negative eigenvalues. Rows of held
-coordinates are left out of the elimination.
+coordinates are excluded from the elimination.
 
 Products of two vectors, which are not symmetric, are added to a matrix by their low rank, and to its inverse.
 
@@ -35,9 +35,10 @@ class Singular(ArithmeticError):
 def assemble(
     matrices: Array, ends: Indices, carried: Carried, u: Array, places: Indices, data: Array
 ) -> None:
-    """Add element matrices (E, 8, 8) to the entries of a matrix.
+    """Add element matrices (E, 8, 8) [N/m, N, N m] to the entries `data` of a matrix.
 
-    What the turns of bodies at the ends carry comes into the last two rows and columns, which are zero.
+    The contributions of body rotations at attached ends are added to the last two rows and columns, which are
+    zero.
 
     Args:
         ends (E, 2): which attached node the ends are, or -1. u (rows, 3): displacements and turns.

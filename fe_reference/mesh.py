@@ -88,7 +88,8 @@ def strip_basis(model: Model) -> Basis:
 
 
 def nodal_terms(model: Model) -> Array:
-    """Return what the clamps leave of the curl of sections at the nodes (G, P, TERMS), as in `bending`."""
+    """Return the factors by which clamps reduce the curl of sections at the nodes (G, P, TERMS) [1], as in
+    `bending`."""
     if "clamped_width" in model.effects:
         return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
     rows = np.zeros((*model.arcs.shape, TERMS))

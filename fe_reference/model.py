@@ -26,12 +26,12 @@ class BodyDesign:
 
     Parameters
     ----------
+    name : str, default "body"
     centre : (2,) m
         Centre of mass at rest.
     mass : float, kg, default 0
     moment_of_inertia : float, kg m^2, default 0
         About the centre of mass.
-    name : str, default "body"
 
     Raises
     ------

@@ -158,11 +158,12 @@ def course(
     chunks: Sequence[int],
     progress: Progress | None = None,
 ) -> Samples:
-    """Integrate from coordinates y and velocities v through the spans of a motion.
+    """Return the samples of a motion through its spans.
 
     Args:
-        scheme_of: the scheme for the bodies whose centres are led; of none it is that of y, v and the
-            samples.
+        scheme_of: the scheme for the bodies whose centres are driven; the scheme of no driven body has the
+            coordinates of y, v and the samples.
+        y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] at the start.
         step: [s]. chunks: steps between samples.
         progress: called as progress(done, total) after every sample.
     """
@@ -275,7 +276,12 @@ class Trajectory(Answer):
 def trajectory(
     motion: Samples, settings: Mapping[str, float | str], remarks: list[str], watch: Stopwatch
 ) -> Trajectory:
-    """Turn samples in the reduced coordinates into the motion of all bodies; remarks: on its start."""
+    """Return the motion of all bodies from samples in the reduced coordinates [m, rad].
+
+    Args:
+        settings: of the integrator, by names with units. remarks: on the start.
+        watch: seconds by part so far.
+    """
     model = motion.home.structure.model
     own, states = structure_of(model), np.array(motion.y)
     places, rates = own.body_places(states), own.bodies(np.array(motion.v))

@@ -70,9 +70,11 @@ STRAIGHT = 2.0**-9
 
 @dataclass(kw_only=True, eq=False)
 class Path:
-    """The states of one path, and how hard they were to reach.
+    """The states of one path, its critical points and the counted iterations.
 
-    last: the last good state of a path that stopped. critical: the critical points that were passed.
+    Attributes:
+        last: the last good state of a path that stopped, at its load factor [1].
+        critical: the critical points that were passed.
     """
 
     control: Control
@@ -213,8 +215,8 @@ def _trail(state: State) -> tuple[tuple[float, Array, Array], ...]:
 def _ahead(state: State, parameter: float) -> Array:
     """Return the coordinates at a parameter by the polynomial through the last states and their rates.
 
-    States that are too close for a step so long are left out: round-off would be carried far. A step that
-    was halved often is straight: next to a critical point the rest is round-off.
+    States that are too close for so long a step are not used: extrapolation would amplify their round-off.
+    A step that was halved often is straight: next to a critical point the rest is round-off.
     """
     step, back = abs(parameter - state.parameter), _trail(state)
     far = [k * CLOSEST * max(step, STRAIGHT) for k in range(len(back))]
@@ -252,7 +254,14 @@ def _integral(control: Control, before: State, after: State) -> float:
 
 
 def follow(controls: Sequence[Control], increments: int, progress: Progress | None = None) -> Path:
-    """Settle under gravity and natural strains, then walk through the spans as far as they can be reached."""
+    """Return the path from the settled state under gravity and natural strains through all spans.
+
+    Args:
+        controls: the spans, in order. increments: equal increments of each span.
+        progress: called as progress(done, total) after every increment.
+
+    A path that cannot be followed to its end is returned with the reason.
+    """
     path, total = Path(control=controls[0]), increments * len(controls)
     path.settle(increments)
     for done in range(0 if path.message else total):

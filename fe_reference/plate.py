@@ -218,10 +218,13 @@ def left_by_clamps(width_ratio: float, poisson_ratio: float, places: Array, flat
 def left_in_elements(
     width_ratio: float, poisson_ratio: float, ends: Array, flattens: bool, points: int
 ) -> Array:
-    """Return the same at the points of elements between the places `ends` (E + 1,), (E, points, TERMS).
+    """Return P [1] at the points of elements between the places `ends` (E + 1,) [1]: (E, points, TERMS).
 
-    One point has the mean compliance of its element. Two Gauss points have its first moment as well: what a
-    linear moment bends is then that of the strip to second order, however thin the layer at a clamp is.
+    One point has the mean compliance of its element. Two Gauss points have its first moment as well: the
+    response to a linear moment is then that of the strip to second order, even with a thin layer at a clamp.
+
+    Args:
+        width_ratio, poisson_ratio, flattens: as of `left_by_clamps`. points: 1 or 2.
     """
     x, weights = np.polynomial.legendre.leggauss(ELEMENT_POINTS)
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)

@@ -43,15 +43,17 @@ def refine(
     judged: Collection[str] | None = None,
     relative: bool = True,
 ) -> tuple[Answer, dict[str, Array], ErrorEstimate | None]:
-    """Double the elements until the estimated errors are below the accuracy or fall no more.
-
-    Returns the answer of the best mesh, the limits of all quantities by name and the estimate of their
-    errors; without limits and estimate the answer of a mesh that is not whole.
+    """Double the elements until the estimated errors are below the accuracy or do not decrease.
 
     Args:
-        model: the coarsest mesh. solve: answers a model. quantities: of an answer, none if it is not whole.
+        model: the coarsest mesh. accuracy: wanted error [1, or the unit of the quantities].
+        solve: answers a model. quantities: of an answer; none if the answer is not complete.
         judged: names of the quantities whose errors count, all by default. relative: whether errors are parts
-            of a quantity's largest value, or of its unit.
+            of a quantity's largest value, or in its unit.
+
+    Returns:
+        The answer of the best mesh, the limits (S, ...) of all quantities by name, and the estimate of their
+        errors. If the answer of a mesh is not complete, this answer without limits and estimate.
     """
     positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []

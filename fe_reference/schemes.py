@@ -23,7 +23,8 @@ with am = (2 r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af
 at infinite frequency: second order, and high frequencies that the step does not resolve are damped if r < 1.
 Energy is not conserved exactly in large motion; it is recorded, the work of loads and dampers by the
 trapezoidal rule over the steps; a step that gains energy is halved, and a motion that still does is stopped.
-What the step leaves unresolved is remarked on. About the common centres of mass M is diagonal and constant.
+A remark lists the frequencies that the step does not resolve. About the common centres of mass M is diagonal
+and constant.
 
 Strips without inertia are legal: their rows hold no mass and become (1 - af) f_{n+1} + af f_n = 0, so that
 the strips stay in equilibrium with the bodies if they start there, and else reach it as (-r)^n.
@@ -255,7 +256,8 @@ class Implicit(Scheme):
     def _factorise(self, y: Array, time: float, h: float, samples: Samples) -> Factors:
         """Return the factors of the tangent of a step of h [s] to y at an instant [s], kept for later steps.
 
-        What the dampers' forces change with the place is left out: the iteration is a modified one anyway.
+        The derivative of damper forces with respect to position is neglected: the Newton iteration is a
+        modified one.
         """
         tangent = self.structure.evaluate(y, load=self.structure.loads.factors(time)).tangent
         if self.actions.damped:

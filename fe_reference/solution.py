@@ -73,7 +73,8 @@ class Stopwatch:
 
 
 class Answer:
-    """What solutions and trajectories have alike: how they ended, places of bodies, columns of one number."""
+    """Common part of solutions and trajectories: status, places of bodies (S, 3) [m, m, rad], columns of a
+    table."""
 
     status: Status
     message: str

@@ -64,7 +64,7 @@ def typeset(content: Mapping[str, Any]) -> bytes:
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Compile the report; return the exit code."""
+    """Compile the report; return the exit code, 2 for a missing or stale result."""
     parser = argparse.ArgumentParser(
         prog="python -m report.build", description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
@@ -72,7 +72,7 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--allow-stale",
         action="store_true",
-        help="take stale results too, and say so on the first page",
+        help="use stale results too, with a warning on the first page",
     )
     arguments = parser.parse_args(words)
     try:

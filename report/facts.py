@@ -132,7 +132,7 @@ def table(given: Table) -> dict[str, Any]:
 
 
 def listing(name: str) -> Callable[[Callable[[Results], Table]], None]:
-    """Enter a table: a function of the results."""
+    """Return a decorator that registers a function of the results as the table `name`."""
     return lambda made: LISTINGS.__setitem__(name, Fact(made=made, form=table, said="a table"))
 
 

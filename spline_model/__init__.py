@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from spline_model.batch import solve_many as solve_many
     from spline_model.design import BodyDesign as BodyDesign
     from spline_model.design import StripDesign as StripDesign
-    from spline_model.discretisation import swinging_slide_stiffness as swinging_slide_stiffness
+    from spline_model.discretisation import motion_penalty_stiffness as motion_penalty_stiffness
     from spline_model.dynamics import solve_motion as solve_motion
     from spline_model.dynamics import solve_release as solve_release
     from spline_model.effects.boundary import DrivenDisplacement as DrivenDisplacement
@@ -75,6 +75,8 @@ __all__ = list(_HOMES)
 
 
 def __getattr__(name: str) -> Any:
+    if name == "swinging_slide_stiffness":
+        name = import_module(f"{__name__}.errors").present(name)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}; public are {', '.join(_HOMES)}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -138,9 +138,14 @@ class Search(Generic[Found]):
 
 
 def wanted(accuracy: float | None, design: Design) -> float | None:
-    """The accuracy that control points are raised for: as asked, or DEFAULT where a design leaves them open.
+    """Return the accuracy [1] that control points are raised for; None: the number of the design is kept.
 
-    None: it has those of the design. Refused are one that is no positive number, and what it chooses itself.
+    A design without a number has the accuracy DEFAULT.
+
+    Raises
+    ------
+    InvalidParameter
+        An accuracy that is not a positive number, or settings that the accuracy chooses itself.
     """
     grid = design.discretisation
     if accuracy is None:
@@ -158,10 +163,10 @@ def search(
     attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
     most_segments: int | None = None,
 ) -> Search[Found]:
-    """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy``.
+    """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy`` [1].
 
-    attempt: solves with two discretisations and returns the estimated error of the first, and its
-    answer, or None where they do not have one; most_segments: into how many a strip may be cut.
+    attempt: solves with two discretisations and returns the estimated error [1] of the first, and its answer,
+    or None if one of them has no answer; most_segments: largest number of segments of a strip.
     """
     most = MOST_SEGMENTS if most_segments is None else most_segments
     outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most)
@@ -179,12 +184,11 @@ def answered(
     increments: int,
     check: bool = True,
 ) -> StaticSolution:
-    """A path with the control points that an accuracy takes, or else the design's.
+    """Return the path with the control points that an accuracy [1] needs; without one, those of the design.
 
-    solve: the answer with a discretisation, what is told of its increments, and whether sections are by
-    balance, as they are where paths with several numbers are compared.
-    check: whether critical points and early ends of the design's own control points are compared with those
-    of more.
+    solve: returns the answer of a discretisation, given the progress of its increments, and whether section
+    forces are by balance (as if paths with several numbers are compared). check: whether critical points and
+    early ends of the design's own control points are compared with those of more.
     """
     chosen, grid = wanted(accuracy, design), design.discretisation
     own = grid.segments, grid.points

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import compile_scene
-from spline_model.discretisation import swinging_slide_stiffness
+from spline_model.discretisation import motion_penalty_stiffness
 from spline_model.effects import DrivenRotation
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
@@ -58,8 +58,10 @@ MOST_STEPS = 500_000
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """A motion of a mechanism from the static state at the rotation ``start`` of a body; as ``solve_motion``,
-    which is ``solve``."""
+    """A motion of a mechanism from the static state at the rotation ``start`` [rad] of a body.
+
+    The attributes are the arguments of ``spline_model.dynamics.solve_motion``, which is ``solve``.
+    """
 
     mechanism: Mechanism
     start: float | None
@@ -101,25 +103,26 @@ class Task:
 
     @cached_property
     def with_points(self) -> Callable[[int], Mechanism]:
-        """The mechanism with n control points, and a slide stiffness in proportion; one object a number."""
+        """The mechanism with n control points, and a penalty stiffness in proportion; one object a number."""
         mechanism, grid = self.mechanism, self.mechanism.design.discretisation
 
         def made(n: int) -> Mechanism:
             if n == grid.points:
                 return mechanism
-            slide = grid.slide * swinging_slide_stiffness(n) / swinging_slide_stiffness(grid.points)
-            return mechanism.with_discretisation(control_points=n, slide_stiffness=slide)
+            slide = grid.slide * motion_penalty_stiffness(n) / motion_penalty_stiffness(grid.points)
+            return mechanism.with_discretisation(control_points=n, penalty_stiffness=slide)
 
         return cache(made)
 
 
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
-    """The motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a strip.
+    """Return the motion whose estimated errors are below ``accuracy``: of rotations [rad], of places over a
+    strip.
 
-    Control points are raised from those of the mechanism on, and the slide stiffness with
-    them. The estimate is the correction that the order of the scheme and two control points
-    more suggest, and how far the runs depart from that order. An accuracy that is not reached
-    is the status NOT_CONVERGED of the best motion.
+    Control points are raised from those of the mechanism on, and the penalty stiffness with them. The
+    estimate is the correction that the order of the scheme and two control points more suggest, and how far
+    the runs depart from that order. An accuracy that is not reached is the status NOT_CONVERGED of the best
+    motion.
     """
     instants, every = _comparison(task, records)
     n = task.mechanism.design.discretisation.points

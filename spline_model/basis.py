@@ -19,7 +19,7 @@ SMALLEST = 1e-10
 
 @cache
 def gauss_legendre(points: int) -> tuple[Array, Array]:
-    """Points and weights of Gauss and Legendre on [-1, 1]; kept, for each is an eigenvalue problem."""
+    """Return points (P,) and weights (P,) of Gauss and Legendre on [-1, 1]; they are computed once."""
     nodes, weights = legendre.leggauss(points)
     for array in (nodes, weights):
         array.setflags(write=False)
@@ -148,13 +148,12 @@ AxialModes = LegendreModes | SlideModes
 
 @cache
 def singular(basis: Bezier, points: int, axial: LegendreModes | None, slides: bool) -> str:
-    """Why the tangent of a straight strip is singular; empty if it is not.
+    """Return why the tangent of a straight strip is singular; an empty string if it is regular.
 
-    points: Gauss points; axial: modes of the axial force, None for stretching by
-    quadrature; slides: whether the strains that the modes do not see have a stiffness. At rest
-    bending and stretching do not mix: bending has to see every shape of C'' and stretching
-    every shape of C', or control points move without resistance; and every axial force has to
-    do work on some strain, or it is not determined.
+    points: Gauss points; axial: modes of the axial force, None for stretching by quadrature; slides: whether
+    the strains that the modes do not see have a stiffness. At rest bending and stretching do not mix: bending
+    has to see every shape of C'' and stretching every shape of C', or control points move without resistance;
+    and every axial force has to do work on some strain, or it is not determined.
     """
     u, weight = basis.gauss_rule(points)
     bends = np.sqrt(weight)[:, None] * basis.evaluate(u, 2)
@@ -180,7 +179,7 @@ def singular(basis: Bezier, points: int, axial: LegendreModes | None, slides: bo
         return f"{work}: use more gauss_points or fewer axial_modes"
     if rank < shapes:
         free = f"{rank} axial modes leave {shapes - rank} of {shapes} strains free"
-        return f"{free}, along which control points slide: use slide_stiffness > 0 or more axial_modes"
+        return f"{free}, along which control points slide: use penalty_stiffness > 0 or more axial_modes"
     return ""
 
 

@@ -46,16 +46,30 @@ SOLVED = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Batch:
-    """Answers of D designs at S states each, the unturned one first; nan behind a path that stopped.
+    """Static paths of D designs at S states each, the unrotated state first; nan after the end of a stopped
+    path.
 
-    states (D,) converged states; rotation (S,), or (D, S) where designs have their own [rad];
-    centre (D, S, 2) of the body [m]; torque (D, S) [N m]; stiffness (D, S) [N m/rad]; energy (D, S) [J];
-    strain (D, S) the largest of the extreme fibres, |N / (EA)| + |M| d / (2 EI) over the
-    stations of both strips [1], nan without a section depth d; inertia (D, S) negative
-    eigenvalues of the reduced tangent, 0 for a stable state, -1 behind a path that stopped;
-    moment_defect (D, S) as in ``Path``; iterations (D,) of Newton.
-    control_points (D,); accuracy: that they were chosen for, None for a given number; errors: the estimated
-    ones (D,) by the names of ``ErrorEstimate`` and "strain", nan where nothing estimates them.
+    Attributes
+    ----------
+    states : (D,) int
+        Number of converged states.
+    rotation : (S,) or (D, S) rad
+        (D, S) if designs have their own rotations.
+    centre : (D, S, 2) m
+    torque, stiffness : (D, S) N m and N m/rad
+    energy : (D, S) J
+    strain : (D, S) 1
+        Largest strain of the extreme fibres, |N / (EA)| + |M| d / (2 EI), over the stations of all strips;
+        nan without a section depth d.
+    inertia : (D, S) int
+        Negative eigenvalues of the reduced tangent, 0 for a stable state, -1 after the end of a stopped path.
+    moment_defect : (D, S) 1
+        As in ``spline_model.solution.Path``.
+    iterations, control_points : (D,) int
+    accuracy : float, 1, or None
+        For which control points were chosen; None for a given number.
+    errors : mapping of str to (D,) 1
+        Estimated errors by the names of ``ErrorEstimate`` and "strain"; nan if no error is estimated.
     """
 
     states: NDArray[np.int64]
@@ -92,7 +106,8 @@ class Batch:
             self.errors[name][rows] = each
 
     def resolution(self, row: int) -> str:
-        """Empty, or which errors of a design are above the accuracy, or that nothing estimates them."""
+        """Return a message on errors of a design that exceed the accuracy or are not estimated; empty if none
+        do."""
         if self.resolved[row]:
             return ""
         errors = {name: float(each[row]) for name, each in self.errors.items()}
@@ -186,7 +201,7 @@ def _model(mechanism: Mechanism, body: str, first: bool) -> Reduced:
     system.require_dead("designs")
     model = reduced(system)
     if model is None:
-        raise InvalidParameter("discretisation", "printed forces", "what the elements know")
+        raise InvalidParameter("discretisation", "published forces", "measure material or spatial")
     return model
 
 

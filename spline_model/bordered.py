@@ -36,7 +36,7 @@ from spline_model.tables import ACROSS, ALONG, BODY, DIRECTION, END, INNER, ROW,
 Array = NDArray[np.float64]
 
 PRINTED = 2
-"""Code of the forces as printed, of which ``spline_model.strip.laws`` knows nothing: they have no energy."""
+"""Code of the published forces, which ``spline_model.strip.laws`` does not have: they have no energy."""
 
 
 def evaluate(
@@ -92,7 +92,7 @@ def assemble(z, points, clamps, gradient, hessian, work):
 
 @part()
 def derivatives(z, first, width, d1, d2):
-    """C' and C'': x', y', x'', y'' from ``width`` control points in z, the first at ``first``."""
+    """Return C' and C'': x', y', x'', y'' from ``width`` control points in z, the first at ``first``."""
     x1 = y1 = x2 = y2 = 0.0
     for a in range(width):
         x, y = z[first + 2 * a], z[first + 2 * a + 1]
@@ -132,7 +132,8 @@ def _add_point(p, z, points, gradient, hessian, work):
 
 @part()
 def bend(phi, v, numbers, measure):
-    """Bending: energy, m, m_phi, m_v, f, f_phi and f_v; as printed (Eq 12) without d|C'|/dq."""
+    """Return the bending energy density and m, m_phi, m_v, f, f_phi, f_v; as published (Eq 12) without
+    d|C'|/dq."""
     curvature, rigidity = numbers[CURVATURE], numbers[RIGIDITY]
     if measure == PRINTED:
         density, m, m_phi, m_v, _, _ = bending_law(phi, v, 1.0, curvature, rigidity, SPATIAL)
@@ -149,7 +150,10 @@ def bend(phi, v, numbers, measure):
 
 @part()
 def stretch(v, force, count, numbers, measure):
-    """Stretching: energy, its derivatives in v, v v, N and N N; N: the axial force, and that in N v is 1."""
+    """Return the stretching energy density, its derivatives in v, v v, N and N N; its derivative in N v is 1.
+
+    N is the axial force [N], v the speed |C'| [m].
+    """
     speed, strain, stretching = numbers[SPEED], numbers[STRAIN], numbers[STRETCHING]
     energy = by_v = by_vv = by_n = by_nn = 0.0
     if stretching > 0.0:

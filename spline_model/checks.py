@@ -23,7 +23,7 @@ the points of a Bezier strip of more than twenty are known no better. Another br
 
 
 def refuse(system: System, z: Array) -> str:
-    """Why a converged state is no strip: the reason, or an empty string if it is one."""
+    """Return why a converged state z (N,) [m, rad, N] is no strip; an empty string if it is one."""
     clamps = system.tables.clamps
     for c, ((end, inner, body, _), numbers) in enumerate(zip(clamps.place, clamps.numbers, strict=True)):
         chord = numbers[SIGN] * (z[inner : inner + 2] - z[end : end + 2])
@@ -38,9 +38,9 @@ def refuse(system: System, z: Array) -> str:
 
 
 def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: Array) -> str:
-    """Why a corrected state is not the continuation of the previous one; empty if it is.
+    """Return why a corrected state (N,) does not continue the previous one; an empty string if it does.
 
-    unit: of the coordinates, which the states begin with.
+    unit (Q,): units of the coordinates [m, rad], which the states begin with.
     """
     q = slice(0, len(unit))
     step = float(np.linalg.norm((predicted[q] - previous[q]) / unit))

@@ -88,10 +88,10 @@ class System:
 
     @property
     def has_potential(self) -> bool:
-        """Whether the forces are a gradient: all but followers and the paper's printed ones are."""
+        """Whether the forces are a gradient: all but followers and the published ones are."""
         scene = self.scene
         measures = {*(e.measure for e in scene.of(Bending)), *(e.measure for e in scene.of(Stretching))}
-        return "printed" not in measures and not self.followers.place.size
+        return "published" not in measures and not self.followers.place.size
 
     @cached_property
     def weight(self) -> Array:
@@ -209,7 +209,7 @@ class System:
 
 
 def compile_scene(scene: Scene) -> System:
-    """The scene as a system."""
+    """Return the scene as a system of equations."""
     return System(scene=scene)
 
 

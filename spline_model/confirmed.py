@@ -51,12 +51,13 @@ SAME_END = 1e-3
 
 
 def finer(segments: int, points: int) -> Grid:
-    """What a discretisation is checked against: a few more control points in each segment."""
+    """Return the discretisation for checks: a few more control points in each segment."""
     return segments, points + MORE
 
 
 def spread(one: Sequence[CriticalPoint], other: Sequence[CriticalPoint]) -> float:
-    """Largest relative difference of the places of critical points; inf where they are not the same ones."""
+    """Return the largest relative difference [1] of the places of critical points; inf if they do not
+    match."""
     if [point.kind for point in one] != [point.kind for point in other]:
         return math.inf
     apart = 0.0
@@ -84,7 +85,8 @@ def at_limit(path: StaticSolution) -> bool:
 
 
 def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
-    """The answer of a discretisation; what is critical on it, or stops it, only as a finer one has it too."""
+    """Return the answer of a discretisation; critical points and early ends only if a finer one has them
+    too."""
     answer = outcome(grid)
     if answer.status is Status.CONVERGED and not answer.critical_points:
         return answer
@@ -107,7 +109,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
             break
     doubt, other = answer.critical_points[known:], better.critical_points[known:]
     if doubt and not at_limit(answer):
-        there = _place(other[0].load_factor, other[0].rotation) if other else "nowhere"
+        there = _place(other[0].load_factor, other[0].rotation) if other else "no state"
         what = f"a {doubt[0].kind} at {_place(doubt[0].load_factor, doubt[0].rotation)}"
         what += f" is at {there} with {more[1]}"
     else:
@@ -125,7 +127,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
 
 
 def remedy(grid: Grid) -> str:
-    """What to do where a discretisation and a finer one have different critical points or ends."""
+    """Return the advice for a discretisation and a finer one with different critical points or ends."""
     return f"leave the number open, or take segments = {2 * grid[0]}"
 
 
@@ -144,21 +146,21 @@ def _end(path: StaticSolution) -> str:
 
 
 def moved(path: StaticSolution) -> Array:
-    """Displacements x + iy of the bodies, or of the strips' ends where there are none (S, B) [m]."""
+    """Return displacements x + iy of the bodies, or of the strips' ends where there are none (S, B) [m]."""
     places = np.stack(list(path.bodies.values()), axis=1) if path.bodies else path.shape[:, :, -1]
     change = places - places[0]
     return np.asarray(change[..., 0] + 1j * change[..., 1])
 
 
 def turned(path: StaticSolution) -> Array:
-    """Rotations of the bodies that are not driven (S, B) [rad]."""
+    """Return rotations of the bodies that are not driven (S, B) [rad]."""
     if not set(path.bodies) - {path.driven}:
         return np.zeros((len(path.load_factor), 0))
     return np.stack([at[:, 2] for name, at in path.bodies.items() if name != path.driven], axis=1)
 
 
 def parameters(path: StaticSolution) -> Array:
-    """Load factors and driven rotations of the states (2, S)."""
+    """Return load factors [1] and driven rotations [rad] of the states (2, S)."""
     return np.stack((path.load_factor, path.rotation if path.driven else path.load_factor))
 
 
@@ -179,8 +181,8 @@ def _agreeing(one: StaticSolution, other: StaticSolution) -> int:
 
 
 def distances(design: Design, answer: StaticSolution, better: StaticSolution) -> dict[str, float]:
-    """Errors of an answer against a better one by the names of ``ErrorEstimate``, each over the largest
-    magnitude on its path but the stiffness of the body; nan of what there is none of.
+    """Return errors of an answer against a better one by the names of ``ErrorEstimate``, each over the
+    largest magnitude on its path but the stiffness of the body; nan of what there is none of.
 
     Places over the largest displacement, turns over the largest turn, section forces over the largest force
     and the largest moment. What is none but round-off is held against its unit: strip length, rad, EI/L.
@@ -235,8 +237,11 @@ def in_step(one: StaticSolution, other: StaticSolution) -> bool:
 
 
 def relative(apart: Array, right: Array, unit: Array) -> Array:
-    """Largest of D differences (D, ...) over the largest that is right, or over their units (D,); nan of
-    nothing."""
+    """Return the largest of D differences (D, ...) over the largest reference value, or over their units (D,)
+    [1].
+
+    The result is nan if there are no values.
+    """
     if right.size == 0:
         return np.full(len(right), np.nan)
     off, scale = (np.fmax.reduce(np.abs(each).reshape(len(each), -1), axis=1) for each in (apart, right))

@@ -2,9 +2,9 @@
 
 Of the modes that carry energy at the start each wants steps enough. A companion has two control points more:
 where the scene is undamped and free and the steps are not much longer than explicit ones it is the leapfrog,
-whose steps resolve all, so that the difference shows what the motion's own steps and its control points leave
-out together. Else it has the motion's own integrator and step, and shows what the control points leave out; a
-second one of a quarter of the step shows what the steps do, and the estimate is the sum.
+whose steps resolve all, so that the difference is the error of time steps and control points together. Else
+it has the motion's own integrator and step, and shows the error of the control points; a second one of a
+quarter of the step shows the error of the steps, and the estimate is the sum.
 """
 
 from __future__ import annotations
@@ -78,12 +78,12 @@ class Content:
 
 
 def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
-    """Energy of every mode at the state (z, v) with its acceleration, lowest mode first.
+    """Return the energy of every mode at the state (z, v) with its acceleration, lowest mode first.
 
-    About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and
-    y' = phi^T M v: its energy is c^2 / (2 w^2) + y'^2 / 2. Exact for the motion linearised
-    about the state; what later couples into other modes is left out. A state at rest in
-    equilibrium has no energy; there the swing counts for all of it.
+    About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and y' = phi^T M v:
+    its energy is c^2 / (2 w^2) + y'^2 / 2. Exact for the motion linearised about the state; later coupling
+    into other modes is neglected. A state at rest in equilibrium has no energy; there the swing counts for
+    all of it.
     """
     system = motion.system
     squares, shapes, slide = linear_modes(system, z, motion.mass)
@@ -103,7 +103,7 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
 
 
 def _resolution(content: list[Content], swing: float, step: float) -> str:
-    """What a step leaves unresolved, or an empty string.
+    """Message on the frequencies that a step does not resolve, or an empty string.
 
     content: of the start; swing: frequency of the lowest mode at rest [Hz], which a release
     tends to. The highest mode that carries energy and has too few steps is named.
@@ -123,9 +123,10 @@ def _resolution(content: list[Content], swing: float, step: float) -> str:
 
 
 def unresolved(scene: Scene, start: Start, step: float) -> str:
-    """What a step [s] leaves unresolved of the modes that carry the energy of a start.
+    """Return a message on the modes that carry the energy of a start and that a step [s] does not resolve.
 
-    The scene is that in motion, without the drives that hold the start alone (which may have multipliers).
+    The scene is the scene in motion, without the drives that only hold the start (which may have
+    multipliers).
     """
     if start.motion.system.scene is not scene:
         start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
@@ -169,9 +170,9 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:
-    """The motion with its estimated errors, and a remark in ``resolution`` where they are much of the swing.
+    """Return the motion with its estimated errors, and a remark in ``resolution`` if they are large.
 
-    task: that of the motion. Companions that fail leave nothing to compare, which is remarked.
+    task: the task of the motion. If a companion motion fails, the remark states this.
     """
     laps, count, failures = Laps(), len(motion.time) - 1, []
     # the largest divisor that leaves enough instants

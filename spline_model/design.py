@@ -175,7 +175,7 @@ class StripDesign:
         return 2.0 * math.atan2(2.0 * self.rise, self.chord)
 
     def at(self, shares: Array) -> Array:
-        """Points at rest (P, 2) [m] at shares (P,) of the length from the root."""
+        """Return points at rest (P, 2) [m] at shares (P,) of the length from the root."""
         start, end = np.asarray(self.start, dtype=float), np.asarray(self.end, dtype=float)
         if self.rise == 0.0:
             return np.asarray(start + np.asarray(shares)[:, None] * (end - start))
@@ -186,7 +186,8 @@ class StripDesign:
         return np.asarray(start + np.outer(x, along) + np.outer(y, (-along[1], along[0])))
 
     def control_points(self, basis: Bezier) -> Array:
-        """Control points at rest (n, 2): exact for a straight strip, the least-squares arc otherwise.
+        """Return control points at rest (n, 2) [m]: exact for a straight strip, the least-squares arc
+        otherwise.
 
         The arc's ends and end tangents are met exactly; its parametrisation is by arc length.
         """
@@ -208,7 +209,7 @@ class StripDesign:
         return points
 
     def pieces(self, count: int) -> tuple[Piece, ...]:
-        """The strip in so many pieces of equal length, root first, with joints between them."""
+        """Return the strip in `count` pieces of equal length, root first, with joints between them."""
         if count == 1:
             return (Piece(self, self, (0.0, 1.0)),)
         cuts = np.linspace(0.0, 1.0, count + 1)
@@ -244,7 +245,7 @@ class StripDesign:
 
 
 class Piece(NamedTuple):
-    """A piece of a ``whole`` strip, or all of it, and the shares of its length between which it lies."""
+    """A piece of a ``whole`` strip, or all of it, and the shares of its length [1] between which it lies."""
 
     strip: StripDesign
     whole: StripDesign
@@ -287,9 +288,17 @@ class BodyDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class Design:
-    """Strips and bodies with their discretisation; pre_strain holds curvature and strain, if any; curling
-    the names of the effects of the sections' curl, and root_length that of roots over the thickness, which
-    bending takes up."""
+    """Strips and bodies with their discretisation.
+
+    Attributes
+    ----------
+    pre_strain : mapping of str to float, 1/m and 1
+        Curvature and strain, if any.
+    curling : tuple of str
+        Names of the effects of the sections' curl.
+    root_length : float, 1
+        Length of the supports over the thickness; bending takes it up.
+    """
 
     strips: tuple[StripDesign, ...]
     bodies: tuple[BodyDesign, ...]
@@ -317,7 +326,8 @@ class Design:
         return tuple(BodyDesign(name=str(strip.tip), centre=strip.end) for strip in inner)
 
     def body_named(self, name: str | None) -> str:
-        """That name, or the only body's."""
+        """Return that name, or the name of the only body; InvalidParameter for an unknown name or several
+        bodies."""
         names = [body.name for body in self.bodies]
         if name is None and len(names) == 1:
             return names[0]

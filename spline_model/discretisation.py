@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypedDict
+from typing import Any, Self, TypedDict
 
 from spline_model.basis import Bezier, LegendreModes, singular
 from spline_model.effects.elastic import MEASURES
-from spline_model.errors import InvalidParameter, require_choice, require_count, require_not_negative
+from spline_model.errors import (
+    InvalidParameter,
+    present,
+    require_choice,
+    require_count,
+    require_not_negative,
+)
 
 STRETCH_FORMS = ("mixed", "consistent", "inextensible")
 FIRST_POINTS = 6
 """Control points of a design that leaves them open, where no accuracy chooses them."""
-SLIDE_STIFFNESS = 10.0
+PENALTY_STIFFNESS = 10.0
 """Default stiffness of the strains that the axial modes do not see in statics, in EI/L^2.
 
 With control_points - 2 modes the control points of a straight strip slide along it without
@@ -23,8 +29,8 @@ for n = 6 and 10 (results of convergence/slide_stiffness); from 100 on the strip
 """
 
 
-def swinging_slide_stiffness(control_points: int) -> float:
-    """Return the default slide stiffness of a motion: 100 ((n - 2) / 6)^3.
+def motion_penalty_stiffness(control_points: int) -> float:
+    """Return the default penalty stiffness of a motion: 100 ((n - 2) / 6)^3.
 
     Parameters
     ----------
@@ -46,14 +52,14 @@ def swinging_slide_stiffness(control_points: int) -> float:
 
     Examples
     --------
-    >>> swinging_slide_stiffness(8)
+    >>> motion_penalty_stiffness(8)
     100.0
     """
     return 100.0 * ((control_points - 2) / 6.0) ** 3
 
 
 class Described(TypedDict, total=False):
-    """Keywords of ``Discretisation``."""
+    """Keywords of ``Discretisation``, with their types and units."""
 
     control_points: int | None
     segments: int
@@ -61,23 +67,37 @@ class Described(TypedDict, total=False):
     measure: str
     stretch: str
     gauss_points: int | None
-    slide_stiffness: float | None
+    penalty_stiffness: float | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Discretisation:
-    """How every strip is described.
+    """Discretisation of every strip.
 
-    control_points n >= 4, or None for as many as an answer's accuracy takes (``spline_model.accuracy``;
-    FIRST_POINTS where nothing estimates its error), of a Bezier curve of degree n - 1; segments: such curves
-    that a strip is cut into, with equal lengths and frames between them that both are built into;
-    axial_modes m in 1 ... n - 1 of each, default n - 2; measure "material", or with consistent stretch
-    "spatial" (Eqs 10, 13) or "printed" (forces of Eqs 12, 15); stretch "mixed", "consistent" (Eq 13 by
-    quadrature) or "inextensible"; gauss_points of each, default degree + 3, which follows the
-    primary branch to a half turn where n - 1 points lose it; slide_stiffness of the strains
-    that the axial modes do not see, in EI/L^2, 0 for none, default SLIDE_STIFFNESS in statics
-    and ``swinging_slide_stiffness`` in motions and modes (``Mechanism.in_motion``). What makes
-    the tangent of a straight strip singular is refused with the reason (``spline_model.basis.singular``).
+    Parameters
+    ----------
+    control_points : int, default None
+        Number n >= 4 of a Bezier curve of degree n - 1. None: as many as the accuracy of an answer needs
+        (``spline_model.accuracy``), and FIRST_POINTS if no error is estimated.
+    segments : int, default 1
+        Number of curves per strip, of equal lengths, that are clamped to frames between them.
+    axial_modes : int, default n - 2
+        Number m of each curve, from 1 to n - 1.
+    measure : str, default "material"
+        "material"; with consistent stretch also "spatial" (Eqs 10, 13) or "published" (forces of Eqs 12, 15).
+    stretch : str, default "mixed"
+        "mixed", "consistent" (Eq 13 by quadrature) or "inextensible".
+    gauss_points : int, default degree + 3
+        Of each curve. The default follows the primary branch to a half turn; n - 1 points lose it.
+    penalty_stiffness : float, EI/L^2, default None
+        Of the strains that the axial modes do not see, 0 for none. Default: PENALTY_STIFFNESS in statics and
+        ``motion_penalty_stiffness`` in motions and modes (``Mechanism.in_motion``).
+
+    Raises
+    ------
+    InvalidParameter
+        A value outside its range, or one for which the tangent of a straight strip is singular
+        (``spline_model.basis.singular``).
     """
 
     control_points: int | None = None
@@ -86,7 +106,15 @@ class Discretisation:
     measure: str = "material"
     stretch: str = "mixed"
     gauss_points: int | None = None
-    slide_stiffness: float | None = None
+    penalty_stiffness: float | None = None
+
+    @classmethod
+    def described(cls, **keywords: Any) -> Self:
+        """Return the discretisation of keywords, whose former names are accepted with a FutureWarning."""
+        values = {present(name): value for name, value in keywords.items()}
+        if "measure" in values:
+            values["measure"] = present(values["measure"])
+        return cls(**values)
 
     def __post_init__(self) -> None:
         if self.control_points is not None:
@@ -99,8 +127,8 @@ class Discretisation:
                 )
         require_choice("measure", self.measure, MEASURES)
         require_choice("stretch", self.stretch, STRETCH_FORMS)
-        if self.slide_stiffness is not None:
-            require_not_negative("slide_stiffness", self.slide_stiffness, "EI/L^2")
+        if self.penalty_stiffness is not None:
+            require_not_negative("penalty_stiffness", self.penalty_stiffness, "EI/L^2")
         if self.gauss_points is not None:
             require_count("gauss_points", self.gauss_points, 1)
         if self.measure != "material" and self.stretch != "consistent":
@@ -132,8 +160,8 @@ class Discretisation:
 
     @property
     def slide(self) -> float:
-        """The slide stiffness that was given, or that of statics [EI/L^2]."""
-        return SLIDE_STIFFNESS if self.slide_stiffness is None else self.slide_stiffness
+        """The penalty stiffness that was given, or that of statics [EI/L^2]."""
+        return PENALTY_STIFFNESS if self.penalty_stiffness is None else self.penalty_stiffness
 
     @property
     def quadrature(self) -> int:

@@ -247,7 +247,7 @@ def _moved(
         settings={
             "integrator": ran,
             "step_s": steps.step,
-            "slide_stiffness": mechanism.design.discretisation.slide,
+            "penalty_stiffness": mechanism.design.discretisation.slide,
         },
         unresolved=partial(unresolved, scene, begun, steps.step),
         way=_way_to_start(path) if path else "",
@@ -272,9 +272,10 @@ def checked(
     body: str | None = None,
     drive: DrivenRotation | None = None,
 ) -> Trajectory:
-    """A motion with what companions make of it: its estimated errors and its ``resolution``.
+    """Return a motion with its estimated errors [rad, 1] and its ``resolution``, from companion motions.
 
-    Arguments as of the motion. A motion that stopped or has an estimate is returned as it is.
+    start: rotation at the start [rad]. The arguments are those of the motion. A motion that stopped, or that
+    has an estimate, is returned unchanged.
     """
     mechanism = mechanism.on(trajectory.segments, trajectory.control_points).in_motion()
     if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:

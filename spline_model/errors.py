@@ -3,9 +3,25 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable
 from numbers import Real
 from typing import Any
+
+FORMER = {
+    "slide_stiffness": "penalty_stiffness",
+    "swinging_slide_stiffness": "motion_penalty_stiffness",
+    "printed": "published",
+}
+"""Former names of keywords, functions and values, with the present ones: accepted until version 0.3."""
+
+
+def present(name: str) -> str:
+    """Return the present name of a keyword, function or value; a former name causes a FutureWarning."""
+    if name in FORMER:
+        text = f"{name} is now called {FORMER[name]}; version 0.3 ends {name}"
+        warnings.warn(text, FutureWarning, stacklevel=3)
+    return FORMER.get(name, name)
 
 
 class InvalidParameter(ValueError):
@@ -45,7 +61,7 @@ class ConvergenceError(RuntimeError):
 
 
 def is_finite(value: Any) -> bool:
-    """Whether this is one finite number, which a truth value is not."""
+    """Return whether `value` is one finite number; a truth value is not."""
     if type(value) is float:
         return math.isfinite(value)
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -57,13 +73,19 @@ def is_finite(value: Any) -> bool:
 
 
 def require_finite(name: str, value: Any, unit: str) -> None:
-    """Refuse anything but a finite number."""
+    """Raise InvalidParameter unless `value` (in ``unit``) is a finite number."""
     if not is_finite(value):
         raise InvalidParameter(name, value, f"a finite number [{unit}]")
 
 
 def finite_numbers(name: str, value: Any, unit: str) -> list[float]:
-    """The finite number, or the sequence of such, as a list; refuses anything else, and an empty one."""
+    """Return a finite number (in ``unit``), or a sequence of such numbers, as a list.
+
+    Raises
+    ------
+    InvalidParameter
+        Anything else, or an empty sequence.
+    """
     numbers = list(value) if isinstance(value, Iterable) else [value]
     if not numbers or not all(map(is_finite, numbers)):
         raise InvalidParameter(name, value, f"a finite number or several [{unit}]")
@@ -71,19 +93,19 @@ def finite_numbers(name: str, value: Any, unit: str) -> list[float]:
 
 
 def require_positive(name: str, value: float, unit: str) -> None:
-    """Refuse anything but a finite number above zero."""
+    """Raise InvalidParameter unless `value` (in ``unit``) is a finite number above zero."""
     if not (is_finite(value) and value > 0):
         raise InvalidParameter(name, value, f"a finite number > 0 [{unit}]")
 
 
 def require_not_negative(name: str, value: float, unit: str) -> None:
-    """Refuse anything but a finite number of at least zero."""
+    """Raise InvalidParameter unless `value` (in ``unit``) is a finite number of at least zero."""
     if not (is_finite(value) and value >= 0):
         raise InvalidParameter(name, value, f"a finite number >= 0 [{unit}]")
 
 
 def require_count(name: str, value: int, lowest: int, highest: int | None = None) -> None:
-    """Refuse anything but an integer in ``lowest ... highest``."""
+    """Raise InvalidParameter unless `value` is an integer in ``lowest ... highest``."""
     is_count = isinstance(value, int) and not isinstance(value, bool)
     if not is_count or value < lowest or (highest is not None and value > highest):
         upper = "" if highest is None else f" and <= {highest}"
@@ -91,13 +113,14 @@ def require_count(name: str, value: int, lowest: int, highest: int | None = None
 
 
 def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
-    """Refuse anything but an object of this kind; one that fills pages is named by its own."""
+    """Raise InvalidParameter unless `value` is an object of this kind; the message has the name of its
+    kind."""
     if not isinstance(value, kind):
         told = value if value is None or isinstance(value, int | float | str | dict) else type(value).__name__
         raise InvalidParameter(name, told, expected)
 
 
 def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
-    """Refuse anything but one of the named choices."""
+    """Raise InvalidParameter unless `value` is one of the named choices."""
     if value not in choices:
         raise InvalidParameter(name, value, "one of " + ", ".join(choices))

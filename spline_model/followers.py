@@ -16,10 +16,10 @@ Array = NDArray[np.float64]
 
 
 class Followers(NamedTuple):
-    """P forces that turn with bodies.
+    """P forces [N] that rotate with bodies.
 
-    place (P,): of their x, behind which y and theta stand, among the unknowns; growing, steady (P, 2): at
-    load factor 1, and at any.
+    place (P,): of their x among the unknowns, followed by y and theta; growing, steady (P, 2): force at load
+    factor 1, and at any load factor [N].
     """
 
     place: NDArray[np.int64]

@@ -32,11 +32,21 @@ LEAST_HELD_COMPLIANCE = 1e-9
 class HeldState:
     """A static state of a held body; G strips of n control points.
 
-    solved: whether the wanted pose was reached; if not, the state is the one before and
-    ``reached`` the fraction of the way that was solved. pose (3,): x, y [m], theta [rad];
-    force (3,): what holds the body, forces [N] and moment about its centre [N m]; tangent
-    (3, 3): its derivative in the pose; bending_energy, axial_energy [J]; iterations of Newton's
-    method in this call.
+    Attributes
+    ----------
+    solved : bool
+        Whether the wanted pose was reached; if not, the state is the previous one.
+    reached : float, 1
+        Fraction of the way that was solved.
+    pose : (3,) m, m and rad
+        x, y, theta of the body.
+    force : (3,) N, N and N m
+        That holds the body; the moment is about its centre.
+    tangent : (3, 3) N/m, N and N m
+        Derivative of the force by the pose.
+    bending_energy, axial_energy : float, J
+    iterations : int
+        Of Newton's method in this call.
     """
 
     solved: bool
@@ -110,21 +120,21 @@ class HeldPivot:
         return self.model.system.scales.pose
 
     def reset(self) -> HeldState:
-        """Back to rest, unloaded."""
+        """Return to rest, unloaded; return this state."""
         return self.restore(np.concatenate((self._rest[self._own] * self._unit, self._rest)))
 
     @property
     def unknowns(self) -> Array:
-        """A copy of the state, to be handed to ``restore``."""
+        """Return a copy of the unknowns (N,), dimensionless, for ``restore``."""
         return np.concatenate((self.pose, self._y))
 
     def restore(self, unknowns: Array) -> HeldState:
-        """Back to a state that ``unknowns`` gave."""
+        """Return to the state of ``unknowns`` (N,); return this state."""
         self.pose[:], self._y[:], self._led = unknowns[:3], unknowns[3:], None
         return self._state(1.0, 0)
 
     def hold(self, x: float, y: float, rotation: float) -> HeldState:
-        """Hold the body's centre at (x, y) [m] and its rotation [rad]."""
+        """Hold the body's centre at (x, y) [m] and its rotation [rad]; return the state."""
         target = np.array([x, y, rotation])
         if not np.isfinite(target).all():
             raise InvalidParameter("pose", [x, y, rotation], "finite numbers [m, m, rad]")
@@ -134,7 +144,7 @@ class HeldPivot:
         return self._state(reached, iterations)
 
     def turn(self, rotation: float) -> HeldState:
-        """Hold the rotation [rad] only; the body's centre goes where no force is needed."""
+        """Hold only the rotation [rad], so that no force acts on the body's centre; return the state."""
         if not math.isfinite(rotation):
             raise InvalidParameter("rotation", rotation, "a finite number [rad]")
         reached, iterations = self._lead(self._arrays, np.array([rotation]), stable=False)
@@ -183,19 +193,20 @@ class HeldPivot:
 
     @property
     def poses(self) -> Array:
-        """Poses of all bodies (B, 3) [m, m, rad]."""
+        """Return the poses of all bodies (B, 3) [m, m, rad]."""
         return self._y[: len(self.model.bodies.rest)].reshape(-1, 3) * self._unit
 
     @property
     def control_points(self) -> Array:
-        """Control points of the strips in the ground's frame, (G, n, 2) [m]."""
+        """Return the control points of the strips in the ground's frame (G, n, 2) [m]."""
         shape, points = self.model.shape, self._arrays.local.points
         ordered = np.empty((len(points), len(shape.order), 2))
         ordered[:, shape.order] = points.reshape(ordered.shape) * self.model.length
         return ordered
 
     def full_state(self, system: System) -> Array:
-        """The unknowns z (N,) of a compiled scene of the same mechanism, clamp reactions included."""
+        """Return the unknowns z (N,) [m, rad, N] of a compiled scene of the mechanism, with clamp
+        reactions."""
         model = reduced(system)
         assert model is not None, "the scene of a held mechanism"
         reaction = self._arrays.space.vectors[FORCE, model.bodies.held]

@@ -43,7 +43,7 @@ def has_loads(scene: Scene) -> bool:
 
 
 def steady(scene: Scene) -> Scene:
-    """The scene with loads and driven displacements in full at any load factor."""
+    """Return the scene with loads and driven displacements in full at any load factor."""
     effects = (
         replace(e, steady=True) if isinstance(e, Sized) or (isinstance(e, Driven) and e.beside) else e
         for e in scene.effects
@@ -52,12 +52,12 @@ def steady(scene: Scene) -> Scene:
 
 
 def growing(scene: Scene, increments: int, end: float = 1.0) -> Leg:
-    """All loads and drives of a scene from 0 to a load factor."""
+    """Return the leg on which all loads and drives of a scene grow from 0 to the load factor ``end`` [1]."""
     return Leg(compile_scene(scene), np.linspace(0.0, end, increments + 1)[1:].tolist())
 
 
 def turning(driven: Callable[[float], Scene], rotations: Array, increments: int, order: str) -> list[Leg]:
-    """The legs of a body that is turned through rotations (R,) [rad] under the loads of its scene.
+    """Return the legs of a body that is turned through rotations (R,) [rad] under the loads of its scene.
 
     driven: the scene that is driven to a rotation; increments: those of the loads where they come on first.
     Loads that grow together with the rotation go with its size: where the body turns the other way, that leg
@@ -97,7 +97,8 @@ def _sides(system: System, other: System, factors: Array) -> list[Leg]:
 def follow_legs(
     legs: Sequence[Leg], branch: str = "primary", method: str = "condensed", progress: Progress | None = None
 ) -> Path:
-    """The path through all legs, each from where the one before ends; branch and method as in ``follow``."""
+    """Return the path through all legs, each from where the one before ends; branch and method as in
+    ``follow``."""
     path, back, done = None, False, 0
     total = sum(len(leg.factors) - leg.returns for leg in legs)
     for leg in legs:

@@ -11,7 +11,7 @@ from typing import Any, Literal, Self, Unpack
 import numpy as np
 
 from spline_model.design import HINGE, BodyDesign, Design, StripDesign
-from spline_model.discretisation import Described, Discretisation, swinging_slide_stiffness
+from spline_model.discretisation import Described, Discretisation
 from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized
@@ -35,7 +35,11 @@ LARGEST_OPENING = math.radians(100.0)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mechanism:
-    """A design, the names of its effects with their parameters, and its scene without a driven rotation."""
+    """A design, the names of its effects with their parameters, and its scene without a driven rotation.
+
+    ``compliant_mechanism`` and ``spline_model.pivot.cross_axis_pivot`` return one. All values are in SI
+    units.
+    """
 
     design: Design
     effects: tuple[str, ...]
@@ -43,7 +47,8 @@ class Mechanism:
     scene: Scene
 
     def with_discretisation(self, **changes: Any) -> Self:
-        """The same mechanism with other keywords of ``Discretisation``."""
+        """Return the same mechanism with other keywords of ``Discretisation``; InvalidParameter as of this
+        class."""
         grid = self.design.discretisation
         made = compliant_mechanism(
             strips=self.design.strips,
@@ -55,8 +60,10 @@ class Mechanism:
         return replace(self, design=made.design, effects=made.effects, scene=made.scene)
 
     def on(self, segments: int, control_points: int) -> Self:
-        """The same mechanism with so many segments a strip, of so many control points, and what goes with
-        them."""
+        """Return the same mechanism with this number of segments per strip and of control points per segment.
+
+        Axial modes and Gauss points then have their defaults.
+        """
         grid = self.design.discretisation
         if (segments, control_points) == (grid.segments, grid.control_points):
             return self
@@ -65,28 +72,29 @@ class Mechanism:
         return self.with_discretisation(segments=segments, control_points=control_points, **own)
 
     def in_motion(self) -> Self:
-        """The mechanism as it swings: with ``swinging_slide_stiffness`` where no slide stiffness was given.
+        """Return the mechanism for motions: with ``motion_penalty_stiffness`` if no penalty stiffness was
+        given.
 
-        Motions and modes, and the static states that they begin from, are those of this mechanism, whose
-        number of control points is settled. It is made once.
+        Motions and modes, and the static states that they begin from, use this mechanism, whose number of
+        control points is fixed. It is computed once.
         """
         return self._swinging
 
     @cached_property
     def _swinging(self) -> Self:
         grid = self.design.discretisation
-        if None not in (grid.slide_stiffness, grid.control_points):
+        if None not in (grid.penalty_stiffness, grid.control_points):
             return self
-        stiffness = swinging_slide_stiffness(grid.points) if grid.slide_stiffness is None else grid.slide
-        return self.with_discretisation(control_points=grid.points, slide_stiffness=stiffness)
+        stiffness = motion_penalty_stiffness(grid.points) if grid.penalty_stiffness is None else grid.slide
+        return self.with_discretisation(control_points=grid.points, penalty_stiffness=stiffness)
 
     def driven(self, rotation: float, body: str | None = None) -> Scene:
-        """The scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
+        """Return the scene with a body's rotation driven to ``rotation`` [rad] at load factor 1 (Eq 7)."""
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
         return self.scene.with_effects(drive)
 
     def propped(self, turned: bool = False, body: str | None = None) -> Self:
-        """The same with props where rigid motions are free beside a drive of a rotation, if it is turned."""
+        """Return the mechanism with props against free rigid motions; `turned`: beside a driven rotation."""
         if not loose(self.scene):
             return self
         drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
@@ -94,21 +102,24 @@ class Mechanism:
         return replace(self, scene=scene.with_effects(*props_of(scene.with_effects(*drives))))
 
     def released(self) -> Scene:
-        """The scene in motion (``in_motion``), without the drives that hold the start alone.
+        """Return the scene in motion (``in_motion``), without the drives that only hold the start.
 
-        Refused if none of its effects has inertia, and with printed forces, which have no energy.
+        Raises
+        ------
+        InvalidParameter
+            No effect has inertia, or the forces are the published ones, which have no energy.
         """
         if not self.scene.of(Inertia):
             raise InvalidParameter("effects", list(self.effects), f"one of {', '.join(INERTIA)} for a motion")
-        if self.design.discretisation.measure == "printed":
-            expected = "material or spatial for motions and modes: printed forces are of static paths alone"
-            raise InvalidParameter("measure", "printed", expected)
+        if self.design.discretisation.measure == "published":
+            expected = "material or spatial for motions and modes: published forces are for static paths only"
+            raise InvalidParameter("measure", "published", expected)
         scene = self.in_motion().scene
         kept = (e for e in scene.effects if not (isinstance(e, Driven) and e.lets_go))
         return replace(scene, effects=tuple(kept))
 
     def at_start(self) -> Self:
-        """The mechanism with loads and drives as they are at the start of a motion."""
+        """Return the mechanism with loads and drives at their values at the start of a motion."""
         timed = Sized | Driven
         effects = (e.at(0.0) if isinstance(e, timed) else e for e in self.scene.effects)
         return replace(self, scene=replace(self.scene, effects=tuple(effects)))
@@ -163,7 +174,7 @@ def compliant_mechanism(
     >>> tip = BodyDesign(name="tip", centre=(0.1, 0.0), mass=0.05, moment_of_inertia=1e-5)
     >>> mechanism = compliant_mechanism(strips=[strip], bodies=[tip], control_points=6)
     """
-    grid = Discretisation(**described)
+    grid = Discretisation.described(**described)
     arcs = (2.0 * abs(strip.opening) for strip in strips if strip.rise)
     fewest = max((math.ceil(arc / LARGEST_OPENING) for arc in arcs), default=1)
     if fewest > grid.segments:
@@ -233,6 +244,6 @@ def _joined(
 
 
 def require_mechanism(value: Any) -> None:
-    """Refuse what is no mechanism of this package, such as one of the elements."""
+    """Raise InvalidParameter if `value` is no mechanism of this package, such as a finite-element model."""
     made = "what cross_axis_pivot or compliant_mechanism of spline_model returns"
     require_kind("mechanism", value, Mechanism, made)

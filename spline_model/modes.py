@@ -28,7 +28,7 @@ from spline_model.statics import static_state
 Array = NDArray[np.float64]
 
 SLIDE_SHARE = 0.5
-"""A mode with more of its strain energy than this in the slide stiffness is one of the control
+"""A mode with more of its strain energy than this in the penalty stiffness is one of the control
 points' sliding along the strip: a number of the discretisation, not of the pivot."""
 NEARLY_NONE = 1e-3
 """Part of the highest frequency below which errors are related to that part: where stability is lost."""
@@ -49,15 +49,30 @@ class RoundOff(InvalidParameter):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
-    """Natural modes, lowest first.
+    """Natural modes, lowest first; F modes of G strips with P stations.
 
-    frequency (F,) [Hz], negative where the state is unstable (growth rate over 2 pi), 0 of a rigid motion;
-    shapes (F, G, P, 2) and body_shapes (F, 3): displacement of the strips' stations and of
-    the body (x, y, theta; zero without one) at unit modal mass; bodies: those of every body by
-    name; slide_frequency: those left out as slide modes [Hz]; rotation of the static state [rad],
-    nan where none was driven; held: whether the body's rotation was held; state: unknowns of the
-    static state (N,); segments of a strip and control_points of each; estimate: of the error, where an
-    accuracy was asked for.
+    Attributes
+    ----------
+    frequency : (F,) Hz
+        Negative if the state is unstable (growth rate over 2 pi), 0 for a rigid motion.
+    shapes : (F, G, P, 2) m
+        Displacement of the stations at unit modal mass.
+    body_shapes : (F, 3) m and rad
+        Displacement x, y, theta of the body at unit modal mass; zero without a body.
+    bodies : mapping of str to (F, 3)
+        The same for every body, by name.
+    slide_frequency : (K,) Hz
+        Frequencies of the parametrisation only (slide modes), which are excluded.
+    rotation : float, rad
+        Of the static state; nan if no rotation was driven.
+    held : bool
+        Whether the rotation of the body was prescribed.
+    state : (N,) m, rad and N
+        Unknowns of the static state.
+    segments, control_points : int
+        Of a strip, and of each segment.
+    estimate : FrequencyEstimate or None
+        Of the error, if an accuracy was given.
     """
 
     frequency: Array
@@ -231,10 +246,16 @@ def _modes(
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:
-    """Squared circular frequencies, shapes in q (columns) and slide share, of a state.
+    """Return squared circular frequencies (F,) [1/s^2], shapes in q (Q, F) and slide shares (F,) [1] of a
+    state.
 
-    K and M in the free coordinates of the strips' elements, in which clamps hold; axial forces are condensed,
-    inextensible strips solved on the null space of their constraint. A motion asks twice: answers are kept.
+    K and M are in the free coordinates of the strips' elements, in which clamps hold; axial forces are
+    condensed, and inextensible strips are solved on the null space of their constraint. Answers are kept.
+
+    Raises
+    ------
+    RoundOff
+        Frequencies that are decided by round-off.
     """
     if not np.any(mass):
         raise InvalidParameter("effects", "no inertia", "strip or body inertia for a natural mode")

@@ -64,9 +64,10 @@ class Newton:
 
 
 def solve(work: Followed, start: Array, load_factor: float, change: Change | None = None) -> Newton:
-    """Newton from ``start``, until residual and correction are small or corrections no longer shrink.
+    """Return Newton's method from ``start`` (N,) at a load factor, until residual and correction are small.
 
-    change: of the unknowns and of the load factor, from both; by default the latter is fixed.
+    It also ends if corrections no longer shrink. change: of the unknowns and of the load factor, from both;
+    by default the load factor is fixed.
     """
     z, energies, reason = start.copy(), (np.nan, np.nan), ""
     norms: list[float] = []
@@ -103,10 +104,10 @@ def solve(work: Followed, start: Array, load_factor: float, change: Change | Non
 
 
 def correct(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Newton:
-    """Newton from (z, load factor), orthogonal to (normal (N,), along) in dimensionless unknowns.
+    """Return Newton's method from (z (N,), load factor), orthogonal to (normal (N,), along).
 
-    The bordered matrix is regular at a limit point, where the tangent is not. normal = 0 and
-    along = 1 hold the load factor.
+    The unknowns are dimensionless. The bordered matrix is regular at a limit point, where the tangent is
+    singular. normal = 0 and along = 1 hold the load factor.
     """
     unit, energy, size = work.unit, work.energy, len(z)
     matrix, right = np.zeros((size + 1, size + 1)), np.zeros(size + 1)

@@ -155,8 +155,15 @@ def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None
 def pivots(
     designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]], discretisation: Mapping[str, Any]
 ) -> tuple[Mechanism, Given]:
-    """A pivot of unit length and rigidity, so that no design's answer depends on another one, and the
-    numbers of many by the keywords of ``cross_axis_pivot``; refused under loads, which these do not scale.
+    """Return a pivot of unit length and rigidity, and the numbers (D,) of many pivots over its units.
+
+    The unit pivot makes the answer of each design independent of the others. designs: keywords of
+    ``cross_axis_pivot`` in SI units.
+
+    Raises
+    ------
+    InvalidParameter
+        Loads, which these units do not scale.
     """
     columns = _columns(designs)
     first: dict[str, Any] = {
@@ -175,7 +182,14 @@ def pivots(
 
 
 def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
-    """Designs of a mechanism whose numbers are replaced by ``values``, by the names of the parameters."""
+    """Return the designs of a mechanism whose numbers are replaced by ``values`` (D,) [SI], by parameter
+    name.
+
+    Raises
+    ------
+    InvalidParameter
+        An unknown parameter, or a value outside its range.
+    """
     require_names(mechanism, list(values), "values")
     columns = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in values.items()}
     count = max([count, *(len(column) for column in columns.values())])
@@ -231,7 +245,13 @@ def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], ex
 
 
 def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
-    """A number for all designs, (1,), or one for each, (D,)."""
+    """Return a number (1,) for all designs, or one for each (D,), in its own unit.
+
+    Raises
+    ------
+    InvalidParameter
+        Another number of values, or one that is not above ``above``.
+    """
     values = np.atleast_1d(np.asarray(given, dtype=float))
     if values.shape not in ((1,), (count,)):
         raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
@@ -241,5 +261,5 @@ def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) ->
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a x b."""
+    """Return the cross product a x b (...) of plane vectors (..., 2), in the product of their units."""
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])

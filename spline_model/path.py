@@ -43,13 +43,17 @@ def follow(
 ) -> Path:
     """Solve the scene at each load factor in turn, from rest at load factor 0.
 
-    method: "condensed" takes the strips' elements, where they know the scene; "multipliers" the
-    bordered system of the paper. Both agree to 1e-10.
-    An increment whose Newton fails, or whose solution does not pass the checks, is taken
-    in halves; when a part below SMALLEST_STEP still fails, the path ends with its last
-    good state and the reason. start: unknowns (N,) of an equilibrium at load factor 0 to go
-    on from instead of rest. branch: "primary" stays on the branch it is on where another one
-    crosses; "follow" leaves it there, along the critical mode.
+    method: "condensed" uses the strips' elements, if they support the scene; "multipliers" the bordered
+    system of the paper. The methods agree to 1e-10. An increment whose Newton fails, or whose solution does
+    not pass the checks, is taken in halves; if a part below SMALLEST_STEP still fails, the path ends with its
+    last good state and the reason. start: unknowns (N,) of an equilibrium at load factor 0 from which the
+    path starts instead of rest. branch: "primary" stays on the branch where another one crosses; "follow"
+    leaves it there, along the critical mode.
+
+    Raises
+    ------
+    InvalidParameter
+        An unknown branch or method, or a scene that nothing holds.
     """
     require_choice("branch", branch, BRANCHES)
     work = followed(system, method)
@@ -72,11 +76,11 @@ def follow_arc(
     progress: Progress | None = None,
     method: str = "condensed",
 ) -> Path:
-    """The path from rest until its load factor is ``end``.
+    """Return the path from rest until its load factor is ``end`` [1].
 
-    The first step changes the load factor by 1 / increments of the way; later ones follow
-    the ease of the path. Every accepted state is in the result. The load factor may go down
-    and up again; ``end`` is where it is first reached. branch and method as in ``follow``.
+    The first step changes the load factor by 1 / increments of the way; later ones adapt to the convergence
+    of Newton's method. The result has every accepted state. The load factor may decrease and increase again;
+    ``end`` is where it is first reached. branch, method and errors as in ``follow``.
     """
     require_choice("branch", branch, BRANCHES)
     watch = Watch(followed(system, method), leaves=branch == "follow", by_load=False)
@@ -234,9 +238,13 @@ def _first_rows(work: Followed, point: Point, message: str) -> dict[str, Any]:
 
 
 def equilibrium(work: Followed, unknowns: Array) -> Newton:
-    """The equilibrium at load factor 0 that Newton finds from the scene's unknowns, if its checks pass.
+    """Return the equilibrium at load factor 0 that Newton finds from unknowns (N,) [m, rad, N], if it is
+    valid.
 
-    Raises InvalidParameter if they lead to no such state.
+    Raises
+    ------
+    InvalidParameter
+        The unknowns lead to no such state.
     """
     newton = solve(work, work.state(unknowns), 0.0)
     reason = newton.reason or work.refuse(newton.z) or work.unresolved(newton.z, 0.0)
@@ -246,11 +254,15 @@ def equilibrium(work: Followed, unknowns: Array) -> Newton:
 
 
 def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...], str]:
-    """The point where a path begins, and the residual norms: rest, or the unknowns that are given.
+    """Return the first point of a path, its residual norms [1], and a reason if weight cannot act in full.
 
-    Weight and pre-strain grow from nothing, watched like any path. Where they cannot, the point is the shape
-    at rest without them, and the last value the reason. Raises InvalidParameter where there is no point, or
-    where nothing holds the scene.
+    start: unknowns (N,) [m, rad, N]; None is rest. Weight and pre-strain grow from nothing, and the path is
+    checked like any other. If they cannot act in full, the point is the shape at rest without them.
+
+    Raises
+    ------
+    InvalidParameter
+        There is no such point, or nothing holds the scene.
     """
     work, message = watch.work, ""
     if start is not None:

@@ -20,7 +20,7 @@ STRIPS = ("strip_1", "strip_2")
 
 
 class Pivot(Mechanism):
-    """A cross-axis pivot: a mechanism of two strips and one body, and what follows from its design."""
+    """A cross-axis pivot: a mechanism of two strips and one body; ``cross_axis_pivot`` returns one."""
 
     @property
     def centre(self) -> NDArray[np.float64]:
@@ -40,7 +40,7 @@ class Pivot(Mechanism):
 
     @property
     def shape(self) -> dict[str, float]:
-        """The keywords of ``cross_axis_pivot`` that place its strips."""
+        """The keywords of ``cross_axis_pivot`` that place its strips [m, rad, 1]."""
         (ratio, length), (first, second) = self.crossing_reach, self.clamp_directions[:, 0]
         low, high = math.atan2(first[1], first[0]), math.atan2(second[1], second[0])
         inclination = (math.pi - (high - low) % (2.0 * math.pi)) / 2.0
@@ -104,8 +104,8 @@ def cross_axis_pivot(
     effects, parameters : sequence of str, mapping
         Names of the effects, and the parameters of each effect by name.
     described
-        `control_points` ... `slide_stiffness`, as in ``spline_model.discretisation.Discretisation``. Without
-        `control_points`, solvers choose the number for an accuracy of 1e-4.
+        `control_points` ... `penalty_stiffness`, as in ``spline_model.discretisation.Discretisation``.
+        Without `control_points`, solvers choose the number for an accuracy of 1e-4.
 
     Returns
     -------
@@ -169,7 +169,10 @@ def cross_axis_pivot(
 def ends_at_rest(
     length: Any, inclination: Any, crossing_ratio: Any, orientation: Any
 ) -> list[list[tuple[Any, Any]]]:
-    """Clamped points x, y of each strip, from the ground to the body, crossing at r L; numbers or arrays."""
+    """Return the clamped points x, y [m] of each strip, from the ground to the body; numbers or arrays (D,).
+
+    The strips cross at r L from the ground.
+    """
     x, y, zero = length * np.cos(inclination), length * np.sin(inclination), 0.0 * length
     root = 2.0 * crossing_ratio * x
     strips = ((zero, zero), (x, y)), ((root, zero), (root - x, y))

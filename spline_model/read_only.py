@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 def read_only(given: T) -> T:
-    """The same, its arrays no longer to be written: an array, or what holds some by name or in order."""
+    """Return the same array, or the same container of arrays, after its arrays were set to read only."""
     if isinstance(given, np.ndarray):
         given.flags.writeable = False
     elif isinstance(given, dict | tuple):
@@ -22,7 +22,7 @@ def read_only(given: T) -> T:
 
 
 def kept(make: Callable[[Any], T]) -> cached_property[T]:
-    """A property that is made when it is first asked for, and then read only."""
+    """Return a property that is computed at its first access; its arrays are read only."""
 
     @wraps(make)
     def made(own: Any) -> T:

@@ -33,7 +33,7 @@ class Unheld(InvalidParameter):
 
 
 def props_of(scene: Scene) -> list[Constraint]:
-    """Props where rigid motions are free, to stand behind all other constraints."""
+    """Return the props where rigid motions are free, to stand behind all other constraints."""
     parts, props = loose(scene), []  # type: list[list[Body]], list[Constraint]
     rows = [_row(scene, parts, drive.body, axis) for drive in scene.of(Driven) for axis in drive.parts]
     for frame in (body for body in scene.bodies if body.on is not None):
@@ -70,7 +70,7 @@ def require_unborne(system: System, reactions: Array) -> None:
 
 
 def loose(scene: Scene) -> list[list[Body]]:
-    """The bodies that strips connect with each other but not with the ground, part by part."""
+    """Return the bodies that strips connect with each other but not with the ground, part by part."""
     at = {name: name for name in (GROUND, *(body.name for body in scene.bodies))}
 
     def root(name: str) -> str:

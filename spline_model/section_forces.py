@@ -24,16 +24,26 @@ STATIC, MOVING, _ = ANALYSES = ("static", "release", "modes")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StripFields:
-    """Along G strips at P stations from root to tip, for S states.
+    """Fields along G strips at P stations from root to tip, for S states.
 
-    arc_length (G, P) at rest [m]; rest_shape (G, P, 2) [m]; shape (S, G, P, 2) [m]; rotation
-    (S, G, P) of the section from rest, without wrapping [rad]; curvature (S, G, P)
-    d(theta)/ds0 of the shape [1/m]; stretch (S, G, P) ds/ds0, the one whose law gives the axial
-    force [1]; axial_force, shear_force [N], bending_moment [N m] (S, G, P): of the part
-    beyond on the part before, along the tangent, along the normal to its left, and positive
-    for counter-clockwise curvature; reactions (S, G, 2, 3): force [N] and moment [N m] on
-    the strip at root and tip. rest_bodies (B, 2) centres at rest [m], bodies (S, B, 3) centre
-    [m] and rotation [rad], in the order of the design.
+    Attributes
+    ----------
+    arc_length : (G, P) m
+        At rest.
+    rest_shape, shape : (G, P, 2) and (S, G, P, 2) m
+    rotation : (S, G, P) rad
+        Of the section from rest, without wrapping.
+    curvature : (S, G, P) 1/m
+        d(theta)/ds0 of the shape.
+    stretch : (S, G, P) 1
+        ds/ds0 of the law of the axial force.
+    axial_force, shear_force, bending_moment : (S, G, P) N, N and N m
+        Exerted by the part beyond on the part before: along the tangent, along the normal to its left, and
+        positive for counter-clockwise curvature.
+    reactions : (S, G, 2, 3) N and N m
+        Force and moment on the strip at root and tip.
+    rest_bodies, bodies : (B, 2) m, and (S, B, 3) m and rad
+        Centre at rest, and centre and rotation, in the order of the design.
     """
 
     arc_length: Array

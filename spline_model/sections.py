@@ -43,7 +43,8 @@ class Sections:
 
 
 def by_piece(scene: Scene, stations: Array) -> list[tuple[list[Strip], Array]]:
-    """Pieces of all strips that lie alike, root first, and where stations (P,) of the strips lie in them."""
+    """Return groups of pieces that lie alike in their strips, root first, with the stations (Q,) [1] in
+    each."""
     wholes = list(scene.whole.values())
     count = len(wholes[0]) if wholes else 1
     piece = np.minimum(count * stations + ROUND_OFF, count - 1).astype(np.int64)
@@ -51,7 +52,10 @@ def by_piece(scene: Scene, stations: Array) -> list[tuple[list[Strip], Array]]:
 
 
 def sections(system: System, states: Array, stations: Array, *, balanced: bool = False) -> Sections:
-    """Recover all strips' sections at ``stations`` (P,), u in [0, 1]; states (S, N)."""
+    """Return the sections of all strips at ``stations`` (P,), u in [0, 1], of states (S, N).
+
+    balanced: whether forces and moments are by balance with the clamp at the root [N, N m].
+    """
     parts = [_alike(system, states, strips, at, balanced) for strips, at in by_piece(system.scene, stations)]
     if len(parts) == 1:
         return parts[0]
@@ -146,7 +150,8 @@ def _axial_forces(
 
 
 def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Array:
-    """Force and moment of the clamp on that end of a strip or piece (S, 3) [N, N, N m]; zero if free."""
+    """Return the force and moment of the clamp on that end of a strip or piece (S, 3) [N, N, N m]; zero if
+    free."""
     pieces = system.scene.whole.get(strip)
     if pieces is not None:
         strip = pieces[0 if end == "start" else -1].name
@@ -161,7 +166,8 @@ def reactions(system: System, states: Array) -> Array:
 
 
 def free_tips(system: System, states: Array) -> dict[str, Array]:
-    """x, y [m] of the free ends, and how far their sections have turned since rest [rad], (S, 3) by strip.
+    """Return x, y [m] of the free ends, and how far their sections have turned since rest [rad], (S, 3) by
+    strip.
 
     The turn is that of the root's frame and, from station to station, along the last piece.
     """

@@ -67,13 +67,13 @@ def sensitivities(
     Raises
     ------
     InvalidParameter
-        Published forces (measure "printed"), which the elements do not have, or a path of another design.
+        Forces as published (measure "published"), which are not supported, or a path of another design.
 
     Notes
     -----
     The parameters enter through the arrays of the strips, by a complex step with which the kernels of the
     path are evaluated again: exact to round-off for the discrete answer, in either measure, under loads and
-    pre-strain, with lateral clamping, anticlastic stiffening and support compliance. The slide stiffness
+    pre-strain, with lateral clamping, anticlastic stiffening and support compliance. The penalty stiffness
     changes with the design. Bodies keep their mass.
 
     References
@@ -233,7 +233,7 @@ def _quantity(found: NDArray[Any]) -> Quantity:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Quantity:
-    """Values (...) of a quantity and its derivatives (..., P) by the parameters."""
+    """Values (...) of a quantity in SI units, and its derivatives (..., P) by the parameters, per SI unit."""
 
     value: Array
     derivative: Array
@@ -241,14 +241,25 @@ class Quantity:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sensitivities:
-    """Derivatives of a path of S states by P parameters, each over the parameter's SI unit.
+    """Derivatives of a path of S states by P parameters, each per SI unit of the parameter.
 
-    parameters: names, the last axis of every derivative. torque (S,) [N m]; stiffness (S,)
-    [N m/rad]; centre (S, 2) of the body and body_shift (S, 2) from rest [m]; centre_shift (S, 2):
-    displacement of the body's point that lies in the strips' crossing at rest, what the
-    literature calls the pivot's centre shift [m]; bending_energy, axial_energy (S,) [J];
-    fibre_stress (S, G, Q, 2) of G strips at Q stations, both extreme fibres [Pa]; stations (Q,);
-    states: derivatives of the unknowns (S, N, P); counters: factorisations and back_substitutions.
+    Attributes
+    ----------
+    parameters : tuple of str
+        Names, the last axis of every derivative.
+    torque, stiffness : Quantity, (S,) N m and N m/rad
+    centre, body_shift : Quantity, (S, 2) m
+        Of the body, and its displacement from rest.
+    centre_shift : Quantity, (S, 2) m
+        Displacement of the body point that coincides with the strip crossing at rest.
+    bending_energy, axial_energy : Quantity, (S,) J
+    fibre_stress : Quantity, (S, G, Q, 2) Pa
+        Of G strips at Q stations, both extreme fibres.
+    stations : (Q,) 1
+    states : (S, N, P)
+        Derivatives of the unknowns.
+    counters : mapping of str to int
+        Factorisations and back-substitutions.
     """
 
     parameters: tuple[str, ...]

@@ -3,7 +3,7 @@
 Both do an unconstrained update of strips and bodies one by one and then apply impulses until
 the constraints hold, at a fixed step h.
 
-"printed"  Elastic forces explicit, impulses at the level of velocities: symplectic Euler,
+"published"  Elastic forces explicit, impulses at the level of velocities: symplectic Euler,
            first order, stable while omega h < 2 for the highest frequency of the constrained
            system. Nothing pulls positions back, so that the constraints drift.
 "stable"   Elastic forces implicit, the axial ones as constraints with compliance, constraints
@@ -12,7 +12,7 @@ the constraints hold, at a fixed step h.
            gains energy while the ground holds the mechanism and no drive acts: where the
            differences would, the velocity is reduced.
 
-Impulses are found at once (Eq 30), or, as printed, by sweeps over single constraints (Eqs 24 to 26).
+Impulses are found at once (Eq 30), or, as published, by sweeps over single constraints (Eqs 24 to 26).
 Misprints of the paper are corrected: Eqs 22 and 23 begin from the state before, Eq 26 has the
 transposed Jacobian, Eq 30 its minus sign.
 """
@@ -31,7 +31,7 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.discretisation import require_uncut
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.elastic import ANTICLASTIC
-from spline_model.errors import InvalidParameter, require_choice, require_count, require_positive
+from spline_model.errors import InvalidParameter, present, require_choice, require_count, require_positive
 from spline_model.impulses.arrays import Problem, Space
 from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -69,6 +69,7 @@ class ImpulseSolver:
         sweeps: int | None,
         tolerance: float,
     ) -> None:
+        form = present(form)
         require_choice("form", form, tuple(REASONS))
         require_positive("tolerance", tolerance, "1")
         if sweeps is not None:
@@ -98,7 +99,7 @@ class ImpulseSolver:
         """A state at the unknowns z (N or more,), at rest or with velocity v (Q,).
 
         z may be another system's of the same strips and bodies, such as of statics with other drives:
-        what it has beyond this one's is left out. The constraints should hold in both.
+        its additional unknowns are ignored. The constraints should hold in both.
         """
         layout = self.system.layout
         count = layout.coordinate_count
@@ -171,7 +172,7 @@ def impulse_solver(
     body : str, default None
         Body that can be given a pose; None is the only one.
     form : str
-        "printed" (as published) or "stable" (default); see ``spline_model.sequential_impulse``.
+        "published" or "stable" (default); see ``spline_model.sequential_impulse``.
     sweeps : int, default None
         Largest number of sweeps over single constraints for one linear system of the published form; None
         solves it directly. Sweeps converge slowly where strips cannot stretch.
@@ -211,9 +212,9 @@ def impulse_solver(
 
 
 def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
-    """2 / omega [s] of the highest frequency about the static state at a rotation [rad], or undriven.
+    """Return the limit 2 / omega [s] of the step of the published form.
 
-    The step of the printed form must stay below it.
+    omega is the highest frequency about the static state at a rotation [rad]; None drives no rotation.
     """
     mechanism = pivot.in_motion()
     system = compile_scene(mechanism.released())
@@ -293,7 +294,7 @@ def solve_impulses(
     laps.lap("start")
     run = carry(stepper, steps)
     laps.lap("solve")
-    settings = {"integrator": f"sequential impulses, {form}", "step_s": steps.step}
+    settings = {"integrator": f"sequential impulses, {solver.form}", "step_s": steps.step}
     settings |= {} if sweeps is None else {"sweeps": sweeps}
     return Trajectory.of(
         system,

@@ -35,7 +35,7 @@ TORQUE_SHARE = 4.5
 0.05 to 0.95, inclinations 10 to 80 degrees and rotations to 180 degrees, with 4 to 10 control points."""
 UNCERTAIN = 0.03
 """Estimated error of the torque from which an answer says that it is not resolved: at the ends of what
-designs may be the factor above is exceeded, and no error of 0.05 shall pass in silence."""
+designs may be the factor above is exceeded, and no error of 0.05 may pass without a message."""
 
 
 class Status(Enum):
@@ -57,7 +57,7 @@ class Status(Enum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalPoint:
-    """Where a path loses or regains stability, or where its load or torque is stationary.
+    """Point of a path where stability is lost or regained, or where load or torque is stationary.
 
     kind: "limit point" of the load factor, or of a driven rotation's torque, where its stiffness
     at fixed loads vanishes; "turning point" of a drive, where the driven coordinate itself goes
@@ -80,7 +80,7 @@ class CriticalPoint:
 
 @dataclass(frozen=True, eq=False)
 class Later:
-    """An array that is made when it is first asked for; last: the model and what its last row is in it."""
+    """An array (R, N) that is computed at its first access; last: the model and its last row in it."""
 
     make: Callable[[], Array]
     last: tuple[Any, Array] | None = None
@@ -93,17 +93,34 @@ class Later:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Path:
-    """An equilibrium path, S converged states, the unloaded one first.
+    """An equilibrium path of S converged states, the unloaded state first.
 
-    load_factor (S,); poses (S, 3 B): x, y, theta of the bodies [m, rad]; reactions (S, D) of the drives, as
-    multipliers; unknowns: z (S, N) of all states; stiffness (S,) d(torque)/d(rotation) of a driven rotation
-    at fixed loads, nan without one [N m/rad]; energies (S, 2) bending and axial [J]; work (S,) of loads and
-    drives since the first state [J]; history: residual norms by increment.
-    inertia (S,): negative eigenvalues of the reduced tangent with the drives held, 0 for a
-    stable state, -1 where the printed forces have no potential; moment_defect (S,): what the
-    strips' moments differ from balance by, relative (``continuation.resolution``);
-    critical_points in the order of the path; settled: whether it begins under all of its weight and
-    pre-strain; if not, its one state is the shape at rest without them.
+    Attributes
+    ----------
+    load_factor : (S,) 1
+    poses : (S, 3 B) m and rad
+        x, y, theta of the bodies.
+    reactions : (S, D) N and N m
+        Of the drives, as multipliers.
+    unknowns : (S, N) m, rad and N
+        z of all states.
+    stiffness : (S,) N m/rad
+        d(torque)/d(rotation) of a driven rotation at fixed loads; nan without one.
+    energies : (S, 2) J
+        Bending and axial energy.
+    work : (S,) J
+        Of loads and drives since the first state.
+    history : residual norms by increment, 1
+    inertia : (S,)
+        Negative eigenvalues of the reduced tangent with the drives held: 0 for a stable state, -1 if the
+        published forces have no potential.
+    moment_defect : (S,) 1
+        Relative deviation of the strips' moments from balance (``continuation.resolution``).
+    critical_points : tuple of CriticalPoint
+        In the order of the path.
+    settled : bool
+        Whether the path begins under all of its weight and pre-strain; if not, its one state is the shape at
+        rest without them.
     """
 
     status: Status
@@ -152,7 +169,7 @@ def _some(unknowns: Later, kept: slice) -> Array:
 
 
 def joined(parts: Sequence[Later]) -> Array:
-    """Rows of several arrays, one after another."""
+    """Return the rows (R, N) of several arrays [m, rad, N], one after another."""
     return np.concatenate([part.array for part in parts])
 
 
@@ -185,7 +202,7 @@ class Tabulated:
 
 
 def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
-    """Columns of x, y, theta (S, 3) of bodies, named after them where there are several."""
+    """Return columns of x [m], y [m], theta [rad] of bodies (S, 3), named after them if there are several."""
     return {
         part if len(bodies) == 1 else f"{name}_{part}": place[:, k]
         for name, place in bodies.items()
@@ -194,10 +211,10 @@ def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
 
 
 def resolution(defect: NDArray[np.float64]) -> str:
-    """How uncertain a path of moment defects (S,) is; empty where its torque is resolved.
+    """Return a message on the uncertainty of a path with moment defects (S,) [1]; empty if it is resolved.
 
-    The defect (``continuation.resolution``) is the error of the moments in the energy norm,
-    and the error of torque and energy goes with its square.
+    The defect (``continuation.resolution``) is the error of the moments in the energy norm, and the error of
+    torque and energy is proportional to its square.
     """
     worst = int(np.argmax(defect))
     error = TORQUE_SHARE * float(defect[worst]) ** 2
@@ -210,13 +227,13 @@ def resolution(defect: NDArray[np.float64]) -> str:
 
 
 def largest(errors: Iterable[float]) -> float:
-    """The largest of errors, those left out that are nan: of what there is none of."""
+    """Return the largest of relative errors [1], nan (no error is estimated) ignored; nan if all are."""
     return max((each for each in errors if not math.isnan(each)), default=math.nan)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ErrorEstimate:
-    """Estimated error of a static path that was solved to an ``accuracy``, all relative [1].
+    """Estimated relative errors [1] of a static path that was solved to an ``accuracy``.
 
     trajectory: largest error of a body's place over the largest displacement, and of its turn where that is
     not driven; body_stiffness: of the body that is asked for, over that of the same state; torque, stiffness,
@@ -257,12 +274,13 @@ class ErrorEstimate:
 
 
 def named(segments: int, points: int) -> str:
-    """A discretisation in words."""
+    """Return a discretisation in words."""
     return f"{points} control points" if segments == 1 else f"{segments} segments of {points} control points"
 
 
 def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
-    """Empty, or which errors of an answer with a discretisation are above its accuracy."""
+    """Return the names of the relative errors [1] of an answer that exceed its accuracy; empty if none
+    does."""
     missed = ", ".join(
         f"{name.replace('_', ' ')} {error:.1e}" for name, error in errors.items() if error > accuracy
     )
@@ -271,9 +289,14 @@ def remark(errors: Mapping[str, float], accuracy: float, grid: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class FrequencyEstimate:
-    """Estimated error of natural frequencies that were solved to an ``accuracy``, relative [1].
+    """Estimated relative error [1] of natural frequencies that were solved to an ``accuracy``.
 
-    frequency: the largest of all modes; segments, control_points and trials as of ``ErrorEstimate``.
+    Attributes
+    ----------
+    frequency : float
+        Largest error of all modes.
+    segments, control_points, trials
+        As in ``ErrorEstimate``.
     """
 
     accuracy: float
@@ -287,9 +310,16 @@ class FrequencyEstimate:
 class MotionEstimate:
     """Estimated error of a motion that was solved to an ``accuracy`` [rad].
 
-    rotation: the largest error over the motion, of rotations [rad] and of places over the longest strip [1],
-    of the steps (``time``) and of the control points (``space``) together, which may cancel in part;
-    control_points that were chosen; runs that it took.
+    Attributes
+    ----------
+    rotation : float, rad
+        Largest error over the motion, of rotations [rad] and of places over the longest strip [1].
+    time, space : float, rad
+        Errors of the steps and of the control points, which may cancel in part.
+    control_points : int
+        Chosen number.
+    runs : int
+        Number of computed motions.
     """
 
     accuracy: float

@@ -1,4 +1,4 @@
-"""From the states of a static path to what a user asks for: energies, sections, reactions, stiffness."""
+"""Compute energies, section forces, reactions and stiffness from the states of a static path."""
 
 from __future__ import annotations
 
@@ -38,15 +38,29 @@ SINGULAR = 1e15
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StaticSolution(Tabulated, Path):
-    """Answer of a mechanism, a pivot or any other; S states, G strips, P stations.
+    """Static solution of a mechanism or pivot: S states, G strips, P stations.
 
-    A path whose load_factor (S,) is the share of the loads that acts, below zero where they act the other
-    way; stiffness (S,) d(torque)/d(rotation) [N m/rad] (Eq 20) is that at fixed loads and driven
-    displacements, from the tangent. What is known along the strips is made when it is asked for;
-    balanced: see ``Sections``; effects: names of what was assembled;
-    seconds: by part, see ``spline_model.newton.Laps``; control_points: of a segment of a strip;
-    estimate: of the error, where the control points were chosen for an accuracy; asked: the body that was
-    asked for, if one was.
+    It is a ``spline_model.solution.Path``. Its load_factor (S,) is the share of the loads that acts [1],
+    negative if they act in the opposite direction. stiffness (S,) is d(torque)/d(rotation) [N m/rad] (Eq 20)
+    at fixed loads and driven displacements, from the tangent. Fields along the strips are computed at their
+    first access.
+
+    Attributes
+    ----------
+    system : System
+        The assembled equations.
+    balanced : bool
+        Whether section forces are by balance, see ``Sections``.
+    effects : tuple of str
+        Names of the assembled effects.
+    seconds : mapping of str to float, s
+        By part, see ``spline_model.newton.Laps``.
+    control_points : int
+        Of a segment of a strip.
+    estimate : ErrorEstimate or None
+        Of the error, if control points were chosen for an accuracy.
+    asked : str or None
+        Name of the reported body, if one was given.
     """
 
     system: System
@@ -212,7 +226,7 @@ class StaticSolution(Tabulated, Path):
         equilibrium: K_bb - K_br K_rr^-1 K_rb with the body's coordinates b and the rest r of the tangent,
         multipliers included. What drives the body is released, what drives others holds them. Exact for the
         discretisation; dead loads have a stiffness where they act beside centres. nan where a strip that
-        cannot stretch leaves a direction none. Raises InvalidParameter for the paper's printed forces.
+        cannot stretch leaves a direction none. Raises InvalidParameter for the published forces.
         """
         body = body or self._watched_name
         return self.own_stiffness if body == self.asked else self._stiffness_of(body)
@@ -220,7 +234,7 @@ class StaticSolution(Tabulated, Path):
     @kept
     def own_stiffness(self) -> Array:
         """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
-        without one, and for printed forces."""
+        without one, and for the published forces."""
         body = self.asked or self.driven or (next(iter(self.bodies)) if len(self.bodies) == 1 else None)
         if body is None or reduced(self.system) is None:
             return np.full((len(self.work), 3, 3), np.nan)

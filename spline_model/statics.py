@@ -205,10 +205,11 @@ def static_state(
     *,
     starts: bool = False,
 ) -> Array:
-    """The unknowns z of the released scene in equilibrium, and last the torque of a drive.
+    """Return the unknowns z (N,) [m, rad, N] of the released scene in equilibrium, and last the drive's
+    torque.
 
     The rotation [rad] of a body is driven; None drives none. Loads, driven displacements, weight and
-    pre-strain act in full; the multipliers of displacements that are released are left out. starts: as in
+    pre-strain act in full; the multipliers of released displacements are excluded. starts: as in
     ``solve_mechanism``.
     """
     mechanism = mechanism.propped(rotation is not None, body)
@@ -228,7 +229,7 @@ def settle(
     *,
     starts: bool = False,
 ) -> StaticSolution:
-    """The path to that state, with the mechanism's own control points."""
+    """Return the path to that state at a rotation [rad], with the mechanism's own control points."""
     grid = mechanism.design.discretisation
     grown = rotation is not None or bool(mechanism.scene.of(Load) or mechanism.scene.of(Driven))
     return solve_mechanism(

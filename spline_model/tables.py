@@ -191,7 +191,8 @@ NO_LOADS = _table_of_loads(Scene(strips=(), bodies=(), effects=()), ())
 
 
 def weight(scene: Scene) -> Array:
-    """Generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names any."""
+    """Return the generalised force of gravity and steady loads, (Q,) [N, N m]; empty where no effect names
+    any."""
     strips, bodies = scene.of(StripGravity), scene.of(BodyGravity)
     steady = [load for load in scene.of(Sized) if load.steady and not getattr(load, "follower", False)]
     if not (strips or bodies or steady):
@@ -212,8 +213,11 @@ NO_SPRINGS = np.zeros((0, 0))
 
 
 def between_bodies(scene: Scene, name: str) -> Array:
-    """Matrix over the poses of all bodies (3 B, 3 B) of what springs have by that name, stiffness or damping;
-    (0, 0) where none has any."""
+    """Return the matrix (3 B, 3 B) of the springs' "stiffness" [N/m, N m/rad] or "damping" over the poses of
+    bodies.
+
+    It is (0, 0) if no spring has any.
+    """
     springs = [spring for spring in scene.of(Spring) if any(getattr(spring, name))]
     if not springs:
         return NO_SPRINGS

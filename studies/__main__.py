@@ -12,11 +12,12 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from importlib import import_module  # noqa: E402
 
+from studies.cases.document import present  # noqa: E402
 from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.files import forget_stale  # noqa: E402
 from studies.record.source import HOME, ROOT  # noqa: E402
-from studies.registry import COMMANDS, FORMER, PLACES  # noqa: E402
+from studies.registry import COMMANDS, PLACES  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -66,11 +67,7 @@ def _dispatch(words: list[str]) -> int:
     if not words:
         parser.print_help()
         return 0
-    if words[0] in FORMER:
-        former, name = words[0], FORMER[words[0]]
-        print(f"studies: warning: {former} is now called {name}; version 0.3 ends {former}", file=sys.stderr)
-        words = [FORMER[words[0]], *words[1:]]
-    name = parser.parse_args(words[:1]).command
+    name = parser.parse_args([present(words[0])]).command
     if forget_stale():
         print("studies: the source of the kernels has changed: they are compiled again", file=sys.stderr)
     command, parser = command_of(name)

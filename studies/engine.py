@@ -82,7 +82,7 @@ def records(rows: pd.DataFrame | Iterable[Row]) -> Iterable[Row]:
 
 
 def percent(value: float) -> str:
-    """Return a ratio in percent with two significant digits, in powers of ten where it is tiny."""
+    """Return a ratio [1] in percent with two significant digits, as a power of ten if it is tiny."""
     if value == 0.0 or abs(value) >= 1e-5:
         hundredfold = 100.0 * value
         digits = 0 if hundredfold == 0.0 else max(0, 1 - math.floor(math.log10(abs(hundredfold))))
@@ -123,7 +123,7 @@ class Study:
         made: tables that follow from those before them, by name: rows, or tables one below the other.
         claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
         figures: name -> what draws it from the tables as they come back from their files; none by default.
-        varying: tables that differ from run to run, beside those whose name says time.
+        varying: tables that differ from run to run, in addition to those with "time" in their name.
         digits: tolerances that are not those of `studies.record.store`, by "table.column" or "column"; None
             for a column that is not compared.
         missing: says in a line what this machine lacks for it, and nothing where it can be run.

@@ -54,9 +54,6 @@ PLACES: dict[str, str] = {
     "status": "studies.commands.results:status",
 }
 
-#: Former name of a command -> its name.
-FORMER: dict[str, str] = {"capacity": "critical-load"}
-
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and
 #: the line below that constant says it.
 STUDIES: dict[str, str] = {

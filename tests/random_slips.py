@@ -176,7 +176,7 @@ def noticed_by(change: Change | None, known: Sequence[str] = ()) -> list[str]:
 def score(count: int, seed: int) -> float:
     """Try changes, one on each core, print who notices each, and return the part that is noticed."""
     known = noticed_by(None)
-    print(f"{len(known)} tests fail without a slip and are left out:", *known, flush=True)
+    print(f"{len(known)} tests fail without a slip and are not used:", *known, flush=True)
 
     def tried(change: Change) -> bool:
         failed = noticed_by(change, known)

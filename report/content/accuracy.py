@@ -177,7 +177,7 @@ HOLDS |= {
 }
 
 
-#: Families in the order of the register, and what counts as right in each.
+#: Families in the order of the register, and the criterion of each.
 FAMILIES = [study for study in STUDIES if study.startswith("stability/")]
 PATHS = "path and torque within 5 % of a refined spline and of finite elements"
 CRITERIA = {
@@ -201,7 +201,7 @@ BRANCHES = Stored("stability/buckling", "branches")
 
 @listing("families")
 def _families(results: Results) -> Table:
-    yield ["family", "right if", *COLUMNS.values()]
+    yield ["family", "correct if", *COLUMNS.values()]
     for study in FAMILIES:
         counts = results.table(study, "counts").set_index("model")[OUTCOMES]
         cells = (

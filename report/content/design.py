@@ -119,7 +119,7 @@ def _effects(results: Results) -> Table:
     """Return the largest change by leaving out each effect, a column a design."""
     rows = WORTH.rows(results)
     largest = rows.pivot(index="scene", columns="design", values="largest")[list(rows["design"].unique())]
-    yield ["left out", *largest.columns]
+    yield ["neglected effect", *largest.columns]
     yield from ([str(scene), *map(dash(percent), own)] for scene, own in largest.iterrows())
 
 

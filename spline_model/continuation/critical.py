@@ -29,7 +29,7 @@ NO_PART = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossing:
-    """A critical point as it is told, and where it lies on the system: z (N,), mode of its coordinates."""
+    """A critical point, its place z (N,) [m, rad, N] on the system, and the mode (Q,) of its coordinates."""
 
     told: CriticalPoint
     z: Array
@@ -62,20 +62,23 @@ class Bracket:
 
 
 def corrected(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:
-    """The point of the path on a plane through (z, load factor); None if Newton does not find it."""
+    """Return the point of the path on a plane through (z (N,), load factor); None if Newton does not find it.
+
+    normal (N,), along: normal of the plane in dimensionless unknowns and the load factor.
+    """
     found = correct(work, z, load_factor, normal, along)
     point, _ = reached(work, found)
     return None if point is None else directed(work, point, normal, along)
 
 
 def between(work: Followed, before: Point, after: Point, step: float) -> tuple[Crossing, ...] | None:
-    """All critical points between two neighbouring states; step: their distance in the path's parameter.
+    """Return all critical points between two neighbouring states; step: their distance in the path's
+    parameter.
 
-    Eigenvalues are continuous along the path when they are numbered by size: the one whose
-    number is the smaller of the two inertias changes its sign, and so on. A torque has its limit
-    where the stiffness at fixed loads vanishes, wherever the torque turns as loads grow beside it.
-    None where an eigenvalue changes its sign without going through zero: the states are not on
-    one path, or too far apart to tell.
+    Eigenvalues are continuous along the path when they are numbered by size: the one whose number is the
+    smaller of the two inertias changes its sign, and so on. A torque has its limit where the stiffness at
+    fixed loads vanishes, wherever the torque turns as loads grow beside it. None where an eigenvalue changes
+    its sign without going through zero: the states are not on one path, or too far apart to tell.
     """
     if NOT_TRACKED in (before.inertia, after.inertia):
         return ()
@@ -194,8 +197,10 @@ def _zero(value: Callable[[float], float]) -> float | None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedTangent:
-    """stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L); it is
-    symmetric but for followers."""
+    """Stiffness (F, F) on the free directions (Q, F), which are orthonormal, all dimensionless (EI/L) [1].
+
+    It is symmetric except with followers.
+    """
 
     stiffness: Array
     free: Array

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 def solved(matrix: Array, right_side: Array) -> Array:
-    """Solve a system; LinAlgError, in words of a path, if it is singular."""
+    """Return the solution (N,) of a linear system (N, N), dimensionless; LinAlgError if it is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right_side))
     except np.linalg.LinAlgError:

@@ -148,10 +148,10 @@ class Follower:
 
 
 def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
-    """The polynomial through (place, value, slope) triples, evaluated at a place, values (N,).
+    """Return the polynomial (N,) through (place, value, slope) triples, evaluated at a place; any units.
 
-    Newton's divided differences with every node doubled: degree 2 k - 1 for k triples. Three
-    of them halve the Newton iterations of a smooth path against two.
+    Newton's divided differences with every node doubled: degree 2 k - 1 for k triples. Three of them halve
+    the Newton iterations of a smooth path compared with two.
     """
     nodes = [place for place, _, _ in known for _ in range(2)]
     table = [value for _, value, _ in known for _ in range(2)]

@@ -22,7 +22,7 @@ forces of 1e11, round-off in the place of a pivot gives 1e15."""
 NO_STIFFNESS = 1e-14
 """Stiffness of a driven rotation that is none, over the sum of the terms that cancel in it."""
 NOT_TRACKED = -1
-"""Inertia of a state of printed forces, which have no potential: its tangent is not symmetric."""
+"""Inertia of a state of published forces, which have no potential: its tangent is not symmetric."""
 
 WORK_MISMATCH = 0.02
 """Largest difference between the potential gained in a step and the integral of its rate, over
@@ -36,12 +36,17 @@ NODES = NODES + 0.5
 
 
 def stand(work: Followed, z: Array, load_factor: float, energies: tuple[float, float]) -> Point:
-    """The point of a state that ``work`` was just evaluated at, s being the load factor.
+    """Return the point of a state z (N,) that ``work`` was just evaluated at, with the load factor as
+    parameter.
 
-    One symmetric factorisation gives the rate, the turn and, by Sylvester's law, the inertia: of
-    the negative eigenvalues of the bordered matrix one belongs to each axial force and to each
-    constraint, the rest to the reduced tangent. With followers it is the sign of the determinant. Raises
-    LinAlgError if it is singular.
+    energies: bending and axial [J]. One symmetric factorisation gives the rate, the turn and, by Sylvester's
+    law, the inertia: of the negative eigenvalues of the bordered matrix one belongs to each axial force and
+    to each constraint, the rest to the reduced tangent. With followers it is the sign of the determinant.
+
+    Raises
+    ------
+    LinAlgError
+        The matrix is singular.
     """
     row, push = work.driven, work.push(z, load_factor)
     right = np.zeros((len(z), 1 if row is None else 2))
@@ -76,7 +81,8 @@ def _of_drive(work: Followed, row: int, turn: Array) -> float:
 
 
 def reached(work: Followed, found: Newton) -> tuple[Point | None, str]:
-    """The point where Newton ended; None, and why, where it did not converge or the tangent is singular."""
+    """Return the point where Newton ended; or None and the reason, if it failed or the tangent is
+    singular."""
     if found.reason:
         return None, found.reason
     try:
@@ -86,11 +92,11 @@ def reached(work: Followed, found: Newton) -> tuple[Point | None, str]:
 
 
 def directed(work: Followed, point: Point, direction: Array, along: float) -> Point:
-    """The point with the arc length as parameter, growing along (direction (N,), along).
+    """Return the point with the arc length as parameter, growing along (direction (N,), along).
 
-    Arc length is measured in dimensionless coordinates (lengths of a strip, rad) and load
-    factors together; multipliers and axial forces have no part in it. Without a direction
-    (zero, and along = 1) the load factor stays the parameter.
+    Arc length is measured in dimensionless coordinates (lengths of a strip, rad) and load factors together;
+    multipliers and axial forces have no part in it. Without a direction (zero, and along = 1) the load factor
+    stays the parameter.
     """
     if not direction.any():
         return point
@@ -127,7 +133,7 @@ def _symmetric(work: Followed, right: Array) -> tuple[Array, int]:
 
 
 def _sign(work: Followed) -> int:
-    """1 where the determinant of the reduced tangent is below zero, else 0; NOT_TRACKED of printed forces.
+    """1 where the determinant of the reduced tangent is below zero, else 0; NOT_TRACKED of published forces.
 
     That of the whole one has another sign for each axial force and each constraint.
     """
@@ -139,11 +145,11 @@ def _sign(work: Followed) -> int:
 
 
 def jumped(before: Point, after: Point, step: float, unit: float) -> str:
-    """Why ``after`` is not reached from ``before`` along a path; empty if it may be.
+    """Return why ``after`` is not reached from ``before`` along a path; an empty string if it may be.
 
-    step: length of the step in the path's parameter; unit: EI/L [J]. int P_lambda d(lambda) is
-    integrated with both factors as cubic Hermite polynomials of the parameter, from the end
-    values and slopes: exact to the fourth power of the step.
+    step: length of the step in the path's parameter; unit: EI/L [J]. int P_lambda d(lambda) is integrated
+    with both factors as cubic Hermite polynomials of the parameter, from the end values and slopes: exact to
+    the fourth power of the step.
     """
     if np.isnan(after.potential):
         return ""
@@ -158,7 +164,7 @@ def jumped(before: Point, after: Point, step: float, unit: float) -> str:
 
 
 def done_by_load_factor(before: Point, after: Point, step: float) -> float:
-    """int P_lambda d(lambda) between two states of one path [J]."""
+    """Return int P_lambda d(lambda) between two states of one path [J]."""
     return float(WEIGHTS @ _parts(before, after, step))
 
 
@@ -174,6 +180,7 @@ def _parts(before: Point, after: Point, step: float) -> Array:
 def hermite(
     a: Array | float, b: Array | float, slope_a: Array | float, slope_b: Array | float, t: Array | float
 ) -> Array:
-    """Hermite's cubic between two values with slopes on the unit interval."""
+    """Return Hermite's cubic (...) between two values (...) with slopes on the unit interval, in their
+    unit."""
     value = a * ((1 + 2 * t) * (1 - t) ** 2) + b * (t**2 * (3 - 2 * t))
     return np.asarray(value + slope_a * (t * (1 - t) ** 2) - slope_b * (t**2 * (1 - t)))

@@ -25,12 +25,13 @@ SMALLEST_MOMENT = 1e-2
 
 
 def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
-    """Root of the energy of the moment defect over the bending energy at z (N,); share: of the preload.
+    """Return the root of the energy of the moment defect over the bending energy at z (N,); share: of the
+    preload.
 
-    The constitutive moment M = EI (kappa - kappa_0) satisfies the balance M_b, of the root's
-    reaction and the weight, in the mean only; M - M_b is what the discretisation leaves
-    out. Zero for the exact solution. Strips that are not clamped at their root are left out.
-    Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error in energy of two dual fields.
+    The constitutive moment M = EI (kappa - kappa_0) satisfies the balance M_b, of the root's reaction and the
+    weight, in the mean only; M - M_b is the discretisation error. Zero for the exact solution. Strips that
+    are not clamped at their root are skipped. Source: Prager and Synge, Q Appl Math 5 (1947) 241: the error
+    in energy of two dual fields.
     """
     table = system.points if share == 1.0 else system.points.with_share(share)
     x1, y1, x2, y2 = table.derivatives(z)
@@ -47,7 +48,7 @@ def moment_defect(system: System, z: Array, share: float = 1.0) -> float:
 
 
 def balance(points: Array, values: Array, where: tuple[Bezier, Array], reaction: Array, load: Array) -> Array:
-    """Bending moment (..., P) that holds the balance of a strip up to u (P,) [N m].
+    """Return the bending moment (..., P) that holds the balance of a strip up to u (P,) [N m].
 
     points (..., n, 2); values (P, n): basis functions; where: basis and u; reaction (..., 3) of the clamp at
     the root; load (3, 2): parts of the weight per du with 1, u and u^2 [N].

@@ -38,7 +38,10 @@ def _factor_of(history: History, time: float) -> float:
 
 @kernel()
 def factor_at(time: float, first: int, count: int, times: Array, factors: Array) -> Any:
-    """The factor at an instant [s] of a history in a table: ``count`` pairs from ``first`` on."""
+    """Return the factor [1] at an instant [s] of a history: ``count`` pairs from ``first`` on of the table.
+
+    times, factors (H,): instants [s] and factors [1] of all histories.
+    """
     if time <= times[first]:
         return factors[first]
     for i in range(first + 1, first + count):

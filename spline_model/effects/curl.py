@@ -89,7 +89,7 @@ def _rigidity(
 def curl_terms(
     ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
 ) -> Array:
-    """Return what the curl takes of a plate's rigidity at u (P,) of a piece, as a curve follows it.
+    """Return the reduction of a plate's rigidity by the curl at u (P,) of a piece, as a curve follows it.
 
     Coefficients (P, TERMS) of f, f^2, ..., with f the share of the curl that curvature leaves. They take
     1 - (1 - nu^2) R / EI of clamps of a strip of width f b/L at TERMS values of f, which are Chebyshev's.

@@ -21,7 +21,7 @@ from spline_model.strip.laws import TERMS, curl_factors
 
 Array = NDArray[np.float64]
 
-MEASURES = ("material", "spatial", "printed")
+MEASURES = ("material", "spatial", "published")
 """Measure names; the position is the code that the kernels read."""
 CLAMPED_WIDTH = "clamped_width"
 ANTICLASTIC = "anticlastic"
@@ -115,9 +115,9 @@ class Bending(StrainEnergy):
 
     material    V = 1/2 int EI (phi / J0 - kappa_0 - kappa_n)^2 J0 du              [J]
     spatial     V = 1/2 int EI (phi / |C'| - kappa_0 - kappa_n)^2 |C'| du  (Eq 10) [J]
-    printed     the spatial energy with the forces of Eq 12 as they are printed:
-                d|C'|/dq is left out, so that they are no gradient and the work of
-                the drive differs from the stored energy. For comparison only.
+    published   the spatial energy with the forces of Eq 12: d|C'|/dq
+                is neglected. The forces are no gradient, so the work of the drive
+                differs from the stored energy. For comparison only.
 
     Parameters
     ----------
@@ -130,13 +130,13 @@ class Bending(StrainEnergy):
     roots : length of the root at start and end over the strip's, 0 where there is none: a strip that is cut
         from the same block as its bodies turns in its roots as if it were longer, by 0.416 t at a sharp
         corner (half-plane in plane stress). Their compliance is a peak at the clamp, which is projected
-        along the strip (``spline_model.effects.curl``). Left out: what a root gives way along and across
-        the strip. Source: O'Donnell, J Appl Mech 27 (1960) 461.
+        along the strip (``spline_model.effects.curl``). Neglected: the compliance of a support along and
+        across the strip. Source: O'Donnell, J Appl Mech 27 (1960) 461.
     gauss_points : Gauss points.
 
     Exact for: material: the geometrically exact (extensible, unshearable) elastica.
     spatial differs from it by the order of the axial strain.
-    Left out: shear, cross-section warping, coupling with stretching over the depth.
+    Neglected: shear, cross-section warping, coupling with stretching over the depth.
     Source: paper Eqs 10 to 12; Antman, Nonlinear Problems of Elasticity (2005), ch. 4.
     """
 
@@ -184,7 +184,7 @@ class Stretching(StrainEnergy):
 
     material    V = 1/2 int EA eps^2 J0 du                                         [J]
     spatial     V = 1/2 int EA eps^2 |C'| du                           (Eq 13)     [J]
-    printed     the spatial energy with the forces of Eq 15 as they are printed.
+    published   the spatial energy with the forces of Eq 15.
 
     Parameters: strip, axial_rigidity EA >= 0 [N], natural_strain eps_0 of the stress-free
     strip against the one at rest, gauss_points. eps is less by eps_0.

@@ -19,7 +19,7 @@ class StripInertia(Inertia):
     its bodies quasi-statically.
 
     Parameters: strip, linear_density mu >= 0 [kg/m].
-    Left out: rotary inertia of the section.
+    Neglected: rotary inertia of the section.
     """
 
     strip: str

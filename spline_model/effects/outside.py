@@ -1,4 +1,4 @@
-"""What a design makes of the effects that act from outside, each of which may act several times."""
+"""Values of a design for loads, supports, springs and drives, each of which may act several times."""
 
 from __future__ import annotations
 
@@ -26,8 +26,10 @@ def applied_force(
     at: Vector | None = None,
     follower: bool = False,
 ) -> Iterator[Effect | Body]:
-    """Force [N] on a body, the only one if it is not named, at its centre or at a point of it that lies
-    ``at`` (x, y) [m] at rest; dead, or a follower that turns with the body."""
+    """Yield a force [N] on a body: dead, or a follower that rotates with the body.
+
+    body: None is the only one. at: point of the body (x, y) at rest [m]; None is its centre.
+    """
     acts_on = design.body_named(body)
     if at is not None and follower:  # turned with its lever, its moment stays
         (x, y), (left, low) = at, next(each.centre for each in design.bodies if each.name == acts_on)
@@ -43,7 +45,7 @@ def applied_force(
 def applied_moment(
     design: Design, moment: float, body: str | None = None, history: History = STEADY
 ) -> Iterator[Effect]:
-    """Moment [N m] on a body, the only one if it is not named."""
+    """Yield a moment [N m] on a body; None is the only body."""
     yield boundary.AppliedMoment(body=design.body_named(body), moment=moment, history=history)
 
 
@@ -55,8 +57,15 @@ def tip_force(
     history: History = STEADY,
     follower: bool = False,
 ) -> Iterator[Effect | Body]:
-    """Force [N] and moment [N m] at the free end of a strip, on a frame there; the force dead, or a follower
-    that turns with the section."""
+    """Yield a force [N] and a moment [N m] at the free end of a strip, on a frame there.
+
+    The force is dead, or a follower that rotates with the section.
+
+    Raises
+    ------
+    InvalidParameter
+        An unknown strip, or one without a free end.
+    """
     whole = next((s for s in design.strips if s.name == strip and s.tip is None), None)
     if whole is None:
         raise InvalidParameter("strip", strip, "a strip with a free end")
@@ -68,7 +77,7 @@ def tip_force(
 
 
 def tip_of(strip: str) -> str:
-    """What the frame at the free end of a strip is called."""
+    """Return the name of the frame at the free end of a strip."""
     return f"tip of {strip}"
 
 
@@ -78,8 +87,10 @@ def driven_displacement(
     body: str | None = None,
     history: History | None = None,
 ) -> Iterator[Effect]:
-    """Displacement [m] of a body's centre prescribed beside its rotation, None where it is free; in a motion
-    only with a history."""
+    """Yield a prescribed displacement [m] of a body's centre in addition to its rotation.
+
+    A direction with None is free. In a motion, it needs a history.
+    """
     yield boundary.DrivenDisplacement(
         body=design.body_named(body), displacement=displacement, history=history
     )
@@ -88,13 +99,21 @@ def driven_displacement(
 def driven_rotation(
     design: Design, angle: float, body: str | None = None, history: History | None = None
 ) -> Iterator[Effect]:
-    """Rotation [rad] of a body prescribed beside the one that drives the path; in a motion only with a
-    history."""
+    """Yield a prescribed rotation [rad] of a body in addition to the one that drives the path.
+
+    In a motion, it needs a history.
+    """
     yield boundary.DrivenRotation(body=design.body_named(body), angle=angle, history=history, beside=True)
 
 
 def support(design: Design, fixed: Sequence[str], body: str | None = None) -> Iterator[Effect]:
-    """Coordinates of a body, "x", "y" and "rotation", that stay where they are at rest, in a motion too."""
+    """Yield the locked coordinates of a body, of "x", "y" and "rotation"; they are locked in a motion too.
+
+    Raises
+    ------
+    InvalidParameter
+        An unknown coordinate, or none.
+    """
     name = design.body_named(body)
     if isinstance(fixed, str) or not fixed:
         raise InvalidParameter("fixed", fixed, "a sequence of x, y, rotation, one at least")
@@ -116,7 +135,11 @@ def spring(
     damping: Vector = (0.0, 0.0),
     rotational_damping: float = 0.0,
 ) -> Iterator[Effect]:
-    """Spring and damper between a body's centre and another's or the ground, in axes of the ground."""
+    """Yield a spring and damper between a body's centre and another's or the ground, in axes of the ground.
+
+    stiffness (2,) [N/m], rotational_stiffness [N m/rad], damping (2,) [N s/m], rotational_damping [N m
+    s/rad].
+    """
     yield boundary.Spring(
         body=design.body_named(body),
         other=None if other is None else design.body_named(other),

@@ -30,7 +30,8 @@ A and l are such that the strip has both factors of its plate in the linear rang
 
     1 / f_b = int EI/R ds,      1 / f_s = 12 int u^2 EI/R ds,
 
-so that nothing is fitted to an answer. Left out: what the plate does beyond these two at large rotations.
+so that nothing is fitted to an answer. Neglected: all other nonlinear effects of the plate at large
+rotations.
 """
 
 from __future__ import annotations
@@ -188,7 +189,7 @@ def _decay(s: Array, reach: complex) -> Array:
 
 @lru_cache(maxsize=256)
 def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
-    """The profile of a strip of width over length ``ratio``; kept, for the plate takes some milliseconds.
+    """Return the profile of a strip of width over length ``ratio`` [1]; it is computed once.
 
     Newton's method in log A and log l; of a complex ratio in the real part, and their rates for the rest.
     """
@@ -242,7 +243,10 @@ def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
 
 @lru_cache(maxsize=256)
 def graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
-    """Points and weights on a reach of [0, 1] that see layers of some 0.1 of the width at its ends."""
+    """Return points (points,) and weights (points,) on a reach of [0, 1], graded towards its ends.
+
+    They resolve layers of about 0.1 of the width; ratio: width over length [1].
+    """
     layers = [min(0.5, part * ratio) for part in (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)]
     edges = np.array([*reach, *layers, *(1.0 - part for part in layers)])
     edges = np.unique(edges[(edges >= reach[0]) & (edges <= reach[1])])

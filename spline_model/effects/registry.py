@@ -200,7 +200,13 @@ def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterab
 
 
 def root_length(root: float | str = "monolithic") -> float:
-    """Length of a root over the thickness, of what "root_compliance" may be given."""
+    """Return the length of a support over the thickness [1] of the parameter of "root_compliance".
+
+    Raises
+    ------
+    InvalidParameter
+        Neither "monolithic" nor a number that is not negative.
+    """
     if isinstance(root, str) and root == "monolithic":
         return MONOLITHIC
     if isinstance(root, str) or not is_finite(root) or root < 0.0:
@@ -274,8 +280,15 @@ def check_names(names: Sequence[str], parameters: Parameters) -> None:
 
 
 def build(names: Sequence[str], parameters: Parameters, design: Design) -> list[Effect | Body]:
-    """The effects of these names, which were checked, for a design, in the order of the names, and frames of
-    their own."""
+    """Return the effects of these names for a design, in the order of the names, and frames of their own.
+
+    parameters: in SI units by effect. The names were checked.
+
+    Raises
+    ------
+    InvalidParameter
+        A parameter that the effect rejects.
+    """
     built: list[Effect | Body] = []
     for name in names:
         given = parameters.get(name)

@@ -23,7 +23,7 @@ Indices = NDArray[np.int64]
 
 COUNTERS = ("steps", "solves", "sweeps", "halved_steps", "limited_steps")
 REASONS = {
-    "printed": "the step is above the stability limit",
+    "published": "the step is above the stability limit",
     "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
 }
 """Why a motion of a form stops."""
@@ -78,7 +78,7 @@ class Stepper(Moves):
     """A motion from a state, its steps between two events in one call; they see to the energy themselves.
 
     A record is unknowns (N,), velocities (Q,), strain energy, work done and energy dissipated [J]. problem:
-    the motion's, without drives; form: "printed" or "stable"; space: work space, which steppers may share.
+    the motion's, without drives; form: "published" or "stable"; space: work space, which steppers may share.
     """
 
     most_gain = math.inf

@@ -83,7 +83,7 @@ def axial_strains(z, v, rates, problem, strains):
 
 @kernel()
 def strain_energy(z, v, problem, space):
-    """Strain energy [J] at z (N,), the axial forces being those that the strains give."""
+    """Return the strain energy [J] at z (N,), the axial forces being those that the strains give."""
     points, strains, energy = problem.points, space.strains, 0.0
     for p in range(points.place.shape[0]):
         place, numbers = points.place[p], points.numbers[p]
@@ -102,7 +102,7 @@ def strain_energy(z, v, problem, space):
 
 @called()
 def kinetic(v, mass):
-    """Kinetic energy [J] of velocities v (Q,)."""
+    """Return the kinetic energy [J] of velocities v (Q,)."""
     energy = 0.0
     for i in range(v.size):
         for j in range(v.size):
@@ -149,7 +149,7 @@ def _add_square(matrix, first, width, d1, d2, weight, g):
 
 @called()
 def external_work(z0, z1, problem, time):
-    """Work [J] from z0 to z1 of the loads at ``time`` and of the drives' multipliers in z1."""
+    """Return the work [J] from z0 to z1 of the loads at ``time`` and of the drives' multipliers in z1."""
     work = 0.0
     for d in range(problem.active.size):
         if problem.active[d] == 1:
@@ -163,7 +163,8 @@ def external_work(z0, z1, problem, time):
 
 @called()
 def damped(z, v, h, problem, space):
-    """Energy [J] that damping takes in a step of length h with the velocity v and ``space.drag``."""
+    """Return the energy [J] that damping takes in a step of length h with the velocity v and
+    ``space.drag``."""
     lost, rates = 0.0, space.strains
     for i in range(v.size):
         for j in range(v.size):
@@ -249,7 +250,7 @@ def free_update(problem, matrix, x):
 
 @called()
 def row_times(problem, matrix, r, x):
-    """B x of one row."""
+    """Return B x of one row."""
     value = 0.0
     for k in range(1, 3):
         g = problem.rows[r, k]

@@ -5,8 +5,8 @@ B: its inner points i follow from its four end points p, which are last in the o
 
     A_i = -B_ii^-1 f_i - W A_p,   W = B_ii^-1 B_ip,   (B_pp - B_pi W) A_p = -(f_p - W^T f_i),
 
-whose accelerations are A_p = T (s_A'', s_B'', bodies'') + what the rates make of them. s_A, s_B and the axial
-forces of strips that cannot stretch are eliminated, and the bodies' small system remains.
+whose accelerations are A_p = T (s_A'', s_B'', bodies'') + terms quadratic in the rates. s_A, s_B and the
+axial forces of strips that cannot stretch are eliminated, and the bodies' small system remains.
 
 Axial forces follow at each mode from its strain over its compliance. Of a strip that cannot stretch they
 are unknown, and what a mode of them asks of the accelerations of the control points,

@@ -192,7 +192,7 @@ def _shapes_of(kind: type) -> dict[str, tuple[type, list[str]]]:
 
 
 def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
-    """A record of arrays at zero; sizes: of what its letters stand for."""
+    """Return a record of arrays at zero; sizes: number of each letter in their shapes."""
     return kind(
         **{
             name: np.zeros([int(sizes.get(size, size)) for size in shape], dtype=number)
@@ -202,7 +202,7 @@ def zeros(kind: type[Kind], sizes: dict[str, int]) -> Kind:
 
 
 def sizes_of(model: Reduced, masses: Masses) -> dict[str, int]:
-    """What the letters of ``State`` and ``Scratch`` stand for."""
+    """Return the number that each letter in the shapes of ``State`` and ``Scratch`` stands for."""
     (s, g, k), n, q = model.strips.modes.shape, len(model.shape.order), len(masses.inertia)
     sizes = {"S": s, "G": g, "K": k, "n": n, "2n": 2 * n, "nn": n * n, "Q": q, "D": len(masses.drive_at)}
     sizes |= {"F": len(masses.load_at), "Y": model.size, "E": 2 * n + masses.outer}
@@ -214,7 +214,8 @@ class Poses(NamedTuple):
 
     y with the strips' coordinates; rate: velocities; energy: W and the next one; pull, next: reactions g,
     slope: derivative of the gap; totals: work and losses; ahead: the strips' change along the tangent, bent:
-    what the last step's, of length last [s], left out; system, x: what is solved; still: what has no mass.
+    the curvature that the tangent of the last step, of length last [s], neglects; system, x: what is solved;
+    still: what has no mass.
     """
 
     y: Annotated[Array, "Y"]

@@ -14,7 +14,7 @@ from spline_model.strip.compiled import called, part
 
 @called()
 def cayley(c):
-    """dphi / c for c = 2 tan(dphi / 2), and its derivative in c."""
+    """Return dphi / c for c = 2 tan(dphi / 2), and its derivative in c."""
     square = c * c
     if square < 1e-8:  # the series is exact to round-off here
         return 1.0 - square / 12.0, -c / 6.0
@@ -24,7 +24,7 @@ def cayley(c):
 
 @part()
 def turned(f, state, masses, work):
-    """A follower, whose parts are the f-th load and the next one, as its body stands amid a step."""
+    """Return a follower, whose parts are the f-th load and the next one, as its body stands amid a step."""
     x, y, turn = work.follow[f], work.follow[f + 1], masses.load_at[f] + 2
     angle = state.y[turn] + math.atan(0.5 * work.dy[turn])
     cos, sin = math.cos(angle), math.sin(angle)

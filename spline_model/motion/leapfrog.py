@@ -47,7 +47,7 @@ stress stiffens the strips on the way."""
 LARGEST_GAIN = 1e-2
 """Of energy over that at the start: it is kept in the limit of short steps only."""
 SHARPNESS = 0.1
-"""O h of inextensible strips: what a step leaves of their strain dies out over a few steps."""
+"""O h of inextensible strips: the strain that remains after a step decays over a few steps."""
 
 
 class _Grid(NamedTuple):
@@ -230,17 +230,18 @@ class Stepper(energy_consistent.Stepper):
 
 
 def stability_limit(motion: Motion) -> float:
-    """omega h up to which a step does not amplify an undamped oscillation of a system in motion."""
+    """Return the limit of omega h [1] up to which a step does not amplify an undamped oscillation of a
+    motion."""
     return PLAIN_LIMIT if (np.diag(motion.rigidity) == 0.0).any() else STABILITY_LIMIT
 
 
 def critical_step(motion: Motion, z: Array) -> float:
-    """The longest stable step [s], by the highest frequency at a state and at rest."""
+    """Return the longest stable step [s], by the highest frequency at a state and at rest."""
     return stability_limit(motion) / highest_frequency(motion, z)
 
 
 def highest_frequency(motion: Motion, z: Array) -> float:
-    """Highest circular frequency at a state and at rest [rad/s]."""
+    """Return the highest circular frequency at a state and at rest [rad/s]."""
     system = motion.system
     return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
 

@@ -150,7 +150,8 @@ def _bend_on(h, poses):
 
 @part()
 def evaluate(fresh, poses, arrays):
-    """Energy and reactions at ``trial``, with a fresh tangent or an older one; the strips' residual."""
+    """Return the energy and reactions at ``trial``, with a fresh tangent or an older one; the strips'
+    residual."""
     if fresh:
         norm = assemble(poses.trial, 0.0, arrays)
     else:

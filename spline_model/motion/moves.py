@@ -179,7 +179,8 @@ class Moves:
 
 
 def carry(stepper: Moves, run: Steps) -> Records:
-    """The records of a run; one whose balance of energies gains too much ends with the last good record."""
+    """Return the records of a run; one whose balance of energies gains too much ends with the last good
+    record."""
     records = np.empty((run.records, stepper.width))
     kept, message = _fill(stepper, run, records)
     poses, rows = stepper.shown(records[:kept])

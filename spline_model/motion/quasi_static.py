@@ -39,7 +39,13 @@ SOFT = 0.5
 
 
 def stepper(start: Start) -> Moves:
-    """What advances the bodies, from their part of the velocity."""
+    """Return the stepper of the bodies, from their part of the velocity.
+
+    Raises
+    ------
+    InvalidParameter
+        Effects that need the inertia of the strips.
+    """
     motion = start.motion
     if motion.damped:
         raise InvalidParameter(
@@ -62,9 +68,10 @@ def stepper(start: Start) -> Moves:
 
 
 def softness(model: Reduced, y: Array, strip: int) -> float:
-    """Least stiffness of a strip between held ends at a state y (Y,), over that at rest in the same shape.
+    """Return the least stiffness [1] of a strip between held ends at a state y (Y,), over that at rest.
 
-    Over all shapes of its own coordinates: 0 where it buckles or snaps through, below where it is unstable.
+    It is the smallest ratio over all shapes of the strip's own coordinates: 0 where it buckles or snaps
+    through, negative where it is unstable.
     """
     w, a = model.places(strip)
     parts = []

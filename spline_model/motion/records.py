@@ -84,7 +84,8 @@ class Records:
 
 
 def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
-    """Rows (R, 5) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3) [J]."""
+    """Return rows (R, 5) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3)
+    [J]."""
     rows, weight = np.zeros((len(z), ENERGIES)), motion.system.weight
     rows[:, KINETIC] = 0.5 * ((v @ motion.mass) * v).sum(axis=1)
     rows[:, [STRAIN, WORK, DISSIPATED]] = energies
@@ -108,7 +109,8 @@ def _clamp_gaps(motion: Motion, c: int, z: Array) -> Array:
 
 
 def energy_gain(rows: Array, unit: float) -> Array:
-    """Gain of the balance T + V - work + dissipated at each record over the run's energy, (R,) [1].
+    """Return the gain of the balance T + V - work + dissipated at each record over the run's energy, (R,)
+    [1].
 
     rows (R, 5) as named above; unit: EI/L in them. The energy is the largest of the balance's parts so far,
     as a run may start at rest, and the weight's zero is arbitrary.
@@ -124,27 +126,49 @@ def energy_gain(rows: Array, unit: float) -> Array:
 
 
 def first_gain(rows: Array, unit: float, most: float) -> int:
-    """Number of the first record that has gained more than ``most``, or the number of records."""
+    """Return the number of the first of the rows (R, 5) with a relative gain above ``most``, or R; unit: EI/L
+    [J]."""
     gained = np.flatnonzero(~(energy_gain(rows, unit) <= most))
     return int(gained[0]) if gained.size else len(rows)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Trajectory(Tabulated):
-    """A motion; T records, the start first.
+    """A motion of T records, the start first.
 
-    time (T,) [s]; bodies: x, y, theta (T, 3) by name [m, m, rad]; body: the one that rotation
-    (T,) and centre (T, 2) are of; kinetic_energy, strain_energy (T,), springs' in it [J]; gravity_energy
-    against rest, work of loads and drives so far, dissipated so far (T,) [J];
-    whole: what is made when it is asked for, states, velocities and constraint residuals; unresolved: what
-    the step leaves unresolved, likewise; still: whether the start is in equilibrium; checked: what companions
-    found; way: critical points that statics passed before the start; effects: names of the scene's effects;
-    counters: steps, halved_steps, newton_iterations, ...;
-    seconds: by part (``newton.Laps``), "start" the static state that is released; estimate: of the error,
-    where an accuracy was asked for;
-    rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad], and of the
-    places of all bodies and free ends [m], by companions with finer steps and more control points; nan
-    without.
+    Attributes
+    ----------
+    time : (T,) s
+    bodies : mapping of str to (T, 3) m, m and rad
+        x, y, theta by name.
+    body : str
+        The one that rotation (T,) and centre (T, 2) belong to.
+    kinetic_energy, strain_energy : (T,) J
+        The strain energy includes that of springs.
+    gravity_energy, work, dissipated : (T,) J
+        Energy of the weight relative to rest; work of loads and drives, and dissipated energy, since the
+        start.
+    whole : Whole
+        Computes states, velocities and constraint residuals at their first access.
+    unresolved : callable
+        Returns a message on the frequencies that the step does not resolve.
+    still : callable
+        Returns whether the start is in equilibrium.
+    checked : str
+        Remark of the companion motions.
+    way : str
+        Critical points that statics passed before the start.
+    effects : tuple of str
+        Names of the scene's effects.
+    counters : mapping of str to int
+        Steps, halved steps, Newton iterations and more.
+    seconds : mapping of str to float, s
+        By part (``newton.Laps``); "start" is the static state that is released.
+    estimate : MotionEstimate or None
+        Of the error, if an accuracy was given.
+    rotation_error, displacement_error : float, rad and m
+        Estimated errors of the rotations of all bodies, and of the places of all bodies and free ends, by
+        companions with finer steps and more control points; nan without companions.
     """
 
     status: Status
@@ -182,12 +206,12 @@ class Trajectory(Tabulated):
 
     @property
     def constraint_residual(self) -> Array:
-        """Largest one (T,) [m]."""
+        """Largest constraint residual (T,) [m]."""
         return self.whole.gaps
 
     @cached_property
     def resolution(self) -> str:
-        """Empty, or what step and control points leave unresolved."""
+        """Message on what step and control points do not resolve, or an empty string."""
         return "; ".join(remark for remark in (self.unresolved(), self.way, self.checked) if remark)
 
     @cached_property
@@ -229,7 +253,8 @@ class Trajectory(Tabulated):
         return poses[..., 2].T, np.concatenate((places, ends), axis=1)
 
     def counted_on(self, before: Trajectory) -> Trajectory:
-        """With time, work and losses counted on from the end of the one before."""
+        """Return the motion with time [s], work and losses [J] counted on from the end of the previous
+        one."""
         return replace(
             self,
             time=self.time + before.time[-1],
@@ -238,7 +263,7 @@ class Trajectory(Tabulated):
         )
 
     def columns(self) -> dict[str, Array]:
-        """What is one number at every instant, by names with units."""
+        """Return all quantities with one number per instant (T,), by names with units."""
         energies = ("kinetic_energy", "strain_energy", "gravity_energy", "work", "dissipated")
         return {
             "time_s": self.time,

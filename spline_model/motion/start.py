@@ -29,7 +29,7 @@ SAME = 1e-9
 
 @part(entered=True)
 def factor_of(row: int, time: float, table: DriveTable | LoadTable) -> Any:
-    """The factor of a load or a drive at an instant [s]."""
+    """Return the factor of a load or a drive at an instant [s]."""
     return factor_at(time, table.first[row], table.pairs[row], table.times, table.factors)
 
 
@@ -239,14 +239,14 @@ class Start:
 
 
 def set_in_motion(system: System) -> Motion:
-    """The motion of a system; refuses a scene whose coordinates have no inertia."""
+    """Return the motion of a system; InvalidParameter if coordinates of the scene have no inertia."""
     if not system.scene.of(Inertia):
         raise InvalidParameter("effects", "no inertia", "strip_inertia and body_inertia for a motion")
     return Motion(system, system.drives, system.acting)
 
 
 def axial_rigidity(system: System) -> Array:
-    """Inverse of the axial modes' compliance matrix, from the Hessian at rest."""
+    """Return the inverse (K, K) [N] of the axial modes' compliance matrix, from the Hessian at rest."""
     start, end, size = system.layout.coordinate_count, system.layout.multiplier_start, system.layout.size
     gradient, hessian = np.empty(size), np.empty((size, size))
     evaluate(system, system.rest, 0.0, gradient, hessian)

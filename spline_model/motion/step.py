@@ -48,7 +48,7 @@ def prepare(time, h, state, strips, masses, work):
 
 @part()
 def load_at(f, time, acts):
-    """Value of a load at an instant [s]; acts: what has tables of loads and drives."""
+    """Return the value of a load at an instant [s]; acts: what has tables of loads and drives."""
     return acts.loads.value[f] * factor_of(f, time, acts.loads)
 
 
@@ -115,7 +115,8 @@ def _add_strip(s, h, state, arrays, masses, work):
 
 @called()
 def assemble(h, state, arrays, masses, work):
-    """Residual of the step dy, and its tangent at the bodies with the strips condensed; the largest residual.
+    """Return the residual of the step dy, and its tangent at the bodies with the strips condensed; the
+    largest residual.
 
     In EI/L^2, EI/L and L, by the places of y; those of held coordinates are what holds them and do not count.
     """

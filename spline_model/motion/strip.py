@@ -226,7 +226,8 @@ def condense(s, size, strips, masses, local, work):
 
 @part()
 def lost_between(s, h, old, strips, shape, relaxation, local):
-    """Energy that strip s dissipates over a step from the curve ``old`` (5, G) to the present one."""
+    """Return the energy that strip s dissipates over a step from the curve ``old`` (5, G) to the present
+    one."""
     lanes, along, weights = local.lanes[s], strips.along[s], shape.rule[WEIGHT]
     stretching, rate, lost = strips.numbers[s, STRETCHING], relaxation / h, 0.0
     for p in range(weights.size):
@@ -255,7 +256,7 @@ def keep_curve(s, strips, local, state):
 
 @part()
 def quadratic(matrix, v):
-    """v . M v of both components of v (2 n), M (n, n)."""
+    """Return v . M v of both components of v (2 n), M (n, n)."""
     total = 0.0
     for i in range(matrix.shape[0]):
         x = y = 0.0

@@ -28,7 +28,7 @@ derivative in it, the work done so far and the moment defect; and the number of 
 
 
 class Bodies(NamedTuple):
-    """B bodies, free strip ends among them, and what acts on them; coordinates x, y over L and theta.
+    """B bodies, free strip ends among them, and their loads; coordinates x, y over L [1] and theta [rad].
 
     rest (3 B,); load (Q,) generalised force at load factor 1; weight (Q,) at any, Q = 3 B and one more
     for each strip whose mean axial force stands beside the bodies; free (F,) and held (D,) of these;
@@ -96,9 +96,10 @@ class Route(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """S states: y (S, Y); reaction (S, D); stiffness (S,) of the driven rotation at fixed loads; energies
-    (S, 2) bending, axial; done (S,) the potential's derivative integrated over the factor; inertia, defect
-    (S,); counters (4,).
+    """S states y (S, Y), dimensionless (EI/L, L), of a path.
+
+    reaction (S, D); stiffness (S,) of the driven rotation at fixed loads; energies (S, 2) bending, axial;
+    done (S,) the potential's derivative integrated over the factor; inertia, defect (S,); counters (4,).
     """
 
     y: Array

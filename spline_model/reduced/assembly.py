@@ -44,7 +44,8 @@ Array = NDArray[np.float64]
 
 @part()
 def place_of(i, body_tip, body_root, outer):
-    """The bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or an outer force."""
+    """Return the bodies' unknown that a strip's i-th outer coordinate is: of its tip, its root or an outer
+    force."""
     tip = body_tip >= 0
     if tip and i < 3:
         return 3 * body_tip + i
@@ -125,7 +126,7 @@ def _stiffen(bodies, space):
 
 @part()
 def residual_of(s, own, last, strips, local, space):
-    """Largest residual of strip s; what it does to its bodies is added to RAW."""
+    """Return the largest residual of strip s; what it does to its bodies is added to RAW."""
     g, gap, tip, root = local.reduced[s, LAST], local.gap[s], strips.tips[s], strips.roots[s]
     norm = 0.0
     for i in range(own):
@@ -272,10 +273,11 @@ def _moment_of_load_beyond(p, points, numbers, rule, tables):
 
 @called()
 def moment_defect(y, strips, shape, local, smallest):
-    """Root of the energy of what the strips' moments differ from balance by over their bending energy.
+    """Return the root of the energy of what the strips' moments differ from balance by over their bending
+    energy.
 
-    The balance starts from the force and moment of the clamp at the tip and has the dead load
-    beyond each point: int (M - M_b)^2 / EI ds with M_b linear in the curve's points.
+    The balance starts from the force and moment of the clamp at the tip and has the dead load beyond each
+    point: int (M - M_b)^2 / EI ds with M_b linear in the curve's points.
     """
     n, rule, tables = shape.order.size, shape.rule, shape.tables
     wrong = stored = 0.0

@@ -23,7 +23,7 @@ DIGITS = 12
 
 
 def designs_of(model: Reduced, base: Given, given: Given, length: Array, energy: Array) -> Designs:
-    """Arrays of designs of the mechanism that ``model`` is of, whose own numbers are ``base``.
+    """Return the arrays of designs of the mechanism that ``model`` is of, whose own numbers are ``base``.
 
     length (D,) [m], energy (D,) [J]: the units of each. Strips keep their form at rest: they are turned and
     lengthened with their chords.
@@ -75,7 +75,8 @@ def _springs(model: Reduced, length: Array, energy: Array) -> Array:
 
 
 def along_of_designs(model: Reduced, base: Given, given: Given, length: Array, energy: Array) -> Array:
-    """What changes along the strips of designs (D, S, P, 11 + K); arguments as of ``designs_of``."""
+    """Return the constants along the strips of designs (D, S, P, 11 + K) [1]; arguments as of
+    ``designs_of``."""
     along, wide, longer = model.strips.along, length[:, None] / model.length, given.span / base.span
     rigid = given.rigidity / base.rigidity * (model.energy / energy * (model.length / length))[:, None]
     thicker, wider = np.moveaxis(given.sides / base.sides, -1, 0)

@@ -290,6 +290,6 @@ def _places(poses: int, count: int, own: int, modes: int) -> NDArray[np.int64]:
 
 
 def followed(system: System, method: str = "condensed") -> Followed:
-    """The system to follow a path on: the elements, where they know the scene and are asked for."""
+    """Return the system to follow a path on: the elements, where they know the scene and are asked for."""
     model = reduced(system) if method == "condensed" else None
     return Followed.of(system) if model is None else Elements.of(system)

@@ -114,7 +114,7 @@ def newton(y, load, early, arrays, tolerance, counters):
 
 @called()
 def entry(matrix, i, j):
-    """Entry of a symmetric matrix of which the upper triangle is filled."""
+    """Return the entry of a symmetric matrix of which the upper triangle is filled."""
     return matrix[i, j] if i <= j else matrix[j, i]
 
 
@@ -153,7 +153,8 @@ def tangent(held_rate, load_rate, arrays):
 
 @called()
 def stiffness_of(bodies, space):
-    """Derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed loads."""
+    """Return the derivative of the driven rotation's torque in it, all else held or in equilibrium at fixed
+    loads."""
     free, x = bodies.free, space.vectors[CHANGE]
     row = bodies.held[bodies.driven]
     for i in range(free.size):
@@ -167,7 +168,8 @@ def stiffness_of(bodies, space):
 
 @called()
 def conjugate(held_rate, load_rate, bodies, y, space):
-    """First and second derivative of the potential in the factor: reactions on drives less moved loads."""
+    """Return the first and second derivative of the potential in the factor: reactions on drives less moved
+    loads."""
     slope = bend = 0.0
     for d in range(bodies.held.size):
         slope += space.vectors[REACTION, d] * held_rate[d]

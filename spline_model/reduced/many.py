@@ -56,7 +56,7 @@ NOWHERE = Route(LINE, LINE, LINE, 0.0)
 
 
 class Stations(NamedTuple):
-    """Where strains are asked for: P stations along the strips in place of the Gauss points.
+    """P stations along the strips at which strains [1] are computed, in place of the Gauss points.
 
     along (D, S, P, 11 + K) as in ``Strips``; fibre (D, S, 2): strain of a force and of a moment; strips,
     shape, local: of the stations, the former with the numbers of the design at hand.
@@ -75,12 +75,12 @@ class Stations(NamedTuple):
 
 
 class Share(NamedTuple):
-    """What one thread does of many designs: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
+    """Part of the designs that one thread solves: every ``stride``-th from ``begin`` on, into ``rows`` (D,).
 
-    growing: the route along which weight and pre-strain come on first, without factors where there are none;
-    place: of the reported body's pose; stations: without ``along`` where no strain is asked for; results: the
-    arrays of ``Batch``, states, centre, torque, stiffness, energy, strain, inertia, moment_defect,
-    iterations.
+    growing: the route along which weight and pre-strain grow first, without factors if there are none; place:
+    of the reported body's pose; stations: without ``along`` if no strain is computed; results: the
+    dimensionless arrays of ``Batch``, states, centre, torque, stiffness, energy, strain, inertia,
+    moment_defect, iterations.
     """
 
     rows: NDArray[np.int64]

@@ -106,21 +106,21 @@ class Reduced:
 
 
 def reduced(system: System) -> Reduced | None:
-    """The reduced mechanism of a scene, or None where the element does not know one of its parts.
+    """Return the reduced mechanism of a scene, or None where the element does not know one of its parts.
 
-    Strips of one basis and quadrature, clamped or free at their ends, with bending in the material
-    or the spatial measure. It is made once a system.
+    Strips of one basis and quadrature, clamped or free at their ends, with bending in the material or the
+    spatial measure. It is made once a system.
     """
     made: Reduced | None = system.once("reduced", _reduced)
     return made
 
 
 def require_reduced(system: System) -> Reduced:
-    """The reduced mechanism of a scene; InvalidParameter where there is none."""
+    """Return the reduced mechanism of a scene; InvalidParameter where there is none."""
     model = reduced(system)
-    if model is None and any(e.measure == "printed" for e in system.scene.of(Bending)):
-        expected = "material or spatial: printed forces are of static paths alone"
-        raise InvalidParameter("measure", "printed", expected)
+    if model is None and any(e.measure == "published" for e in system.scene.of(Bending)):
+        expected = "material or spatial: published forces are for static paths only"
+        raise InvalidParameter("measure", "published", expected)
     if model is None:
         raise InvalidParameter("scene", "strips of several kinds", "what the strips' elements know")
     return model
@@ -155,7 +155,7 @@ def _known(scene: Scene) -> bool:
     return (
         len(bases) == 1
         and len(grids) == 1
-        and "printed" not in {measure for _, measure in grids}
+        and "published" not in {measure for _, measure in grids}
         and sorted(e.strip for e in bending) == sorted(strip.name for strip in scene.strips)
         and all(e.flexural_rigidity > 0.0 for e in bending)
         and next(iter(bases)).control_points >= 4
@@ -199,7 +199,7 @@ def _bodies_of(system: System, outer: int) -> Bodies:
 
 
 def in_units(system: System, matrix: Array) -> Array:
-    """A matrix over the poses of all bodies, or (0, 0), over units of work."""
+    """Return a matrix over the poses of all bodies, or (0, 0), over units of work."""
     if not matrix.size:
         return matrix
     unit = np.tile(system.scales.pose, len(matrix) // 3)
@@ -207,7 +207,7 @@ def in_units(system: System, matrix: Array) -> Array:
 
 
 def at_rest(model: Reduced) -> Array:
-    """The state y at rest."""
+    """Return the state y at rest."""
     y, bodies = np.zeros(model.size), model.bodies
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):
@@ -217,7 +217,7 @@ def at_rest(model: Reduced) -> Array:
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:
-    """The states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
+    """Return the states y (..., Y) of unknowns z (..., N) of the scene, whose clamps hold."""
     scene, layout, strips = model.system.scene, model.system.layout, model.strips
     y = np.empty((*z.shape[:-1], model.size))
     for i, body in enumerate(scene.bodies):

@@ -62,7 +62,7 @@ Ends = dict[tuple[str, str], End]
 
 
 def ends_of(system: System) -> Ends:
-    """Both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
+    """Return both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
     scene, free = system.scene, len(system.scene.bodies)
     ends: Ends = {}
     bodies = {body.name: (i, body.centre.tolist()) for i, body in enumerate(scene.bodies)}
@@ -83,18 +83,18 @@ def ends_of(system: System) -> Ends:
 
 
 def in_order(points: Array, shape: Shape) -> Array:
-    """Values at control points (..., n, k) in the order of elimination."""
+    """Return values at control points (..., n, k) in the order of elimination."""
     return np.asarray(points[..., shape.order, :])
 
 
 @lru_cache(maxsize=64)
 def shape_of(basis: Bezier, points: int) -> Shape:
-    """The basis at the Gauss points."""
+    """Return the basis at the Gauss points."""
     return shape_at(basis, *basis.gauss_rule(points))
 
 
 def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
-    """The basis at any points u (P,) with weights."""
+    """Return the basis at any points u (P,) with weights."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
     whole = np.ones(1)
@@ -107,7 +107,7 @@ def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
 def strips_of(
     system: System, shape: Shape, basis: Bezier, points: int, ends: Ends
 ) -> tuple[Strips, Array, Array]:
-    """The strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
+    """Return the strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     parts, bends = list(_mixed_of(scene).values()), bends_of(scene)
     speed, rest = speeds_of(scene, shape, length)
@@ -137,7 +137,7 @@ def strips_of(
 
 
 def bends_of(scene: Scene) -> list[Bending]:
-    """The bending of each strip."""
+    """Return the bending of each strip."""
     bends = {e.strip: e for e in scene.of(Bending)}
     return [bends[strip.name] for strip in scene.strips]
 
@@ -151,7 +151,8 @@ def _mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
 
 
 def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes: Array) -> Array:
-    """What changes along the strips (S, P, 11 + K), at the points of a shape; speeds: as of ``speeds_of``."""
+    """Return what changes along the strips (S, P, 11 + K), at the points of a shape; speeds: as of
+    ``speeds_of``."""
     scene, length, energy = system.scene, system.scales.length, system.scales.energy
     bends, u, degree = bends_of(scene), shape.rule[WHERE], scene.strips[0].basis.degree
     (speed, rest), at = speeds, u.tobytes()
@@ -202,7 +203,7 @@ def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
 
 
 def speeds_of(scene: Scene, shape: Shape, length: float) -> tuple[Array, Array]:
-    """Speed and curvature (S, P) at rest of a scene's strips, over a length."""
+    """Return speed and curvature (S, P) [1] at rest of a scene's strips, over a length [m]."""
     points = np.array([strip.control_points for strip in scene.strips]) / length
     curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(points, shape)
     (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]

@@ -90,7 +90,7 @@ def _accepted(y, known, arrays):
 
 @part()
 def work_of(width, slope0, slope1, bend0, bend1):
-    """Gain of a potential over a step, from its first and second derivatives at both ends."""
+    """Return the gain of a potential over a step, from its first and second derivatives at both ends."""
     return 0.5 * width * (slope0 + slope1) + width * width / 12.0 * (bend0 - bend1)
 
 

@@ -58,7 +58,7 @@ class Preload(NamedTuple):
 
 
 def apart(model: Reduced) -> tuple[Bodies, Strips]:
-    """Bodies and strips whose weight and pre-strain may be overwritten by ``act``."""
+    """Return the bodies and strips whose weight and pre-strain may be overwritten by ``act``."""
     strips = model.strips._replace(along=model.strips.along.copy(), numbers=model.strips.numbers.copy())
     return model.bodies._replace(weight=model.bodies.weight.copy()), strips
 
@@ -79,7 +79,8 @@ def act(share, preload, bodies, strips):
 
 @called()
 def swell(y, share, preload, arrays):
-    """Rate of a state, just solved, in the share, in ``space``; first and second derivative of its potential.
+    """Return the rate of a state, just solved, in the share, in ``space``; first and second derivative of its
+    potential.
 
     Energies are squares of the share, so that differences over a whole share are exact. The state is
     condensed as ``assemble`` left it, its gradients are overwritten.

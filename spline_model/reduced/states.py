@@ -60,7 +60,7 @@ def _place_all(y, arms, bodies, shape, strips, local, out, points, forces):
 
 
 def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None = None) -> Array:
-    """The scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
+    """Return the scene's unknowns (S, N) at states y (S, Y) with reactions on the drives (S, D).
 
     clamped (S, G, 2, 3): what the clamps do to the strips; by default what holds them in equilibrium.
     """
@@ -96,7 +96,8 @@ def unknowns_of(model: Reduced, y: Array, reaction: Array, clamped: Array | None
 
 
 def body_tangents(model: Reduced, y: Array, load: Array) -> Array:
-    """Tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors (S,), in EI/L.
+    """Return the tangents (S, Q, Q) at the bodies with all strips condensed at y (S, Y) and load factors
+    (S,), in EI/L.
 
     nan of a singular strip.
     """
@@ -221,7 +222,8 @@ def _add_strip(s, at, y, strips, shape, local, out, gradient, hessian):
 
 
 def section_forces(model: Reduced, y: Array) -> tuple[Array, Array]:
-    """Axial force and moment (S, G, P), in EI/L^2 and EI/L, at states y (S, Y) and the model's points."""
+    """Return the axial force and moment (S, G, P), in EI/L^2 and EI/L, at states y (S, Y) and the model's
+    points."""
     force, moment = np.zeros((2, len(y), *model.strips.speed.shape), dtype=y.dtype)
     _all_forces(y, len(model.bodies.rest), model.strips, model.shape, model.local(), force, moment)
     return force, moment
@@ -241,7 +243,8 @@ def _all_forces(y, poses, strips, shape, local, force, moment):
 
 
 def coordinates_by(model: Reduced, y: Array) -> Array:
-    """dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines them."""
+    """Return dq/dy (Q, Y) at a state y (Y,): control points [m] and bodies of the scene by what determines
+    them."""
     rows = y + 1j * STEP * np.eye(len(y))
     moved = unknowns_of(_stepped(model), rows, np.zeros((len(y), len(model.bodies.held))))
     return np.asarray(moved.imag[:, : model.system.layout.coordinate_count].T / STEP)

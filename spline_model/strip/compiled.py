@@ -105,7 +105,7 @@ def _say_unkept():
 
 
 def kernel(*, pipeline_class=_Short, entered=False, **options):
-    """Decorator of a function that works on given arrays only and is called from Python.
+    """Return the decorator of a function that works on given arrays only and is called from Python.
 
     entered: a part is called from Python too; with two callers it stays a function of its own.
     """
@@ -115,7 +115,7 @@ def kernel(*, pipeline_class=_Short, entered=False, **options):
     def decorated(function):
         try:
             made = compiled(cache=True)(function)
-        except RuntimeError:  # of numba, which finds nowhere to keep it
+        except RuntimeError:  # numba has no folder in which it can store the kernel
             _say_unkept()
             made = compiled()(function)
         if isinstance(made, CPUDispatcher):
@@ -151,7 +151,7 @@ def copy(source, target):
 
 
 def aligned(*shapes: tuple[int, ...], dtype: np.dtype[Any] | type = float) -> list[NDArray[Any]]:
-    """Arrays of zeros that begin with a line of the cache: a vector of eight across two takes longer."""
+    """Return arrays of zeros (one per shape, in any unit) that begin at a cache line, for fast vectors."""
     places, count = _places(shapes)
     room = np.zeros(count + 8, dtype=dtype)
     room = room[-room.ctypes.data % 64 // room.itemsize :]

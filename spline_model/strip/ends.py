@@ -70,7 +70,7 @@ def to_coordinates(s, v, last, ends, strips, out):
 
 @part()
 def rates_of_end(s, e, rate, strips):
-    """Rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
+    """Return the rates of what an end, e: 0 the root, 1 the tip, goes by: shift and turn of its body."""
     body = strips.tips[s] if e else strips.roots[s]
     x = y = turn = 0.0
     if body >= 0:

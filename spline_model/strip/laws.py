@@ -21,7 +21,7 @@ TERMS = 7
 
 @called()
 def nearly_flat(y):
-    """f, h and h + x h' / 2 of ``curl_law`` by y = x^4 below 1: quotients of power series."""
+    """Return f, h and h + x h' / 2 of ``curl_law`` by y = x^4 below 1: quotients of power series."""
     n0 = 1.0 + y * (1.0 / 360.0 + y * (1.0 / 1814400.0 + y * (1.0 / 43589145600.0)))
     n1 = 1.0 / 360.0 + y * (1.0 / 907200.0 + y * (1.0 / 14529715200.0))
     n2 = 1.0 / 907200.0 + y * (1.0 / 7264857600.0)
@@ -36,7 +36,7 @@ def nearly_flat(y):
 
 @called()
 def curled(x):
-    """The same by x of 1 and more: exponentials over the largest."""
+    """Return the same by x of 1 and more: exponentials over the largest."""
     small = np.exp(-x)
     c, s = 2.0 * small * np.cos(x), 2.0 * small * np.sin(x)
     small *= small
@@ -50,7 +50,7 @@ def curled(x):
 
 @called()
 def curl_parts(f, h, t, drop):
-    """Factors of energy, moment and tangent of ``curl_law`` by f, h and h + x h' / 2."""
+    """Return the factors of energy, moment and tangent of ``curl_law`` by f, h and h + x h' / 2."""
     p = d = e = rest = 0.0 * (f + drop[0])
     for k in range(len(drop) - 1, -1, -1):
         p, d, e, rest = drop[k] + f * p, p + f * d, d + f * e, rest + drop[k]
@@ -65,15 +65,15 @@ def curl_parts(f, h, t, drop):
 
 @called()
 def curl_law(b, drop, curl):
-    """How the flattening of a strip that curls across its width multiplies energy, moment and tangent.
+    """Return how the flattening of a strip that curls across its width multiplies energy, moment and tangent.
 
     The energy density is 1/2 R b^2 (1 - P(f(x))) / (1 - P(1)), x^2 = curl |b|, and R the rigidity at b = 0:
 
         f = (2 / x) (cosh x - cos x) / (sinh x + sin x),      h = f + x f' / 4,
 
     f is the share of the curl that is left. P (drop) are the coefficients of f, f^2, ...: nu^2 alone, or what
-    clamps leave of it. Moment and tangent follow by the derivatives of P. f is smooth in y = x^4.
-    Source: Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
+    clamps leave of it. Moment and tangent follow by the derivatives of P. f is smooth in y = x^4. Source:
+    Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
     """
     y = curl * curl * b * b
     f, h, t = nearly_flat(y) if y.real < 1.0 else curled(np.sqrt(np.sqrt(y)))
@@ -81,7 +81,7 @@ def curl_law(b, drop, curl):
 
 
 def curl_factors(b: Any, drop: Any, curl: Any) -> Any:
-    """``curl_law`` of arrays, real or complex, with drop (P, K): factors (3, P, ...)."""
+    """Return ``curl_law`` of arrays, real or complex, with drop (P, K): factors (3, P, ...)."""
     near, far, parts = (getattr(each, "py_func", each) for each in (nearly_flat, curled, curl_parts))
     y = np.asarray(curl * curl * b * b)
     small = y.real < 1.0
@@ -92,10 +92,10 @@ def curl_factors(b: Any, drop: Any, curl: Any) -> Any:
 
 @part()
 def bending_law(phi, v, speed, curvature, rigidity, measure):
-    """Energy, its derivatives in phi (the moment), phi phi, phi v, v and v v, but for ``curl_law``.
+    """Return the energy, its derivatives in phi (the moment), phi phi, phi v, v and v v, but for
+    ``curl_law``.
 
-    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0
-    spatial (1)   1/2 EI (phi / v - kappa_0)^2 v     (Eq 10)
+    material (0)  1/2 EI (phi / J0 - kappa_0)^2 J0 spatial (1)   1/2 EI (phi / v - kappa_0)^2 v     (Eq 10)
     """
     if measure == MATERIAL:
         b = phi / speed - curvature
@@ -114,7 +114,7 @@ def bending_law(phi, v, speed, curvature, rigidity, measure):
 
 @part()
 def stretching_law(v, speed, strain0, rigidity, measure):
-    """Stretching by quadrature of the strain: energy, its derivatives in v and v v (Eq 13)."""
+    """Return the stretching by quadrature of the strain: energy, its derivatives in v and v v (Eq 13)."""
     eps = v / speed - 1.0 - strain0
     if measure == MATERIAL:
         return 0.5 * rigidity * eps * eps * speed, rigidity * eps, rigidity / speed
@@ -127,13 +127,14 @@ def stretching_law(v, speed, strain0, rigidity, measure):
 
 @part()
 def mixed_law(v, speed, strain0):
-    """Mixed stretching, N eps J0: its derivative in N, eps J0, whose own in v is 1; the one in v is N."""
+    """Return the mixed stretching, N eps J0: its derivative in N, eps J0, whose own in v is 1; the one in v
+    is N."""
     return (v / speed - 1.0 - strain0) * speed
 
 
 @part()
 def axial_laws(v, speed, strain, count, stretching, force, measure):
-    """Stretching, mixed or by quadrature: stored energy, its derivatives in v, v v and N.
+    """Return the stretching, mixed or by quadrature: stored energy, its derivatives in v, v v and N.
 
     force: N. The mixed form's energy is that of its forces' compliances, which is not in it.
     """

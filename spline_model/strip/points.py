@@ -41,7 +41,7 @@ from spline_model.strip.laws import (
 
 @part()
 def four(lanes, first):
-    """Four rows from one on, apart."""
+    """Return the four rows from one on, apart."""
     return lanes[first], lanes[first + 1], lanes[first + 2], lanes[first + 3]
 
 

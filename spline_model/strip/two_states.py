@@ -32,13 +32,14 @@ def _powers_between(v0, v1):
 
 @part()
 def bending_strain(c, v, speed, curvature):
-    """The strain b of bending, in the material measure."""
+    """Return the strain b of bending, in the material measure."""
     return c / (v * v * speed) - curvature
 
 
 @called()
 def mean_moment(e0, e1, drop, curl):
-    """Mean over R of the moment of ``curl_law`` between two strains, and its derivative in the second.
+    """Return the mean over R of the moment of ``curl_law`` between two strains, and its derivative in the
+    second.
 
     Times the change of the strain it is that of the energy to round-off: by Gauss's rule of four points,
     which has no difference of energies, and over more than the law's own width by that difference.
@@ -104,7 +105,8 @@ def _of_product(
 
 @part()
 def bending_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, rigidity, drop, curl, rate):
-    """Discrete gradient (4 numbers) of bending in (x', y', x'', y''), and its derivative (4 x 4, by rows).
+    """Return the discrete gradient (4 numbers) of bending in (x', y', x'', y''), and its derivative (4 x 4,
+    by rows).
 
     a0, b0, a2, b2: C' and C'' of the first state; x1, y1, x2, y2 of the second.
     """
@@ -130,6 +132,6 @@ def bending_between(a0, b0, a2, b2, v0, x1, y1, x2, y2, v1, speed, curvature, ri
 
 @part()
 def stretching_between(v0, v1, speed, strain0, rigidity, rate):
-    """Stretching by quadrature: the force along Dv and its derivative in v1."""
+    """Return the stretching by quadrature: the force along Dv and its derivative in v1."""
     e0, e1, share = v0 / speed - 1.0 - strain0, v1 / speed - 1.0 - strain0, 0.5 + rate
     return rigidity * (0.5 * (e0 + e1) + rate * (e1 - e0)), rigidity * share / speed

@@ -65,30 +65,32 @@ def answer_release(
     swings: bool = True,
     **options: Any,
 ) -> Motion:
-    """Let a design go at rest from a static state and follow the motion.
+    """Release a design at rest from a static state and return its motion.
 
     The start is in equilibrium with the body driven to a rotation, weight and pre-strain in full, and every
     load and driven displacement at its value times its history at t = 0. Then the rotation is released,
     unless the design prescribes it further, and driven displacements without a history; loads follow their
     histories.
 
-    `wall_s` of the motion is the median time of `repeat` whole calls, as of `answer_static`: the static path
-    to the start is part of them, a companion motion is not. `solve_s` is of the steps alone.
+    `wall_s` of the motion is the median time [s] of `repeat` whole calls, as of `answer_static`: it includes
+    the static path to the start, but no companion motion. `solve_s` is the time of the steps only [s].
 
     Args:
-        design: the pivot or mechanism; of one without a rotation none is driven: it begins where all that
-            acts at t = 0 settles it.
-        settings: names the model and its discretisation.
+        design: the pivot or mechanism. If the design has no rotation, none is driven: the motion starts at
+        the
+            equilibrium under everything that acts at t = 0.
+        settings: the model and its discretisation.
         duration: of the motion [s].
         start: rotation at the start [rad]; None for the end of the design's path.
         repeat: timed releases [1].
-        check: whether a companion motion says how far the model's control points, or elements, resolve it.
-        swings: whether a body must be there, whose swing is told; if not, strips alone are followed too.
+        check: whether a companion motion estimates how well control points, or elements, resolve the motion.
+        swings: whether a body is required, whose free vibration is reported; if not, strips without bodies
+            are followed too.
         options: `step` [s], `integrator`, `accuracy` [rad] and the largest number of `records`, which the
-            model checks; None for its own choice.
+            model checks; None for its default.
 
     Raises:
-        BadInput: a setting or option that the model refuses, a design without bodies; one line.
+        BadInput: a setting or option that the model rejects, or a design without bodies; one line.
     """
     if design.body is None and swings:
         expected = "`export --analysis release` has the motion of strips alone"
@@ -197,14 +199,14 @@ FORMS = {"StaticSolution": Response, "Trajectory": Motion, "Modes": Spectrum}
 
 
 def answer_of(solution: Any, modelled: Any) -> Answer:
-    """Return the neutral answer to what a model was asked directly.
+    """Return the neutral answer of a solution that a model returned directly.
 
     Args:
         solution: static solution, trajectory or modes of `spline_model` or `fe_reference`.
-        modelled: the pivot or mechanism of the model that it is of; it has stress where sections have sides.
+        modelled: its pivot or mechanism in the model. The answer has a stress if the sections have sides.
 
     Raises:
-        BadInput: something else, or of two models; one line.
+        BadInput: another object, or parts of two models; one line.
     """
     package = type(solution).__module__.partition(".")[0]
     form: Any = FORMS.get(type(solution).__name__)

@@ -19,13 +19,16 @@ CHOSEN = ("accuracy", "segments", "control_points", "trials", "meshes")
 
 
 def read_only(array: Array) -> Array:
-    """Return the array, no longer to be written."""
+    """Return the array, of any shape and unit, after a change of its flag: it cannot be written any more."""
     array.flags.writeable = False
     return array
 
 
 def own(name: str) -> "cached_property[Array]":
-    """Return the property that is an array of the model's own answer; empty where there is no answer."""
+    """Return the property that is an array of the model's own answer, in its shape and unit.
+
+    The array is empty (0,) where there is no answer.
+    """
     return cached_property(
         lambda answer: read_only(np.array(getattr(answer.solution, name, ()), dtype=float))
     )
@@ -33,17 +36,17 @@ def own(name: str) -> "cached_property[Array]":
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What a model answers, and how that came about; its arrays run over S states.
+    """Neutral answer of a model, with its settings and status; arrays run over S states.
 
     Attributes:
-        asked: the design as it was put to the model.
-        solution: the model's own answer; None where there is none.
-        status: "converged", or how it ended early; `message` says why and where or when, or what a path that
-            reached its end has passed.
-        resolution: what too coarse a discretisation or step leaves uncertain; empty where it is resolved, and
-            of a model that cannot tell.
-        wall_s: time of the whole call, from the design to the answer [s]; solve_s: of it, the increments or
-            steps alone [s].
+        asked: the design in the form of the model.
+        solution: the model's own answer; None if there is none.
+        status: "converged", or how the solution ended early; `message` has the reason and the place or time,
+            or critical points that a complete path has passed.
+        resolution: message on errors of a discretisation or step that is too coarse; empty if it is resolved,
+            or if the model has no such check.
+        wall_s: time of the whole call, from the design to the answer [s]; solve_s: time of the increments or
+            steps only [s].
     """
 
     #: "static", "release" or "modes"; name of what runs over the states, and parts of the energy.
@@ -61,7 +64,8 @@ class Answer:
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's own answer; `given` are its times, and what else is known."""
+        """Return the neutral form of a model's own answer; `given` are its times [s] and other known
+        attributes."""
         ended = {
             "status": str(result.status.value),
             "message": result.message,
@@ -86,23 +90,23 @@ class Answer:
 
     @property
     def crossing(self) -> tuple[float, float] | None:
-        """Where a pivot's strips cross at rest [m]; None of a mechanism."""
+        """Point x, y [m] where a pivot's strips cross at rest; None for a mechanism."""
         return self.design.crossing_point
 
     @cached_property
     def settings(self) -> dict[str, Any]:
-        """Discretisation keywords, and what the model chose beside them."""
+        """Discretisation keywords, and settings that the model chose."""
         return self.asked.discretised(self.solution)
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of what was assembled: of a static path, which has no inertia, without what moves alone."""
+        """Names of the assembled effects; a static path has no effects of inertia and damping."""
         moving = self.analysis in ("release", "modes")
         return tuple(each for each in self.asked.effects if moving or each not in MOTION_ONLY)
 
     @cached_property
     def estimate(self) -> dict[str, Any] | None:
-        """What a model that was asked for an accuracy says of its error, by name; None otherwise."""
+        """Estimated errors of a model that was given an accuracy, by name [1]; None otherwise."""
         parts = getattr(self.solution, "estimate", None)
         if parts is None:
             return None
@@ -116,28 +120,28 @@ class Answer:
 
     @property
     def converged(self) -> bool:
-        """Whether all that was asked for was reached."""
+        """Whether all requested states were reached."""
         return self.status == "converged"
 
     def whole(self) -> Self:
-        """Return the answer; Unanswered unless all that was asked for was reached."""
+        """Return the answer; Unanswered unless all requested states were reached."""
         if not self.converged:
             raise Unanswered(self.message)
         return self
 
     @property
     def errors(self) -> dict[str, float]:
-        """Estimated errors by name, NaN of what there is none of; empty where nothing estimates them."""
+        """Estimated errors by name [1]; NaN where no error is estimated, empty if none is."""
         return {name: float(e) for name, e in (self.estimate or {}).items() if name not in CHOSEN}
 
     @property
     def largest_error(self) -> float:
-        """The largest estimated error; NaN where nothing estimates one."""
+        """Largest estimated error [1]; NaN if no error is estimated."""
         return float(np.fmax.reduce([math.nan, *self.errors.values()]))
 
     @property
     def counters(self) -> dict[str, int]:
-        """Work done, by kind; modes count nothing."""
+        """Operation counts by kind [1]; empty for modes."""
         return dict(getattr(self.solution, "counters", {}))
 
     @cached_property
@@ -159,18 +163,18 @@ class Answer:
 
     @property
     def driven(self) -> bool:
-        """Whether it is of a path along which a rotation is driven."""
+        """Whether the answer is a path with a driven rotation."""
         return False
 
     @property
     def values(self) -> Array:
-        """(S,) of what runs over the states: load factor [1], time [s] or number of the mode [1]."""
+        """Coordinate of the states (S,): load factor [1], time [s] or number of the mode [1]."""
         found: Array = getattr(self, self.series.removesuffix("_s"))
         return found
 
     @property
     def energies(self) -> dict[str, Array]:
-        """(S,) parts of the energy by name [J]."""
+        """Parts of the energy (S,) by name [J]."""
         return {name: getattr(self, f"{name}_energy") for name in self.parts}
 
     @cached_property
@@ -215,9 +219,9 @@ class Answer:
 
     @property
     def shift(self) -> Array | None:
-        """(S,) distance that the body's point in the crossing of the strips moves [m].
+        """Distance (S,) that the body point at the strip crossing moves [m].
 
-        None of a design that is not one body on two strips from the ground whose chords cross.
+        None unless the design is one body on two strips from the ground whose chords cross.
         """
         crossing, bodies = self.design.crossing_of_chords, self.along.bodies
         if crossing is None:
@@ -249,10 +253,10 @@ def centre_shift(crossing: Any, rotation: Array, centre: Array, rest: Array | No
 
 
 def shift_error(error: Array, centre: Array, shift: Array) -> Array:
-    """Return errors of centre shifts (D, S, 2) [m] of D paths to given turns, over the largest (D,) [1].
+    """Return relative errors (D,) [1] of centre shifts (D, S, 2) [m] of D paths with prescribed rotations.
 
-    The shift errs as the centre (D, S, 2) does, `error` in parts of its largest displacement, but it is much
-    smaller, so that it errs more. nan where nothing shifts.
+    error (D,): relative error of the centre (D, S, 2) [m]. The shift has the same absolute error, but it is
+    much smaller, so that its relative error is larger; nan if nothing shifts.
     """
     moved, shifted = (
         np.fmax.reduce(np.linalg.norm(each, axis=2), axis=1) for each in (centre - centre[:, :1], shift)

@@ -41,10 +41,10 @@ UNSTABLE, NONE = "unstable at zero force", ""
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalLoad(Answer):
-    """The first force that a design does not bear, in one direction.
+    """The smallest force in one direction at which a design loses stability.
 
-    Its status is "converged" where two discretisations agree, on a force or on none; else its message says
-    what each of them has.
+    The status is "converged" if two discretisations agree on a force, or on none; otherwise the message has
+    the result of each.
 
     Attributes:
         direction: of the force [rad], from x to y; held: whether the body is kept from turning.
@@ -53,9 +53,10 @@ class CriticalLoad(Answer):
         turned: rotation of the body there [rad], NaN where weight alone is too much; turned_error: how far
             the last two discretisations are apart in it [rad]; NaN where they are not resolved.
         kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
-        uncertainty: of force or share, relative [1]; NaN where there is none.
-        soft, yields: force at which the rotation passes SOFT, and at which a strip yields [N], where no
-            critical load is found; None where they do not. softer: relative uncertainty of both [1].
+        uncertainty: relative, of force or share [1]; NaN if unknown.
+        soft, yields: force at which the rotation exceeds SOFT, and at which a strip yields [N], if no
+        critical
+            load is found; None otherwise. softer: relative uncertainty of both [1].
     """
 
     analysis = "critical load"
@@ -75,13 +76,14 @@ class CriticalLoad(Answer):
 
     @property
     def value(self) -> float:
-        """What discretisations are compared by: the share of the weight, the force, or the rotation."""
+        """Number that discretisations are compared by: the share of the weight [1], force [N], or rotation
+        [rad]."""
         if self.kind == UNSTABLE:
             return self.preload
         return self.turned if self.force is None else self.force
 
     def apart(self, other: "CriticalLoad") -> float:
-        """Return the relative difference to another discretisation; inf where the verdicts differ."""
+        """Return the relative difference [1] to another discretisation; inf if the verdicts differ."""
         if not (self.converged and other.converged) or self.kind != other.kind:
             return math.inf
         if self.kind == NONE:
@@ -90,7 +92,7 @@ class CriticalLoad(Answer):
 
     @property
     def verdict(self) -> str:
-        """What was found, in words."""
+        """The result in words."""
         if not self.converged:
             return f"stops at {self.reached:.6g} N"
         if self.kind == UNSTABLE:
@@ -164,10 +166,11 @@ def critical_load(
     Args:
         design: the pivot or mechanism. settings: of the model.
         direction: of the force in the axes of the ground [rad].
-        held: whether the rotation of the body is held.
+        held: whether the rotation of the body is locked.
         body: its name; None for that of the case.
 
-    Raises BadInput for what the model refuses, and for a design without bodies.
+    Raises:
+        BadInput: an input that the model rejects, or a design without bodies; one line.
     """
     known, name = [each.name for each in design.bodies], body or design.body
     if name not in known:

@@ -27,9 +27,9 @@ STILL = 1e-10
 
 
 def cubic(places: Array, values: Array) -> Any:
-    """Return the cubic spline through values (S, ...) at places (S,).
+    """Return the cubic spline through values (S, ...), of any unit, at places (S,) of any unit.
 
-    Its import is here, for that takes longer than a path to solve.
+    The import is local, because it takes longer than the solution of a path.
     """
     from scipy.interpolate import CubicSpline
 
@@ -75,10 +75,12 @@ def relative_error(values: Array, reference: Array) -> Array:
 
 
 def observed_order(coarse: float, fine: float, ratio: float = 2.0) -> float:
-    """Return log(e_coarse / e_fine) / log(ratio): the order at which an error falls when a mesh is refined by
-    `ratio`.
+    """Return log(e_coarse / e_fine) / log(ratio) [1]: the observed order of convergence.
 
-    NaN when either error is zero or not finite.
+    Args:
+        coarse, fine: errors in one unit. ratio: refinement between them [1].
+
+    NaN if either error is zero or not finite.
     """
     if not (0.0 < abs(coarse) < math.inf and 0.0 < abs(fine) < math.inf):
         return math.nan
@@ -143,8 +145,8 @@ def quasi_static_frequency(
 
         T = 4 integral_0^Theta sqrt((J + m |dg/dtheta|^2) / (2 (U(Theta) - U(theta)))) dtheta
 
-    with theta = Theta sin(phi), which takes the singularity at the end away. Leaves out the inertia of the
-    strips; exact for massless strips of a design whose path is symmetric about rest.
+    with theta = Theta sin(phi), which removes the singularity at the end. Neglects the inertia of the strips;
+    exact for massless strips of a design whose path is symmetric about rest.
 
     Args:
         rotation: (S,) from 0 to the amplitude Theta [rad], one sign.
@@ -250,7 +252,11 @@ def swing_frequency(time: Array, value: Array) -> Frequency:
 
 
 def passages(time: Array, value: Array, rest: float) -> Array:
-    """Return the instants (N,) at which `value` passes the rest from one side of the band to the other."""
+    """Return the instants (N,) [s] at which `value` (T,) passes the rest from one side of the band to the
+    other.
+
+    time (T,) [s]; rest: in the unit of `value`.
+    """
     apart = value - rest
     band = BAND * math.sqrt(2.0) * float(np.std(value))
     outside = np.flatnonzero(np.abs(apart) > band)

@@ -12,8 +12,10 @@ from studies.errors import BadInput
 
 
 def model_of(settings: Settings) -> Any:
-    """Return the package of the settings' model; both have the same public names. The other one is not even
-    imported."""
+    """Return the package of the settings' model; both packages have the same public names.
+
+    Only this package is imported.
+    """
     if isinstance(settings, FeSettings):
         import fe_reference
 
@@ -24,8 +26,11 @@ def model_of(settings: Settings) -> Any:
 
 
 def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]:
-    """Return what makes the fields along the strips from a design in the model and the states of a path
-    ("static"), of a motion ("release"), or of what modes are about ("modes")."""
+    """Return the function that computes fields along the strips from a design in the model and states.
+
+    analysis: "static" for states of a path, "release" for states of a motion, "modes" for the static state of
+    modes. The fields are those of `studies.answers.answer.Answer.along`.
+    """
     if isinstance(settings, FeSettings):
         from fe_reference import strip_fields
 
@@ -37,11 +42,11 @@ def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]
 
 @dataclass(frozen=True)
 class Asked:
-    """A design as it is put to a model: what the functions of the model take, and how they refuse it.
+    """A design in the form of a model, with the calls of the model and the translation of its errors.
 
     Attributes:
         design: of the case; settings: of the model.
-        moving: whether it is asked in motion, where a spline has another slide stiffness.
+        moving: whether the design is used in a motion, where a spline has another penalty stiffness.
         modelled: the design in the model.
     """
 
@@ -57,13 +62,15 @@ class Asked:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of the effects, as the model took them."""
+        """Names of the effects that the model uses."""
         effects = getattr(self.modelled, "mechanism", self.modelled).effects
         return tuple(getattr(effects, "names", effects))
 
     def discretised(self, result: Any) -> dict[str, Any]:
-        """Return the keywords of the discretisation that a result was reached with, and what else the model
-        has set: control points or elements among them that it has chosen for its accuracy."""
+        """Return the keywords of the discretisation of a result, and other settings that the model chose.
+
+        Control points or elements that were chosen for an accuracy are among them.
+        """
         given = self.settings.keywords()
         if meshes := getattr(getattr(result, "estimate", None), "meshes", ()):
             given["elements"] = meshes[-1]
@@ -73,8 +80,8 @@ class Asked:
         return _keywords(self.model, given, self.moving) | dict(getattr(result, "settings", {}))
 
     def fine(self, result: Any) -> Any:
-        """Return the design in the model as a result was reached: in motion, with the control points or
-        elements that an accuracy has taken."""
+        """Return the design in the model with the discretisation of a result, also of a motion with an
+        accuracy."""
         asked = self.modelled
         if hasattr(asked, "in_motion"):
             grid = asked.design.discretisation
@@ -90,7 +97,7 @@ class Asked:
 
     @contextmanager
     def refusals(self) -> Iterator[None]:
-        """Turn what the model refuses into one line."""
+        """Raise BadInput, in one line, for an error of the model."""
         try:
             yield
         except self.model.InvalidParameter as error:
@@ -99,11 +106,11 @@ class Asked:
     def static_path(self, **how: Any) -> Any:
         """Return the model's static solution.
 
-        The path is the design's own, unless `rotation`, `increments` or `order` say otherwise; the other
+        The path is the design's own unless `rotation` [rad], `increments` or `order` are given; the other
         keywords are those of the model.
 
         Raises:
-            BadInput: what the model refuses; one line.
+            BadInput: an input that the model rejects; one line.
         """
         design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
@@ -112,10 +119,10 @@ class Asked:
 
 
 def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
-    """Return the design as the settings' model has it, discretised for a motion if it is `moving`.
+    """Return the design in the form of the settings' model, discretised for a motion if it is `moving`.
 
     Raises:
-        BadInput: a setting or an effect that the model refuses; one line.
+        BadInput: a setting or an effect that the model rejects; one line.
     """
     asked = Asked(design, settings, moving, None)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
@@ -127,7 +134,7 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
 
 
 def _keywords(model: Any, given: dict[str, Any], moving: bool) -> dict[str, Any]:
-    """Return keywords of a discretisation with the slide stiffness of control points that are in motion."""
+    """Return keywords of a discretisation with the penalty stiffness of control points that are in motion."""
     if not moving or "control_points" not in given:
         return given
-    return {"slide_stiffness": model.swinging_slide_stiffness(given["control_points"])} | given
+    return {"penalty_stiffness": model.motion_penalty_stiffness(given["control_points"])} | given

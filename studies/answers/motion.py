@@ -53,11 +53,11 @@ class _SignalMode(NamedTuple):
 
 
 def signal_modes(time: Array, value: Array) -> list[_SignalMode]:
-    """Return the modes that a record (T,) contains at equal instants (T,) [s], the largest first.
+    """Return the modes of a record `value` (T,) [rad] at equally spaced instants (T,) [s], the largest first.
 
-    Lines of its spectrum, with a Hann window, begin a fit of sines by least squares. Lines nearer than the
-    width of one to a larger one are that one's, and so are multiples of its frequency. A record of less than
-    one and a half periods has none.
+    Lines of its spectrum, with a Hann window, start a fit of sines by least squares. A line that is nearer
+    than the width of a line to a larger one belongs to the larger one, and so do multiples of its frequency.
+    A record of less than one and a half periods has no modes.
     """
     count = len(value)
     if count < FEWEST or float(np.ptp(value)) <= metrics.STILL:
@@ -145,32 +145,33 @@ class Motion(Answer):
 
     @property
     def dissipated_energy(self) -> Array:
-        """(T,) lost since the start [J]."""
+        """Energy (T,) dissipated since the start [J]."""
         return self.dissipated
 
     @cached_property
     def constraint_residual(self) -> Array:
-        """(T,) largest gap of clamps [m]; zero where constraints are kept exactly."""
+        """Largest gap of clamps (T,) [m]; zero if constraints are eliminated exactly."""
         return read_only(np.array(getattr(self.solution, "constraint_residual", 0.0 * self.time)))
 
     @property
     def starts_still(self) -> bool:
-        """Whether it starts at rest in equilibrium, to the round-off of the problem."""
+        """Whether the motion starts at rest in equilibrium, to round-off."""
         return bool(getattr(self.solution, "starts_still", False))
 
     @property
     def rotation_error(self) -> float:
-        """Estimated error of the rotations of all bodies [rad], by companion motions; NaN without."""
+        """Estimated error of the rotations of all bodies [rad], by companion motions; NaN without them."""
         return float(getattr(self.solution, "rotation_error", math.nan))
 
     @property
     def displacement_error(self) -> float:
-        """Estimated error of the places of all bodies and free ends [m], as that of the rotations."""
+        """Estimated error of the places of all bodies and free ends [m], by companion motions; NaN without
+        them."""
         return float(getattr(self.solution, "displacement_error", math.nan))
 
     @property
     def balance(self) -> Array:
-        """(T,) energy in the design, less the work of loads and with what was lost: constant [J]."""
+        """Energy (T,) of the design, less the work of loads, plus the dissipated energy [J]: constant."""
         stored = self.kinetic_energy + self.strain_energy
         return np.asarray(stored + self.gravity_energy - self.work + self.dissipated)
 
@@ -192,9 +193,9 @@ class Motion(Answer):
 
     @property
     def swing(self) -> Frequency:
-        """Frequency of the rotation's swing about its rest, or why there is none.
+        """Frequency of the free vibration of the rotation, or the reason why there is none.
 
-        There is none where no single mode carries the rotation.
+        There is none if no single mode dominates the rotation.
         """
         if len(self.modes) > 1 and self.modes[1].amplitude_rad > CARRIED * self.modes[0].amplitude_rad:
             parts = (f"{f:.5g} Hz ({math.degrees(a):.3g} deg)" for f, a in self.modes)
@@ -204,13 +205,12 @@ class Motion(Answer):
 
     @property
     def frequency(self) -> float:
-        """Frequency of the rotation's swing about its rest [Hz]; NaN without a whole swing of one mode."""
+        """Frequency of the free vibration of the rotation [Hz]; NaN without a whole period of one mode."""
         return self.swing.value
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's trajectory; one without a part of the design's energy in it
-        stands still, which is its message."""
+        """Return the neutral form of a model's trajectory; a message states if nothing moves."""
         found = super().of(asked, result, **given)
         kinetic = float(found.kinetic_energy.max(initial=0.0))
         if not len(found.time) or kinetic > STILL * flexural_scale(asked.design):
@@ -256,15 +256,17 @@ class Spectrum(Answer):
 
     @property
     def body_shapes(self) -> Array:
-        """(F, 3) those of the body that is driven or may be; zero without one."""
+        """Displacement (F, 3) x, y [m] and rotation [rad] of the driven or only body; zero without one."""
         if self.body is None:
             return np.zeros((len(self.frequency), 3))
         return self.mode_bodies[:, [each.name for each in self.design.bodies].index(self.body)]
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's modes, None where statics does not reach the state; it says
-        where an accuracy is missed that the control points or elements were chosen for."""
+        """Return the neutral form of a model's modes, without a solution if statics does not reach the state.
+
+        A message states an accuracy that was not reached.
+        """
         status = "not_converged" if result is None else "converged"
         found = cls(asked=asked, solution=result, status=status, **given)
         accuracy = (found.estimate or {}).get("accuracy", math.inf)

@@ -29,25 +29,29 @@ Moved = Callable[[Any], Array]
 
 
 def named(design: Design) -> tuple[Quantity, ...]:
-    """Return the quantities of the named parts of a design; none of a plain pivot."""
+    """Return the quantities of the named parts of a design; a plain pivot has none."""
     return (*_reactions(design), *_free_ends(design), *_points(design), *_springs(design), *_drift(design))
 
 
 def quantities_of(answer: Any) -> Iterator[tuple[Quantity, Array]]:
-    """Yield the quantities of an answer with their values (S,)."""
+    """Yield the quantities of an answer with their values (S,), in the SI unit of each quantity."""
     for quantity in (*QUANTITIES, *named(answer.design)):
         if answer.analysis in quantity.analyses:
             yield quantity, np.asarray(quantity.of(answer))
 
 
 def numbers_of(answer: Any) -> dict[str, Array]:
-    """Return the quantities of an answer by their keys, but for those of a drive where nothing is driven."""
+    """Return the quantities (S,) of an answer in SI units by key, without those of a drive if nothing is
+    driven."""
     return {each.key: values for each, values in quantities_of(answer) if answer.driven or not each.drive}
 
 
 def prescribed(design: Design) -> tuple[tuple[str, str], ...]:
-    """Return body and coordinate ("x", "y" or "rotation") of all that drives and supports prescribe, but for
-    the rotation that the path drives, whose torque is a quantity of every path."""
+    """Return body and coordinate ("x", "y" or "rotation") of all prescribed coordinates of drives and
+    supports.
+
+    The rotation that the path drives is excluded: its torque is a quantity of every path.
+    """
     found: list[tuple[str | None, str]] = []
     effects = design.effects
     for own in effects.acting("support"):

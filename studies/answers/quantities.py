@@ -46,26 +46,32 @@ PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p",
 
 
 def power_of(largest: float, highest: int = max(PREFIXES), lowest: int = min(PREFIXES)) -> int:
-    """Return the power of ten of the prefix that leaves a value three digits before the point at most, within
-    these; of zero the one that is nearest to none."""
+    """Return the power of ten of the SI prefix with at most three digits before the decimal point.
+
+    Args:
+        largest: value in the SI unit; 0 has the power nearest to none. highest, lowest: of the power [1].
+    """
     power = 3 * math.floor(math.log10(largest) / 3.0) if largest > 0.0 else 0
     return max(lowest, min(highest, power))
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, zero without a sign, and a dash for NaN."""
+    """Return a number, of any unit, with so many decimals; zero has no sign, and NaN is a dash."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if math.isfinite(value) else NOTHING
 
 
 def stress_of(strips: Sequence[Sectioned], axial_force: Array, bending_moment: Array) -> Array:
-    """Return the extreme fibre stress of strips (S, G, P) [Pa], of their forces (S, G, P) [N, N m]."""
+    """Return the extreme fibre stress of strips (S, G, P) [Pa] from their forces (S, G, P) [N, N m]."""
     forces = zip(np.moveaxis(axial_force, 1, 0), np.moveaxis(bending_moment, 1, 0), strict=True)
     pairs = zip(strips, forces, strict=True)
     return np.stack([strip.youngs_modulus * strip.extreme_fibre_strain(*own) for strip, own in pairs], axis=1)
 
 
 def peak(values: Array) -> Array:
-    """Return the largest value along the last axis, by parabolas through neighbours, evenly spaced (...)."""
+    """Return the largest value (...) of values (..., P), of any unit, along the last axis.
+
+    A parabola through the neighbours of the largest value is used; the values are evenly spaced.
+    """
     left, middle, right = values[..., :-2], values[..., 1:-1], values[..., 2:]
     bend = 2.0 * middle - left - right
     at_top = (middle >= left) & (middle >= right) & (bend > 0.0)
@@ -75,11 +81,11 @@ def peak(values: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """How pictures, and the lines of `compare`, show numbers of one kind.
+    """Form of numbers of one kind in pictures and in the lines of `compare`.
 
     Attributes:
-        heading: what they are called. unit: in SI. highest: power of ten of the largest prefix.
-        factor: to a unit without prefix, such as degrees for radians; 0 of one that has them.
+        heading: name. unit: in SI. highest: power of ten of the largest prefix.
+        factor: to a unit without prefix, such as degrees for radians; 0 for a unit with prefixes.
     """
 
     heading: str
@@ -88,7 +94,7 @@ class Scale:
     factor: float = 0.0
 
     def fitting(self, arrays: Iterable[Array]) -> tuple[float, str]:
-        """Return the factor to the unit that suits these values, and that unit."""
+        """Return the factor to the unit that suits these values (in SI units), and that unit."""
         if self.factor:
             return self.factor, self.unit
         largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)
@@ -96,7 +102,7 @@ class Scale:
         return 10.0**-power, PREFIXES[power] + self.unit
 
     def named(self, unit: str) -> str:
-        """Return what an axis in that unit is called."""
+        """Return the label of an axis in that unit."""
         return f"{self.heading} [{unit}]" if unit else self.heading
 
 
@@ -144,7 +150,7 @@ class Quantity(Scale):
             object.__setattr__(self, attribute, value)
 
     def named(self, unit: str) -> str:
-        """Return what an axis in that unit is called, below what it is of."""
+        """Return the label of an axis in that unit, below the name of its part."""
         return f"{self.group}\n{super().named(unit)}" if self.group else super().named(unit)
 
     @property
@@ -153,7 +159,7 @@ class Quantity(Scale):
         return self.swept or self.key
 
     def least(self, design: Design) -> float:
-        """Return the value of a design that is round-off, in its unit."""
+        """Return the round-off value of a design for this quantity, in its SI unit."""
         if self.unit == "Pa":
             return self.floor * max(float(strip.youngs_modulus) for strip in design.strips)
         length = max(strip.length for strip in design.strips)
@@ -248,7 +254,7 @@ ALONG = {
 
 
 def along_of(answer: Any) -> dict[str, Array]:
-    """Return the numbers along the strips (S, G, P) by their key."""
+    """Return the numbers along the strips (S, G, P) in SI units by key."""
     names = {key: name for key, (name, _) in ALONG.items()}
     return {
         key: answer.stress if name == "stress" else getattr(answer.along, name) for key, name in names.items()

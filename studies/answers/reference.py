@@ -40,7 +40,7 @@ SWUNG = ("rotation", "centre", "kinetic_energy", "strain_energy")
 
 
 class NoReference(RuntimeError):
-    """A model does not reach the end of a path or motion, so that there is no reference."""
+    """No reference: a model does not reach the end of a path or motion."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,11 +66,11 @@ class SolvedPath:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference(SolvedPath):
-    """A path that others are held against.
+    """A path that other paths are compared with.
 
     Attributes:
-        uncertainty: largest over the path, relative, of each of `QUANTITIES` [1]. source: what it is.
-        finest: the answer on the finest mesh, for shapes and what else is not extrapolated.
+        uncertainty: largest relative uncertainty over the path of each of `QUANTITIES` [1]. source: in words.
+        finest: the answer on the finest mesh, for shapes and other values that are not extrapolated.
     """
 
     stiffness: Array
@@ -81,7 +81,7 @@ class Reference(SolvedPath):
 
     @classmethod
     def of(cls, path: Response, coarser: Response, source: str) -> "Reference":
-        """Return a fine path as it is; a coarser one says how uncertain it is."""
+        """Return a fine path unchanged, with its difference to a coarser path as its uncertainty [1]."""
         arrays = {name: getattr(path, name) for name in ARRAYS.values()}
         uncertainty = largest_errors(coarser, path)
         return cls(rotation=path.rotation, **arrays, uncertainty=uncertainty, source=source, finest=path)
@@ -129,8 +129,10 @@ def _error(name: str, values: Array, expected: Array) -> Array:
 
 
 def errors(answer: Any, against: Any) -> dict[str, Array]:
-    """Return the errors of a path, of any model, by those of `QUANTITIES` that both give, (S,) of the states
-    that it reached: of the trajectory >= 0, the others signed [1]."""
+    """Return the errors (S,) of a path, of any model, by those of `QUANTITIES` that both paths have [1].
+
+    S are the states that the path reached. The error of the trajectory is >= 0, the others are signed.
+    """
     pairs = {name: (getattr(answer, array), getattr(against, array)) for name, array in ARRAYS.items()}
     return {name: _error(name, *pair) for name, pair in pairs.items() if all(v is not None for v in pair)}
 
@@ -165,11 +167,12 @@ class SolvedMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class SwingReference(SolvedMotion):
-    """A motion that others are held against, at common instants.
+    """A motion that other motions are compared with, at common instants.
 
     Attributes:
-        uncertainty: largest of the rotation, "rotation_rad", relative of the "frequency" [1], and of a limit
-            of refinement those of the centre, "com_x_m" and "com_y_m". source: what it is.
+        uncertainty: largest one of the rotation, "rotation_rad" [rad], relative of the "frequency" [1], and
+        of
+            a limit of refinement those of the centre, "com_x_m" and "com_y_m" [m]. source: in words.
     """
 
     uncertainty: Mapping[str, float]
@@ -177,9 +180,9 @@ class SwingReference(SolvedMotion):
 
 
 def sampled(motion: Any, instants: Array) -> SolvedMotion:
-    """Return a motion at `instants` [s] by cubic interpolation between its records.
+    """Return a motion at `instants` (T,) [s] by cubic interpolation between its records.
 
-    A last record may fall short of the last instant by round-off.
+    The last record may precede the last instant by round-off.
     """
     known = {name: array for name in SWUNG if (array := getattr(motion, name)) is not None}
     at = np.minimum(instants, motion.time[-1])
@@ -188,8 +191,8 @@ def sampled(motion: Any, instants: Array) -> SolvedMotion:
 
 
 def rotation_error(motion: Any, against: Any, instants: Array) -> float:
-    """Return the largest difference of the rotations of two motions at instants [s] that both reach [rad]; a
-    motion that stopped at once has its start alone."""
+    """Return the largest difference [rad] of the rotations of two motions at those instants (T,) [s] that
+    both reach; a motion that stopped at once has only its start."""
     last = min(motion.time[-1], against.time[-1])
     both = np.minimum(instants[instants <= last * (1.0 + ROUND_OFF)], last)
     one, other = (
@@ -200,8 +203,10 @@ def rotation_error(motion: Any, against: Any, instants: Array) -> float:
 
 
 def swing_errors(motion: Any, against: SolvedMotion) -> dict[str, float]:
-    """Return the errors of a motion at the instants of another: the largest of the rotation [rad], and that
-    of the frequency of the swing [1]."""
+    """Return the errors of a motion at the instants of another motion: of rotation [rad] and frequency [1].
+
+    The error of the rotation is the largest one.
+    """
     frequency = sampled(motion, against.time).frequency
     rotation = rotation_error(motion, against, against.time)
     return {"rotation_rad": rotation, "frequency": abs(frequency / against.frequency - 1.0)}
@@ -215,7 +220,11 @@ def swing_reference(
     meshes: Sequence[int] = SWING_MESHES,
     element: str = "corotational",
 ) -> SwingReference:
-    """Release `problem` from the end of its path on the meshes and return their limit at `instants` [s].
+    """Release `problem` from the end of its path on the meshes and return their limit at `instants` (T,) [s].
+
+    Args:
+        duration: of the motion [s]. meshes: elements per strip, coarse to fine [1].
+        element: "corotational" or "reissner".
 
     Raises:
         NoReference: a motion stopped early.
@@ -226,7 +235,7 @@ def swing_reference(
 
 
 def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
-    """Return the limit of motions on meshes that are each finer by `RATIO` than the one before.
+    """Return the limit of motions at `instants` (T,) [s], on meshes that are refined by `RATIO` each.
 
     Raises:
         NoReference: one of them stopped early.

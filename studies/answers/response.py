@@ -47,8 +47,8 @@ class Response(Answer):
 
     @property
     def critical_points(self) -> tuple[Any, ...]:
-        """Where the path loses or regains stability, in its order, each with `kind` ("limit point", "turning
-        point" or "bifurcation"), `load_factor` [1] and `rotation` [rad], NaN where none turns."""
+        """Critical points of the path in its order, each with `kind` ("limit point", "turning point" or
+        "bifurcation"), `load_factor` [1] and `rotation` [rad], NaN if no body rotates."""
         return tuple(self.solution.critical_points)
 
     @property
@@ -58,12 +58,12 @@ class Response(Answer):
 
     @property
     def turns(self) -> bool:
-        """Whether a rotation is driven that is not zero."""
+        """Whether a rotation is driven to an angle that is not zero."""
         return self.driven and self.body is not None and float(np.ptp(self.rotation)) > TURNED
 
     @property
     def places(self) -> Array:
-        """(S, 2) load factor [1] and rotation [rad], NaN where no body turns."""
+        """Load factor [1] and rotation [rad] (S, 2); NaN if no body rotates."""
         turns = np.full(len(self.load_factor), np.nan) if self.body is None else self.rotation
         return np.stack((self.load_factor, turns), axis=1)
 
@@ -83,7 +83,7 @@ class Response(Answer):
         return np.asarray(self.solution.spring_energy)
 
     def exerted(self, body: str, coordinate: str) -> Array:
-        """(S,) what is exerted on a body from outside for its prescribed "x", "y" [N] or "rotation" [N m]."""
+        """Return the force [N] or moment [N m] (S,) on a body for its prescribed "x", "y" or "rotation"."""
         place = self.solution.prescribed.index((body, coordinate))
         return np.asarray(self.solution.reactions[:, place])
 
@@ -94,7 +94,7 @@ class Response(Answer):
 
     @cached_property
     def stress(self) -> Array:
-        """(S, G, P) as of any answer, of the forces that are its own [Pa]."""
+        """Stress (S, G, P) of the section forces of this answer [Pa]."""
         return read_only(stress_of(self.design.strips, self.axial_force, self.bending_moment))
 
     @property
@@ -108,15 +108,19 @@ class Response(Answer):
 
     @cached_property
     def body_stiffness(self) -> Array:
-        """(S, 3, 3) of the body that is driven or may be, about its centre, in x, y and turn, at fixed loads
-        [N/m, N, N m/rad]; found when it is first asked for; nan with the paper's printed forces."""
-        if self.settings.get("measure") == "printed":
+        """Stiffness (S, 3, 3) of the driven or only body, about its centre, in x, y and rotation, at fixed
+        loads.
+
+        Units: [N/m, N, N m/rad]. It is computed at its first access, and nan with the published forces.
+        """
+        if self.settings.get("measure") == "published":
             return read_only(np.full((len(self.load_factor), 3, 3), np.nan))
         return read_only(np.asarray(self.solution.body_stiffness(self.body)))
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:
-        """Return the neutral form of a model's path; what its estimate of the shift leaves is remarked."""
+        """Return the neutral form of a model's path, with a remark if the centre shift is less accurate than
+        asked."""
         found = super().of(asked, result, **given)
         error, accuracy = (float((found.estimate or {}).get(k, 0.0)) for k in ("centre_shift", "accuracy"))
         if not error > accuracy:

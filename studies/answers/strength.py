@@ -66,8 +66,10 @@ class _Strength:
 
 
 def strength(answer: Response) -> _Strength:
-    """Return the largest stress of an answer, NaN where an outermost fibre is not known, and what of its path
-    the material bears."""
+    """Return the largest stress [Pa] of an answer, and the part of its path below the yield strength.
+
+    The stress is NaN if an outermost fibre is unknown.
+    """
     stress, strips = answer.strip_stress, answer.design.strips
     first = int(np.argmax(stress >= (1.0 - SAME) * stress.max()))
     state, strip = map(int, np.unravel_index(first, stress.shape))

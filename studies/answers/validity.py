@@ -33,15 +33,15 @@ LENGTHS, MODULI, DENSITIES = (1e-5, 5.0), (1e6, 1.3e12), (10.0, 23e3)
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
-    """A strip of rectangular section and the most that happens to it; numbers, or arrays over designs.
+    """A strip of rectangular section with its largest strain; numbers, or arrays (D,) over designs.
 
-    Where only the largest strain is known, `bent` takes the curvature that it would be alone.
+    If only the largest strain is known, `bent` uses the curvature of pure bending.
 
     Attributes:
         length, thickness, width: [m]; width follows from A = b t.
         youngs_modulus: [Pa]; poisson_ratio: [1]; density: [kg/m^3].
         strain: largest of an extreme fibre [1]; curvature: largest [1/m]; both zero before an answer.
-        yield_strength: [Pa], infinite where none is given.
+        yield_strength: [Pa], infinite if none is given.
     """
 
     length: Any
@@ -55,7 +55,7 @@ class Strip:
     yield_strength: Any = math.inf
 
     def bent(self, strain: Any) -> "Strip":
-        """Return the strip with that strain, and the curvature of which it would be all: an upper bound."""
+        """Return the strip with that strain [1], and the curvature [1/m] of pure bending: an upper bound."""
         return replace(self, strain=strain, curvature=2.0 * strain / self.thickness)
 
     @property
@@ -80,9 +80,9 @@ class Strip:
 
     @property
     def clamped(self) -> tuple[Any, Any]:
-        """Stiffness that clamps over the whole width add, of a constant and a linear moment [1].
+        """Relative increase of the stiffness by lateral clamping, for a constant and a linear moment [1].
 
-        By the plate of the splines, at b/L in two digits, that designs by the thousand ask few plates.
+        It follows from the plate of the splines at b/L in two digits, so that many designs need few plates.
         """
         of = np.vectorize(lambda ratio, nu: _plate(float(f"{ratio:.2g}"), round(float(nu), 2)))
         low, high = of(self.width_ratio, self.poisson_ratio)
@@ -90,19 +90,20 @@ class Strip:
 
     @property
     def flattened(self) -> Any:
-        """Moment that suppressed anticlastic bending adds at the largest curvature [1]."""
+        """Relative increase of the moment by suppressed anticlastic bending at the largest curvature [1]."""
         return anticlastic_factor(self.curvature_ratio, self.poisson_ratio) - 1.0
 
     @property
     def turned_roots(self) -> Any:
-        """Stiffness that two roots from the same block take [1]."""
+        """Relative decrease of the stiffness by two supports from the same block [1]."""
         from spline_model.effects.registry import MONOLITHIC
 
         return 1.0 - 1.0 / (1.0 + 2.0 * MONOLITHIC * self.thickness_ratio)
 
 
 def anticlastic_factor(ratio: Any, poisson_ratio: Any) -> Any:
-    """Return M / (EI kappa) at b^2 kappa / t = `ratio`, by the law of the splines; 1 where there is none."""
+    """Return M / (EI kappa) [1] at b^2 kappa / t = `ratio` [1], by the law of the splines; 1 if it has
+    none."""
     from spline_model.strip.laws import curl_factors
 
     square = np.asarray(poisson_ratio, dtype=float) ** 2
@@ -213,7 +214,7 @@ class _Validity:
 
 
 def validity(answer: "Response") -> _Validity:
-    """Return what an answer is worth."""
+    """Return the validity of an answer: its ratios, and the warnings about neglected effects."""
     strips = strips_of(answer.design, answer)
     ratios = ("width_ratio", "curvature_ratio", "thickness_ratio", "strain")
     most = {name: max(float(getattr(strip, name)) for strip in strips) for name in ratios}
@@ -232,7 +233,7 @@ def _assumed(design: Design) -> Iterator[str]:
 
 
 def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) -> Iterator[str]:
-    """Yield the sentence of every rule that a strip breaks, of the strip that breaks it most."""
+    """Yield the warning of every rule that a strip breaks, for the strip that breaks it most."""
     named = set(effects)
     for rule in rules:
         worst = max(strips, key=rule.excess)
@@ -241,14 +242,14 @@ def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) ->
 
 
 def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
-    """Return how many rules a design breaks by any of its strips; of arrays one number a design."""
+    """Return how many rules a design breaks by any of its strips; for arrays, one number (D,) per design."""
     strips, named = tuple(strips), set(effects)
     rules = [rule for rule in RULES if rule.effect not in named]
     return sum(np.any([rule.excess(strip) > 1.0 for strip in strips], axis=0).astype(int) for rule in rules)
 
 
 def strips_of(design: Design, forces: Any = None) -> list[Strip]:
-    """Return the strips of a design, with the most that an answer says of them."""
+    """Return the strips of a design, with the largest strain and curvature of an answer."""
     found = []
     for i, part in enumerate(design.strips):
         given = {name: getattr(part, name) for name in SAME_NAME}

@@ -25,7 +25,8 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
     Args:
         path: of the file.
-        changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for what the file says.
+        changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for the effects of the
+        file.
 
     Raises:
         CaseError: the file cannot be used; one line.
@@ -34,7 +35,8 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
 
 
 def design_of(where: str, document: Mapping[str, Any], changes: str | None = None) -> Design:
-    """Return the design of a parsed case file, a mechanism if it has [[strips]]; as of `read_design`."""
+    """Return the design of a parsed case file, a mechanism if it has [[strips]]; CaseError as of
+    `read_design`."""
     read = read_mechanism if is_mechanism(document) else read_problem
     design: Design = read(where, document, changes)
     refuse_unknown_sides(where, design.effects, design.strips)
@@ -42,7 +44,7 @@ def design_of(where: str, document: Mapping[str, Any], changes: str | None = Non
 
 
 def named_design(name: str) -> Design:
-    """Return the design of that name that comes with the suite."""
+    """Return the design of that name in the suite; CaseError if there is none."""
     return read_design(FOLDER / f"{name}.toml")
 
 
@@ -81,9 +83,9 @@ def _is_nested(value: Any) -> bool:
 
 
 def document_of(design: Design) -> dict[str, Any]:
-    """Return the document of a design's case, which is read as the same design to the digits that a file has.
+    """Return the document of a design's case, which gives the same design to the digits of a file.
 
-    A section with known sides has these.
+    A section with known sides is described by its sides.
     """
     found: dict[str, Any] = {}
     if isinstance(design, Problem):

@@ -1,6 +1,7 @@
 """Case files as documents: parsing, and refusals that name file, key, what was got and what was expected."""
 
 import difflib
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -11,6 +12,13 @@ from studies.errors import BadInput
 
 #: Names that a line can list, and how many of a longer list it shows.
 MANY, SHOWN = 40, 3
+#: Former name of a command, an option, a setting or a choice -> present name; accepted until version 0.3.
+FORMER: dict[str, str] = {
+    "capacity": "critical-load",
+    "--slide-stiffness": "--penalty-stiffness",
+    "slide_stiffness": "penalty_stiffness",
+    "printed": "published",
+}
 
 
 class CaseError(BadInput):
@@ -36,18 +44,21 @@ def parsed(path: str | Path) -> dict[str, Any]:
 
 
 def is_mechanism(document: Mapping[str, Any]) -> bool:
-    """Return whether a case's document is of any strips and bodies, each a table of its own; if not, of a
-    cross-axis pivot."""
+    """Return whether a case's document describes strips and bodies in tables of their own, not a pivot."""
     return isinstance(document.get("strips"), list)
 
 
 def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: str) -> dict[str, Any]:
-    """Return the values of a table by the attributes they fill, in SI; an optional key that is not there is
-    omitted.
+    """Return the values of a table by the attributes that they fill, in SI units.
+
+    An optional key that is not in the file is omitted.
 
     Args:
-        where: file that errors name. keys: of the table. content: what stands in it.
-        label: how errors name the table.
+        where: file name for error messages. keys: of the table. content: the parsed table.
+        label: name of the table for error messages.
+
+    Raises:
+        CaseError: an unknown key, a missing key or a value outside its rule; one line.
     """
     keys = list(keys)
     refuse_unknown(where, label, content, [key.name for key in keys])
@@ -61,7 +72,7 @@ def values(where: str, keys: Iterable[Key], content: Mapping[str, Any], label: s
 
 
 def admitted(where: str, label: str, rule: Rule, given: Any) -> Any:
-    """Return a value in SI; CaseError, which names it by the label, unless its rule admits it."""
+    """Return a value in SI; CaseError, with the label, unless its rule admits it."""
     try:
         return rule.parse(given)
     except ValueError as error:
@@ -69,7 +80,7 @@ def admitted(where: str, label: str, rule: Rule, given: Any) -> Any:
 
 
 def missing(where: str, key: Key, label: str) -> CaseError:
-    """Return the refusal of a table without a key that it needs."""
+    """Return the error for a table without a key that it needs."""
     return CaseError(f"{where}: {label}.{key.name}: got no such key, expected {key.rule.expected}")
 
 
@@ -106,8 +117,13 @@ def table(where: str, document: Mapping[str, Any], section: str) -> Mapping[str,
 def tables(
     where: str, document: Mapping[str, Any], section: str, *, needed: bool = False, within: str = ""
 ) -> list[tuple[str, Mapping[str, Any]]]:
-    """Return the tables of an array [[section]] with the label that errors give them: by name, or by place;
-    none if it is not there, which is refused where one is `needed`. `within`: what errors put before it."""
+    """Return the tables of an array [[section]] with their labels for error messages: name, or number.
+
+    Without the section, the list is empty. `within`: prefix of error messages.
+
+    Raises:
+        CaseError: the section is no array of tables, or it is missing and `needed`.
+    """
     found = document.get(section, [])
     if (needed and not found) or not isinstance(found, list) or not all(isinstance(e, dict) for e in found):
         expected = f"tables [[{within}{section}]]"
@@ -121,9 +137,10 @@ def tables(
 
 
 def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what: str = "name") -> str:
-    """Return the known name nearest to `name`, or all that are `listed`, the known ones unless said.
+    """Return the known name nearest to `name` as a phrase, or all that are `listed` (default: the known
+    names).
 
-    Beside the nearest stands `what` it is. Of more than `MANY` names the `SHOWN` nearest are listed.
+    `what`: noun for the nearest name. Of more than `MANY` names, the `SHOWN` nearest are listed.
     """
     known = list(known)
     if near := difflib.get_close_matches(name, known, n=1):
@@ -132,6 +149,16 @@ def nearest(name: str, known: Iterable[str], *, listed: Iterable[str] = (), what
         return "one of " + ", ".join(listed or known)
     few = difflib.get_close_matches(name, known, n=SHOWN, cutoff=0.0)
     return f"{', '.join(few)} or another of {len(known)} {what}s"
+
+
+def present(word: str) -> str:
+    """Return a name, or `--name=value`, under its present name; a former name is accepted with a warning."""
+    former, sign, value = word.partition("=")
+    if former not in FORMER:
+        return word
+    name = FORMER[former]
+    print(f"studies: warning: {former} is now called {name}; version 0.3 ends {former}", file=sys.stderr)
+    return name + sign + value
 
 
 def one_of(where: str, label: str, value: Any, names: Sequence[str]) -> str:

@@ -1,7 +1,8 @@
 """The effects of a scene as case files and the command line name them, with the units of their parameters.
 
 A table `[effects.NAME]` gives the parameters of an effect that the scene names, in the case file or by
-`--effects=+NAME`; parameters of what nothing names are refused, so that no load is forgotten in silence.
+`--effects=+NAME`; parameters of an effect that is not named are an error, so that no load is
+forgotten.
 """
 
 import difflib
@@ -53,35 +54,36 @@ Table = Mapping[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Effects:
-    """The effects that a scene names, in order, and the parameters of those that have any.
+    """The effects of a case, in order, and the parameters of the effects that have any.
 
     Attributes:
         names: of the effects.
-        tables: effect -> parameter -> value in SI units, also of effects that the scene does not name; of an
-            effect that acts several times a tuple of them.
+        tables: effect -> parameter -> value in SI units, also of effects that the case does not name; for an
+            effect that acts several times, a tuple of such mappings.
     """
 
     names: tuple[str, ...] = DEFAULT
     tables: Mapping[str, Table | tuple[Table, ...]] = field(default_factory=dict, hash=False)
 
     def every(self, name: str) -> tuple[Table, ...]:
-        """Return the parameters of each time that an effect acts, one of a table that is not there."""
+        """Return the parameters of each instance of an effect; an empty table if it has none."""
         given = self.tables.get(name, {})
         return given if isinstance(given, tuple) else (given,)
 
     def acting(self, name: str) -> tuple[Table, ...]:
-        """Return the same of an effect that the scene names, none of another."""
+        """Return the parameters of each instance of an effect that the case names; () for other effects."""
         return self.every(name) if name in self.names else ()
 
     def parameters(self) -> dict[str, Any]:
-        """Return the parameters of the named effects, with what is standard where nothing is said."""
+        """Return the parameters of the named effects in SI units, with the defaults."""
         every = {
             name: tuple(STANDARD.get(name, {}) | dict(own) for own in self.every(name)) for name in self.names
         }
         return {name: own if len(own) > 1 else own[0] for name, own in every.items() if any(own)}
 
     def grown(self, factor: float, more: Mapping[str, tuple[str, ...]] | None = None) -> "Effects":
-        """Return the scene with all loads and drives, and `more` parameters by effect, times a factor."""
+        """Return the effects with all loads and drives, and `more` parameters by effect, times a factor
+        [1]."""
         growing, tables = GROWING | dict(more or {}), {}
         for name in self.tables:
             keys = growing.get(name, ())
@@ -93,20 +95,21 @@ class Effects:
         return replace(self, tables=tables)
 
     def renamed(self, names: Sequence[str]) -> "Effects":
-        """Return the scene with other names and the same tables."""
+        """Return the effects with other names and the same tables."""
         return replace(self, names=tuple(names))
 
     def plus(self, *names: str, **tables: Table | tuple[Table, ...]) -> "Effects":
-        """Return the scene with these effects as well, and those that have parameters with them."""
+        """Return the effects with additional ones, and the tables of those that have parameters."""
         every = dict.fromkeys((*self.names, *names, *tables))
         return replace(self, names=tuple(every), tables={**self.tables, **tables})
 
     def changed(self, text: str) -> "Effects":
-        """Return the scene after "+gravity,-strip_inertia", or of the whole list "bending,stretching".
+        """Return the effects after "+gravity,-strip_inertia", or for the whole list "bending,stretching".
 
         Raises:
-            BadInput: an unknown effect, one that is there already or not there, signs on some names only, or
-                an effect without a parameter that it needs.
+            BadInput: an unknown effect, one that is added twice or removed without being there, signs on some
+            names
+                only, or an effect without a parameter that it needs.
         """
         words = [word.strip() for word in text.split(",") if word.strip()]
         if not words:
@@ -141,10 +144,11 @@ def _names_after(where: str, words: Sequence[str], present: Sequence[str]) -> tu
 
 
 def read_effects(path: str, content: Mapping[str, Any], changes: str | None = None) -> Effects:
-    """Return what a case file says in [scene] and [effects.NAME], after the `changes` of the command line.
+    """Return the effects of [scene] and [effects.NAME] of a case file, after the `changes` of the command
+    line.
 
     Raises:
-        CaseError: a fault, or parameters of an effect that neither the file nor `changes` name; one line.
+        CaseError: an error in the file, or parameters of an effect that is not named; one line.
     """
     scene = document.table(path, content, "scene")
     document.refuse_unknown(path, "scene", scene, ["effects"])
@@ -211,7 +215,8 @@ def _times(value: Any, factor: float) -> Any:
 
 
 def require_known(where: str, name: str) -> None:
-    """Raise CaseError that lists what there is unless `name` is an effect, also one added to the splines'."""
+    """Raise CaseError, with the list of effects, unless `name` is an effect of the suite or of the
+    splines."""
     if name in EFFECT_KEYS or name in _registered():
         return
     near = difflib.get_close_matches(name, EFFECT_KEYS, n=1)

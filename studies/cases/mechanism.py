@@ -29,13 +29,15 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True, kw_only=True)
 class Strip(Sectioned):
-    """A strip between two points [m], on the ground or on a body at its root, free or on either at its tip.
+    """A strip between two points [m]; the root is on the ground or a body, the tip on either or free.
 
-    tip: None for a free end. rise: sagitta of the circular arc it is at rest [m], to the left of start to
-    end. width, thickness: of a rectangular section [m], None where only A and I are known; width_end,
-    thickness_end: at the end of a tapered one. outer_fibre: distance of the outermost fibre from the neutral
-    axis of one that is no rectangle [m]. root_joint, tip_joint: "clamp" or "hinge". yield_strength: that
-    stresses must stay below [Pa]; None where unknown.
+    Attributes:
+        tip: None for a free end. rise: sagitta of the circular arc at rest [m], to the left of start to end.
+        width, thickness: of a rectangular section [m], None if only A and I are known; width_end,
+            thickness_end: at the end of a tapered one [m].
+        outer_fibre: distance of the outermost fibre from the neutral axis of other sections [m].
+        root_joint, tip_joint: "clamp" or "hinge".
+        yield_strength: [Pa]; None if unknown.
     """
 
     name: str
@@ -87,16 +89,17 @@ class Point:
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
-    """The given data of a mechanism of flexures and of how it is driven.
+    """The given data of a mechanism of flexures and of its drive.
 
     Args:
         strips, bodies: of different names.
-        body: the one that is driven, released, and whose motion is reported; None where there is no body.
-        rotation: that it is driven to [rad]; None: it follows the loads.
+        body: name of the driven, released and reported body; None if there is no body.
+        rotation: end of the driven rotation [rad]; None: the rotation follows the loads.
         increments: equal increments of the path [1].
-        effects: of the scene.
-        history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
-            begin and end [s]; None for a release.
+        effects: of the case.
+        history, held: of a rotation that is prescribed in a motion: pairs of time [s] and factor [1], and
+        begin
+            and end [s]; None for a release.
         order: of loads and rotation, "loads first" or "together".
         points: whose displacement is reported.
     """
@@ -114,11 +117,12 @@ class Mechanism:
 
     @property
     def crossing_point(self) -> None:
-        """Return none: a mechanism is not described by the crossing of its strips, as a pivot is."""
+        """None: a mechanism has no crossing point, unlike a pivot."""
 
     @property
     def crossing_of_chords(self) -> tuple[float, float] | None:
-        """Where two strips cross at rest that alone carry the only body on the ground [m]; None of others."""
+        """Point x, y [m] where two strips cross at rest that alone carry the only body on the ground; else
+        None."""
         carried = [{strip.root, strip.tip} for strip in self.strips]
         if len(self.bodies) != 1 or carried != 2 * [{GROUND, self.bodies[0].name}]:
             return None
@@ -133,7 +137,7 @@ class Mechanism:
         return (a + along[0] * one).real, (a + along[0] * one).imag
 
     def modelled(self, model: Any, **how: Any) -> Any:
-        """Return the mechanism as a model has it, with its effects and discretisation."""
+        """Return the mechanism in the form of a model, with its effects and discretisation."""
         strips = [model.StripDesign(**_keywords(strip)) for strip in self.strips]
         bodies = [model.BodyDesign(**_keywords(body)) for body in self.bodies]
         return model.compliant_mechanism(strips=strips, bodies=bodies, **how)
@@ -183,7 +187,8 @@ def read_points(path: str, content: Mapping[str, Any], bodies: Sequence[str]) ->
 
 
 def _keywords(part: Strip | Body) -> dict[str, Any]:
-    """Return what the models take of a part; the sides of a section only where they are given."""
+    """Return the keyword arguments of a part for the models; the sides of a section only if they are
+    given."""
     given = {each.name: getattr(part, each.name) for each in fields(part)}
     sides = [key.attribute for key in (*SIDES, *TAPER)]
     joints = [name for name in ("root_joint", "tip_joint") if given.get(name) == CLAMP]

@@ -125,13 +125,13 @@ class Problem(Sectioned):
 
     @property
     def crossing_point(self) -> tuple[float, float]:
-        """Where the two strips cross at rest [m], origin at A1."""
+        """Point x, y [m] where the two strips cross at rest; the origin is A1."""
         distance, angle = self.crossing_ratio * self.length, self.inclination + self.orientation
         return distance * math.cos(angle), distance * math.sin(angle)
 
     @property
     def crossing_of_chords(self) -> tuple[float, float]:
-        """That point, as of a mechanism."""
+        """The crossing point [m], as of a mechanism."""
         return self.crossing_point
 
     @property
@@ -160,7 +160,7 @@ class Problem(Sectioned):
         return (Body(name=BODY, centre=(centre.real, centre.imag), **mass),)
 
     def modelled(self, model: Any, **how: Any) -> Any:
-        """Return the pivot as a model has it, with its effects and discretisation."""
+        """Return the pivot in the form of a model, with its effects and discretisation."""
         return model.cross_axis_pivot(**self.pivot_parameters(), **how)
 
     def pivot_parameters(self) -> dict[str, Any]:
@@ -170,11 +170,11 @@ class Problem(Sectioned):
 
 
 def named_case(case: str | Path = TABLE_1) -> Problem:
-    """Return the pivot of that name that comes with the suite, the paper's without one; or that in a file.
+    """Return the pivot of that name in the suite (default: the benchmark pivot), or of a file.
 
     Raises:
         CaseError: the file is unreadable or not TOML, a section or key is missing, unknown or misspelt, a
-            value has the wrong type or lies outside its range. One line: file, key, got, expected.
+            value has the wrong type or is outside its range. One line: file, key, got, expected.
     """
     own = FOLDER / f"{case}.toml"
     path = own if own.is_file() else Path(case)
@@ -182,7 +182,7 @@ def named_case(case: str | Path = TABLE_1) -> Problem:
 
 
 def read_problem(path: str, content: Mapping[str, Any], changes: str | None = None) -> Problem:
-    """Return the pivot of a parsed case file with its effects changed; errors as of `named_case`."""
+    """Return the pivot of a parsed case file with its effects changed; CaseError as of `named_case`."""
     if is_mechanism(content):
         raise CaseError(f"{path}: [[strips]]: got a mechanism, expected a cross-axis pivot, with [strip]")
     sections = list(dict.fromkeys(key.section for key in KEYS))

@@ -25,12 +25,12 @@ def _same(value: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Rule:
-    """What a value of a case file may be.
+    """Admissible values of a key of a case file.
 
     Attributes:
-        expected: what a refusal says. admits: whether a value may stand in a file.
-        read: makes of one that may what is kept, in SI; in_file: the way back.
-        kind: "number", "pair", "text" or "choice"; "" of any other.
+        expected: phrase of error messages. admits: whether a value may stand in a file.
+        read: converts an admitted value to SI; in_file: the inverse.
+        kind: "number", "pair", "text" or "choice"; "" for others.
     """
 
     expected: str
@@ -40,8 +40,7 @@ class Rule:
     kind: str = ""
 
     def parse(self, value: Any) -> Any:
-        """Return `value` (in the file's unit) as it is kept, in SI; BadInput says what was got and
-        expected."""
+        """Return `value` (in the file's unit) in SI; BadInput with the given and the expected value."""
         if not self.admits(value):
             raise BadInput(f"got {shown(value)}, expected {self.expected}")
         return self.read(value)
@@ -58,9 +57,9 @@ def number(
     """Return the rule for a finite number in an interval.
 
     Args:
-        expected: what a refusal says. low, high: ends, excluded unless `closed` names them.
+        expected: phrase of error messages. low, high: ends, excluded unless `closed` names them.
         closed: "low", "high" or "low and high".
-        degrees: whether the file gives an angle in degrees, which is kept in radians.
+        degrees: whether the file has the angle in degrees; the value is in radians.
     """
 
     def admits(value: Any) -> bool:
@@ -146,7 +145,7 @@ def finite_pair(unit: str) -> Rule:
 
 
 def free_pair(unit: str) -> Rule:
-    """Return the rule for two finite numbers, or one of them and "free" in place of the other, which is then
+    """Return the rule for two finite numbers of that unit, one of which may be "free", which is read as
     None."""
 
     def read(value: Any) -> tuple[float | None, ...]:
@@ -196,13 +195,13 @@ INTERVAL = Rule(
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a case file: what is read, refused, shown in a template and told on the page of case files.
+    """One key of a case file: its rule, default, example and meaning.
 
     Args:
-        section: table that it stands in; name: in the file; attribute: or parameter that it fills.
+        section: table that contains it; name: in the file; attribute: or parameter that it fills.
         rule: for its value. default: its meaning if the key is omitted.
-        example: a value that a template may show, as it stands in the file.
-        meaning: what it is, in a few words. optional: whether it may be omitted.
+        example: a value that a template may show, as in the file.
+        meaning: in a few words. optional: whether it may be omitted.
     """
 
     section: str
@@ -216,13 +215,13 @@ class Key:
 
     @property
     def unit(self) -> str:
-        """Unit of the value in the file, "" of one that has none."""
+        """Unit of the value in the file; "" for a value without unit."""
         found = re.search(r"\[([^\[\]]+)\]$", self.rule.expected)
         return found[1] if found else ""
 
     @property
     def admitted(self) -> str:
-        """What the rule admits, without the unit."""
+        """Admissible values without the unit."""
         return self.rule.expected.removesuffix(f" [{self.unit}]")
 
 
@@ -231,16 +230,16 @@ def keys_of(section: str, *rows: tuple[str, str, Rule, str, str, str]) -> tuple[
 
     Args:
         section: name of the table.
-        rows: of each key its name in the file, attribute, rule, default ("" of one that is needed), example
-            and meaning.
+        rows: for each key its name in the file, attribute, rule, default ("" if it is required), example and
+            meaning.
     """
     return tuple(Key(section, *row, optional=bool(row[3])) for row in rows)
 
 
 def shown(value: Any) -> str:
-    """Return `value` as it stands in a TOML file, with its type where that is the likely mistake.
+    """Return `value` as in a TOML file, with its type if the type is the likely mistake.
 
-    A whole number that fills lines, which Python does not even write, is told by its size.
+    A whole number with very many digits is described by its size.
     """
     if isinstance(value, str):
         return f'the text "{value}"'

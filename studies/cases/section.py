@@ -23,8 +23,11 @@ SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
 
 
 class Sectioned:
-    """What has a section: modulus, area, second moment, all at its start, and what is known of its form [m]:
-    both sides and those at its end, or the distance of its outermost fibre; None of what is not."""
+    """An object with a section: modulus [Pa], area [m^2], second moment [m^4] and, if known, its form [m].
+
+    All values are at its start. The form is both sides and those at the end, or the distance of the outermost
+    fibre; None for unknown values.
+    """
 
     youngs_modulus: float
     area: float
@@ -37,7 +40,7 @@ class Sectioned:
 
     @property
     def depth(self) -> float:
-        """Depth of the section [m]: twice the distance of its outermost fibre, where this is not known that
+        """Depth of the section [m]: twice the distance of its outermost fibre; if this is unknown, the depth
         of the rectangle with its A and I."""
         fibre = self.fibre
         return self.rectangle()["thickness"] if math.isnan(fibre) else 2.0 * fibre
@@ -50,7 +53,7 @@ class Sectioned:
         return math.nan if self.thickness is None else self.thickness / 2.0
 
     def growth(self, places: Any) -> tuple[Any, Any]:
-        """Return width and thickness at places, parts of the length, over those at the start."""
+        """Return width and thickness over those at the start [1] at places [1] along the length."""
         sides = (self.width, self.width_end), (self.thickness, self.thickness_end)
         b, t = (1.0 + places * (end / start - 1.0 if start and end else 0.0) for start, end in sides)
         return b, t
@@ -83,12 +86,12 @@ class Sectioned:
 def completed(
     where: str, found: Values, section: str, material: str, *, shared: bool = False
 ) -> dict[str, Any]:
-    """Return the values of a strip, by attribute in SI, with area, second moment and material complete.
+    """Return the values of a strip, by attribute in SI, with complete area, second moment and material.
 
     Args:
-        where: file that errors name. found: what the case gives.
-        section, material: how errors name the tables that these keys stand in.
-        shared: whether they may also stand in [section] and [material].
+        where: file name for error messages. found: values of the case.
+        section, material: names of the tables with these keys for error messages.
+        shared: whether the keys may also stand in [section] and [material].
 
     Raises:
         CaseError: both pairs of a section, half a pair, or a key of the material missing; one line.
@@ -121,7 +124,8 @@ def _root(area: float, inertia: float) -> float:
 
 
 def out_of_scale(strip: Any) -> str:
-    """Return in words the first number made of a strip, at its ends, that no solve can bear, or nothing."""
+    """Return a phrase for the first number of a strip, at its ends, that is too large or small to solve, or
+    ""."""
     modulus, length = strip.youngs_modulus, strip.length
     for b, t in (strip.growth(0.0), strip.growth(1.0)):
         area, inertia = strip.area * b * t, strip.second_moment_of_area * b * t * t * t
@@ -137,7 +141,8 @@ def out_of_scale(strip: Any) -> str:
 
 
 def too_heavy(mass: float, inertia: float) -> str:
-    """Return in words that a body's mass or moment of inertia is more than any solve can bear, or nothing."""
+    """Return a phrase if a body's mass [kg] or moment of inertia [kg m^2] is too large to solve; otherwise
+    ""."""
     none = (0.0, SCALES[1])
     return _beyond({"mass [kg]": (mass, none), "moment of inertia [kg m^2]": (inertia, none)})
 
@@ -158,7 +163,7 @@ def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
 
 
 def of_moments(area: float, second_moment_of_area: float) -> dict[str, Any]:
-    """Return a section of that A [m^2] and I [m^4], whose sides are not known, to replace another by."""
+    """Return a section with that A [m^2] and I [m^4] and unknown sides, as values for a replacement."""
     return {
         "area": area,
         "second_moment_of_area": second_moment_of_area,
@@ -185,7 +190,7 @@ def refuse_both(where: str, found: Values, label: str) -> None:
 
 
 def refuse_tapers(where: str, strips: Iterable[Any], what: str) -> None:
-    """Raise CaseError if a strip is tapered, which `what` does not know."""
+    """Raise CaseError if a strip is tapered, which `what` does not support."""
     for strip in strips:
         if strip.width_end or strip.thickness_end:
             raise CaseError(f"{where}: {strip.name}: got a taper, expected a constant section for {what}")
@@ -207,10 +212,10 @@ def _warn_of_name(where: str) -> None:
 
 
 def inherited(shared: Values, own: Values) -> dict[str, Any]:
-    """Return what a strip has of its own and of what all have.
+    """Return the values of a strip, its own before the shared ones.
 
-    A strip's own pair of a section takes the place of the other pair that all have, and its own named
-    material that of all values of theirs.
+    A strip's own pair of a section replaces the other pair of the shared values; its own named material
+    replaces all shared values of the material.
     """
     left = dict(shared)
     for pair, other in (((*SIDES, *TAPER), MOMENTS), (MOMENTS, (*SIDES, *TAPER))):
@@ -222,5 +227,5 @@ def inherited(shared: Values, own: Values) -> dict[str, Any]:
 
 
 def without(values: Values, names: list[str]) -> dict[str, Any]:
-    """Return the values but for those of these names."""
+    """Return the values without those of these names."""
     return {name: value for name, value in values.items() if name not in names}

@@ -44,7 +44,7 @@ DYNAMIC = (advise_swing, ("rotation", "frequency"), ("rotation", "frequency"))
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Try, report; return the exit code."""
+    """Try all settings and report; return the exit code."""
     problem = take.turned_design(arguments, "rotation to relate errors to")
     if problem.crossing_point is not None:  # of pivots codes and surrogates that know no taper are tried
         refuse_tapers(arguments.case, problem.strips, "the models that are tried")

@@ -108,7 +108,7 @@ def asked(
 
 
 def _put(target: Path, text: str, form: str) -> None:
-    """Write the answer to a file and say so, or to the output stream."""
+    """Write the answer to a file and print its name, or write it to the output stream."""
     if target == STREAM:
         sys.stdout.write(text)
     else:
@@ -138,7 +138,8 @@ def keyed(answer: Any, *keys: str) -> dict[str, Any]:
 
 
 def pose(answer: Answer) -> dict[str, Array]:
-    """Return how the only body moves, as files have it."""
+    """Return the motion of the only body as columns (S,) by names with units: x [m], y [m], rotation
+    [rad]."""
     x, y = answer.centre.T
     return {"rotation_rad": answer.rotation, "com_x_m": x, "com_y_m": y}
 

@@ -8,7 +8,7 @@ from typing import TypeVar
 from studies.answers.settings import MODELS, Settings, settings_of_model
 from studies.cases import keys
 from studies.cases.design import Design, read_design
-from studies.cases.document import nearest
+from studies.cases.document import nearest, present
 from studies.cases.problem import FOLDER
 from studies.commands import parser
 from studies.commands.parser import STREAM, Argument, positive, whole_number
@@ -70,9 +70,10 @@ SEGMENTS = Argument(
 )
 MEASURE = Argument(
     "--measure",
-    "of curvature and strain: spatial as in the paper, printed with its forces, both with "
+    "of curvature and strain: spatial as in the paper, published with its forces, both with "
     "--stretch consistent (spline; default material)",
-    choices=("material", "spatial", "printed"),
+    present,
+    choices=("material", "spatial", "published"),
 )
 STRETCH = Argument(
     "--stretch",
@@ -88,7 +89,7 @@ SPLINE = (
     STRETCH,
     Argument("--gauss-points G", "quadrature points of a segment (spline; default: degree + 3)", int),
     Argument(
-        "--slide-stiffness S",
+        "--penalty-stiffness S",
         "of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",
         parser.not_negative,
     ),

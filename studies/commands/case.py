@@ -44,7 +44,8 @@ MECHANISM: dict[str, tuple[Key, ...]] = {
     OUT_FILE.but("write it there (default: the output stream)"),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Print or write the template; return the exit code."""
+    """Print or write the template; return the exit code. BadInput: both kinds, or a file with other
+    content."""
     if arguments.pivot and arguments.mechanism:
         raise BadInput("case: got --pivot and --mechanism, expected one of them")
     text = "\n".join(_template(mechanism=arguments.mechanism))

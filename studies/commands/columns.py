@@ -66,7 +66,11 @@ def quantity(
 
 
 def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> tuple[Column, ...]:
-    """Return columns over many powers of ten: every number with its significant digits, a prefix a column."""
+    """Return columns (S,) over many powers of ten: every number has its significant digits, a column a
+    prefix.
+
+    unit: SI unit of the values. digits: significant ones [1]. floor: smaller magnitudes print as zero.
+    """
     columns = []
     for name, value in values.items():
         shown, scaled = _prefixed(unit, _above(floor, value), 6)
@@ -98,17 +102,18 @@ def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:
 
 
 def significant(value: float, digits: int = DIGITS) -> str:
-    """Return a number with its significant digits, for columns over many powers of ten; a dash for NaN."""
+    """Return a number, of any unit, with its significant digits, for wide columns; a dash for NaN."""
     return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else NOTHING
 
 
 def cell(value: float, width: int, form: str = ".1e", sign: str = "") -> str:
-    """Return a number in so many characters, flush right; a dash for NaN."""
+    """Return a number, of any unit, right-aligned in `width` characters; a dash for NaN."""
     return f"{value:{sign}{width}{form}}" if math.isfinite(value) else f"{NOTHING:>{width}}"
 
 
 def one(value: float, digits: int) -> str:
-    """Return a number for a sentence, without a power of ten where it is readable; a dash for NaN."""
+    """Return a number, of any unit, for a sentence, without a power of ten if it is readable; a dash for
+    NaN."""
     if not math.isfinite(value):
         return NOTHING
     exponent = math.floor(math.log10(abs(value))) if value else 0

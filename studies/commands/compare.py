@@ -126,7 +126,7 @@ def _values(answer: Response) -> dict[str, Any]:
     PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Solve all, report and draw; return the exit code."""
+    """Solve all, report and draw; return the exit code. BadInput: answers that cannot be compared."""
     asked = [(case, settings) for case in arguments.cases for settings in take.chosen_settings(arguments)]
     if not 2 <= len(asked) <= len(LETTERS):
         got = f"{len(asked)} (designs: {len(arguments.cases)}, models: {len(arguments.model)})"

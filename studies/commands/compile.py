@@ -79,7 +79,7 @@ def _call(settings: Settings, tasks: tuple[str, ...]) -> None:
             answer_modes(problem, settings)
         elif task == "sequential impulses":
             pivot = put(problem, settings, moving=True).modelled
-            for form in ("printed", "stable"):
+            for form in ("published", "stable"):
                 solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
         elif task == "energy from rest":
             _from_rest(problem, settings)

@@ -65,7 +65,8 @@ def _counts(low: int) -> Callable[[str], tuple[int, int]]:
     take.OUT.but("of tables and figure (default: results/designs/<name of the case>)"),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Refine, print, store and draw; return the exit code."""
+    """Refine, print, store and draw; return the exit code. BadInput: a range of settings that the model
+    rejects."""
     problem = take.turned_design(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points

@@ -6,8 +6,8 @@
 
 vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; svg: a drawing of
 the design at rest and deformed; csv, parquet: tables NAME_states, NAME_strips, NAME_bodies, NAME_reactions;
-json: the same tables in one file. NAME is the analysis: static, release or modes. docs/data.md says what the
-files hold; units stand in the names of columns and arrays. The folder must be new or empty, or hold a
+json: the same tables in one file. NAME is the analysis: static, release or modes. docs/data.md describes the
+files; the names of columns and arrays contain the units. The folder must be new or empty, or hold a
 former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done; 2: bad
 input; 3: not converged, and then the converged part of a path or a motion is written.
 """
@@ -74,7 +74,7 @@ DRAWN = (0.5, 1.0)
     ),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Solve and write; return the exit code."""
+    """Solve and write; return the exit code. BadInput: options that do not fit the formats or the design."""
     design = take.driven(take.chosen_design(arguments), arguments)
     if arguments.analysis == "modes" and arguments.rotation is None:
         design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more

@@ -62,7 +62,7 @@ EXTRA = {
     Argument("--replay FILE", "replay a stored session and compare (default: none)", Path),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Serve until interrupted, or replay; return the exit code."""
+    """Serve until interrupted, or replay; return the exit code. BadInput: options that exclude each other."""
     from studies.interactive import presets
 
     if arguments.case is not None:

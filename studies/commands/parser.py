@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
-from studies.cases.document import nearest
+from studies.cases.document import nearest, present
 from studies.cases.rules import number
 from studies.errors import BadInput
 
@@ -23,7 +23,8 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse the words of a command; of an option=-- argparse would make a list without a value."""
-        for word in args or ():
+        args = [present(word) if word.startswith("--") else word for word in args or ()]
+        for word in args:
             if word.startswith("--") and word.endswith("=--"):
                 self.error(f"argument {word[:-3]}: expected one argument")
         return super().parse_args(args, namespace)
@@ -137,12 +138,12 @@ not_negative = _number("of at least 0", low=0.0, closed="low")
 
 
 def degrees_list(text: str) -> tuple[float, ...]:
-    """Parse comma-separated angles in degrees."""
+    """Return the angles [deg] of a text with commas."""
     return tuple(degrees(part) for part in text.split(","))
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
-    """Return a parser of comma-separated names, each one of `known` and none twice."""
+    """Return a parser of names with commas, each one of `known` and none twice; it raises BadInput."""
     choices = tuple(known)
 
     def parse(text: str) -> tuple[str, ...]:

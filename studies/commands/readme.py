@@ -48,7 +48,7 @@ BLOCKS: dict[Path, Mapping[str, Callable[[Store], Iterable[str]]]] = {
 
 @command()
 def main(arguments: argparse.Namespace) -> int:
-    """Rewrite the blocks; return the exit code."""
+    """Rewrite the blocks; return the exit code. BadInput: an installed package instead of a clone."""
     if HOME != ROOT:
         raise BadInput("readme: got an installed package, expected a clone of the repository")
     texts = {path: _rewritten(path, Store()) for path in BLOCKS}

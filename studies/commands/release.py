@@ -1,4 +1,4 @@
-"""Let go of a driven pivot or mechanism and report its motion with one of the models.
+"""Release a driven pivot or mechanism and report its motion with one of the models.
 
     python -m studies release cross_axis_pivot --control-points 8
     python -m studies release cross_axis_pivot --model fe --duration 0.02 --json -
@@ -55,7 +55,7 @@ OPTIONS = ("step", "integrator", "accuracy")
 #: Parts of an estimate that are angles [rad].
 ANGLES = ("accuracy", "rotation", "time", "space")
 
-#: Energy in EI/L below which what moves is round-off, whose balance says nothing [1].
+#: Energy in EI/L below which the motion is round-off and the energy balance is not evaluated [1].
 STILL = 1e-15
 
 #: Periods that are computed beyond the prescribed motion of the design, and steps in each; an unstable mode

@@ -117,7 +117,7 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Search, check, report; return the exit code."""
+    """Search, check, report; return the exit code. BadInput: an objective that the case does not support."""
     content = parsed(arguments.case)
     mechanism = is_mechanism(content)
     _refuse_others(arguments, mechanism)

@@ -31,8 +31,10 @@ SHOWN = {
 
 @dataclass(frozen=True, kw_only=True)
 class Optimum:
-    """The best design: where the search ended, what it answers to the accuracy, as `solve` does, and by the
-    finite elements, or why they have no answer."""
+    """The best design of a search, its answer to the accuracy of `solve`, and that of the finite elements.
+
+    If the finite elements have no answer, the reason takes its place.
+    """
 
     outcome: Outcome
     answers: Accurate

@@ -207,7 +207,7 @@ def _readable(answer: Response) -> Iterator[str]:
     """
     yield tell.described(answer)
     yield from columns.table([*_states(answer), *_columns(answer)])
-    if answer.settings.get("measure") == "printed":
+    if answer.settings.get("measure") == "published":
         yield "stiffness of the body: none with printed forces, which are of static paths alone"
     elif answer.body is not None:
         body = answer.body if answer.crossing is None else "the body"

@@ -66,7 +66,8 @@ INTERRUPTED = 130
     Argument("--scheduler ADDRESS", "of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)"),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Run the sweep, or what is missing of it; return the exit code."""
+    """Run the missing part of a sweep; return the exit code. BadInput: --workers together with
+    --scheduler."""
     from studies.errors import BadInput
 
     if arguments.scheduler is not None and arguments.workers:

@@ -48,8 +48,8 @@ def _of_control_points(stretch: str, n: int) -> Answer:
     settings, limit = SplineSettings(control_points=n, stretch=stretch), refined_swing()
     motion = resolved(settings)
     found = motion.frequency if motion.converged else math.nan
-    # its static path has the slide stiffness that the pivot had in motion
-    implied = _static_frequency(replace(settings, slide_stiffness=motion.settings["slide_stiffness"]))
+    # its static path has the penalty stiffness that the pivot had in motion
+    implied = _static_frequency(replace(settings, penalty_stiffness=motion.settings["penalty_stiffness"]))
     row = {
         "stretch": stretch,
         "control_points": n,

@@ -23,8 +23,8 @@ from studies.record.style import GREEN, GREY, ORANGE, RED, Look
 #: only bend, and strips whose shape follows the body, so that nothing but the swing is left.
 GROUPS: dict[str, SplineSettings] = {
     "axial": SplineSettings(control_points=6),
-    "bending": SplineSettings(control_points=5, axial_modes=4, stretch="inextensible", slide_stiffness=0.0),
-    "swing": SplineSettings(control_points=4, axial_modes=3, stretch="inextensible", slide_stiffness=0.0),
+    "bending": SplineSettings(control_points=5, axial_modes=4, stretch="inextensible", penalty_stiffness=0.0),
+    "swing": SplineSettings(control_points=4, axial_modes=3, stretch="inextensible", penalty_stiffness=0.0),
 }
 #: Looks of designs and groups of modes, and of few sweeps.
 LOOKS = {
@@ -74,7 +74,7 @@ def _limit(design: str, group: str, count: int | None) -> Answer:
     """
     pivot: Pivot = put(_designs()[design], GROUPS[group], moving=True).modelled
     predicted = stability_limit(pivot)
-    how: dict[str, Any] = {"start": SMALL, "form": "printed", "records": 1, "sweeps": count}
+    how: dict[str, Any] = {"start": SMALL, "form": "published", "records": 1, "sweeps": count}
     low, high = 0.0, 1.5
     while high - low > BRACKET:
         middle = 0.5 * (low + high)

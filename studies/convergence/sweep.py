@@ -82,9 +82,10 @@ def with_orders(table: pd.DataFrame, count: str) -> pd.DataFrame:
 def reaching(
     table: pd.DataFrame, count: str, accuracy: float, quantities: Iterable[str] = ("trajectory", "torque")
 ) -> int | None:
-    """Return the smallest `count` from which on all errors of these quantities are within `accuracy`.
+    """Return the smallest `count` from which on all relative errors of the quantities are within `accuracy`
+    [1].
 
-    None when no count of the table does; a failed row counts as an error of any size.
+    None if no count of the table does; a failed row counts as an infinite error.
     """
     worst = table[[f"error_{name}" for name in quantities]].max(axis=1, skipna=False).fillna(np.inf)
     within = (worst <= accuracy)[::-1].cummin()[::-1]
@@ -104,7 +105,7 @@ def _outcome(answer: Response, against: Reference) -> Row:
 
 
 def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Figure:
-    """Draw the largest errors over the number of control points (above) and of elements (below).
+    """Return the figure of the largest errors over the number of control points (above) and elements (below).
 
     Args:
         splines, elements: rows of `spline_row` and of `element_sweep`.

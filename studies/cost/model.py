@@ -55,7 +55,7 @@ class Model:
         raise NotImplementedError
 
     def swing(self, *args: Any, **settings: Any) -> Any:
-        """Let go of the body of a design at rest at its rotation, for a duration [s]; return the motion.
+        """Release the body of a design from rest at its rotation, for a duration [s]; return the motion.
 
         Raises: as of `path`.
         """

@@ -146,7 +146,7 @@ def _pinned_law(problem: Problem) -> Law:
 
 
 def link_length(problem: Problem) -> float:
-    """Return c, the links' length over L, with which the small-angle centre shift is exact.
+    """Return the links' length over L, c [1], for which the small-angle centre shift is exact.
 
     The linkage shifts by q b p^2 / (2 (q + b) sin(a)) with q b = L^2 (c^2/4 - e^2), e = crossing ratio - 1/2.
     """

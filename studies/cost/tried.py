@@ -62,10 +62,12 @@ def path_limit(design: Design, theory: str) -> Reference:
 def swing_limit(
     design: Design, instants: Array, integrator: str, steps: Mapping[int, float | None]
 ) -> SwingReference:
-    """Return the swing without shear, by the finest splines: control points and steps, the finer one first.
+    """Return the free vibration without shear at `instants` (T,) [s] by the finest splines.
+
+    steps: step [s] of each number of control points, the finer discretisation first; None: the default step.
 
     Raises:
-        NoReference: one of them stops early.
+        NoReference: a motion stopped early.
     """
     found = []
     for n, step in steps.items():
@@ -103,9 +105,11 @@ def compared(
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
-    """Return errors, work and times of the path of a design, or of its motion to the last of instants [s].
+    """Return errors [1, rad], work and times [s] of the path of a design, or of its motion up to `instants`
+    (T,) [s].
 
-    A row a setting; what is not installed has one a model. It and what fails have no errors.
+    One row per setting; a model that is not installed has one row. Such a model, and a failed setting, have
+    no errors.
     """
 
     def solve(each: Setting) -> Any:
@@ -175,9 +179,10 @@ def kept(rows: pd.DataFrame, judged: Sequence[str]) -> pd.Series:
 
 
 def cheapest(rows: pd.DataFrame, judged: Sequence[str], error: float) -> pd.DataFrame:
-    """Return the fastest row of each group whose errors are kept within `error`, or else its best one.
+    """Return the fastest row of each group whose judged errors are within `error` [1 or rad], or its best
+    row.
 
-    Adds the column meets; of a group without any answer the first row stands.
+    The column `meets` is added. If a group has no answer, its first row is returned.
     """
     now, held = rows.reindex(columns=list(judged)).max(axis=1, skipna=False), kept(rows, judged)
     found = []
@@ -200,10 +205,15 @@ ADVISED = 2
 def advise_path(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
     """Return the advice for the static path of a design, each model against the limit of its own theory.
 
-    A row a group: setting, meets (whether trajectory and torque are within `error` over the path, and stay so
-    in all finer settings), errors of trajectory, torque, stiffness and stress, and of each the `uncertainty`
-    of its limit, times as of `tried`, message (why a model has no answer). Of a group that does not meet the
-    error it is the best setting.
+    Args:
+        error: wanted error of trajectory and torque [1].
+        progress: called with settings done and settings in all.
+
+    Returns:
+        One row per group: setting, `meets` (whether trajectory and torque are within `error` over the path,
+        also with all finer settings), errors of trajectory, torque, stiffness and stress [1], and the
+        `uncertainty` of each limit [1], times as of `tried` [s], message (why a model has no answer). If a
+        group does not meet the error, the row is its best setting.
 
     Raises:
         NoReference: the finite elements do not reach the end of the path.
@@ -217,11 +227,12 @@ def advise_path(design: Design, error: float, progress: Progress = silent) -> pd
 def advise_swing(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
     """Return the advice for the motion of a design after its release from the end of its path.
 
-    Columns as of `advise_path`, with the errors of rotation (largest over the motion, over the rotation at
-    the start) and of frequency. All are held against a spline of `REFERENCE` control points.
+    Columns as of `advise_path`, with the errors [1] of rotation (largest over the motion, over the rotation
+    at the start) and of frequency, for a wanted `error` [1]. The reference is a spline of `REFERENCE` control
+    points.
 
     Raises:
-        NoReference: that spline's motion stops early.
+        NoReference: the motion of this spline stops early.
     """
     frequency = float(answer_modes(design, SplineSettings(control_points=6), count=1).frequency[0])
     instants, start = np.linspace(0.0, PERIODS / frequency, INSTANTS), abs(design.rotation or 0.0)

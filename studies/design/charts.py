@@ -87,7 +87,10 @@ def turned(ratios: Array, inclinations: Array, largest: float, slenderness: floa
 
 
 def dimensionless(found: Batch, ratios: Array, inclinations: Array, slenderness: float) -> dict[str, Array]:
-    """Return the charts' quantities, (D, S) each."""
+    """Return the quantities of the charts (D, S) [1] by name.
+
+    ratios, inclinations: crossing ratio [1] and inclination [rad] of the D pivots; slenderness: L/t [1].
+    """
     rigidity = WIDTH / slenderness**3 / 12.0
     stiffness = found.stiffness / rigidity
     most, least = (extreme.accumulate(stiffness, axis=1) for extreme in (np.maximum, np.minimum))

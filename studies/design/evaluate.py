@@ -88,7 +88,7 @@ class Measured:
 
 
 class Followed(NamedTuple):
-    """Values (R,) of a quantity over states or fibres, and their gradients by the variables (R, N)."""
+    """Values (R,) of a quantity over states or fibres, and gradients (R, N) by the variables, in SI units."""
 
     value: Array
     by: Array
@@ -125,12 +125,13 @@ def answers(
     """Solve a design to the end of its range, with exact gradients.
 
     Args:
+        control_points: of each strip [1].
         parameters: R names of the sensitivities.
-        chain: derivatives (R, N) of these by the variables; None where they are the variables.
+        chain: derivatives (R, N) of these by the variables [SI]; None if they are the variables.
 
     Raises:
         PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
-        BadInput: an effect or value that the model, or its sensitivities, refuse; one line.
+        BadInput: an effect or value that the model, or its sensitivities, reject; one line.
     """
     chain = np.eye(len(parameters)) if chain is None else chain
     sides = [_to_one_side(side, control_points, parameters, chain) for side in sides_of(design)]

@@ -76,10 +76,10 @@ class _Enough(Exception):
 
 
 def optimise(question: Question, start: Array, progress: Callable[[int], None] | None = None) -> Outcome:
-    """Minimise from a scaled start (N,), or from nearer one that has an answer if it has none.
+    """Return the outcome of a minimisation from a scaled start (N,) [1].
 
-    An end that is feasible but not stationary is gone on from, with a fresh approximation of the curvature;
-    `progress` is told of designs that were solved.
+    If the start has no answer, a nearer one that has an answer is used. A feasible end that is not stationary
+    is continued, with a new approximation of the curvature; `progress` receives the number of solved designs.
     """
     programme = Programme(question=question, progress=progress)
     moves = (programme.known + 0.5**k * (start - programme.known) for k in range(MOST_MOVES + 1))
@@ -192,7 +192,8 @@ def _run(programme: Programme, at: Array) -> Outcome:
 
 
 def search(question: Question, begin: Array, progress: Progress) -> list[Outcome]:
-    """Optimise from scaled starts (K, N); progress is of the designs that they may solve at most."""
+    """Return the outcomes of minimisations from scaled starts (K, N) [1]; `progress` counts solved
+    designs."""
     outcomes, most = [], len(begin) * MOST_PATHS
     for k, start in enumerate(begin):
 

@@ -62,8 +62,13 @@ class Active(NamedTuple):
 
 
 def compared(question: Question) -> tuple[Array, Answers]:
-    """Return where a question's own design lies (N,), scaled, and what it answers; of the first of the spread
-    starts that has an answer if its own path ends early; PathEnds where none has one."""
+    """Return the scaled place (N,) [1] of a question's own design, and its answers.
+
+    If its path ends early, the first of the spread starts that has an answer is used.
+
+    Raises:
+        PathEnds: none of them has an answer.
+    """
     own, *spread = question.starts(STARTS)
     try:
         return own, question.answers()
@@ -79,11 +84,11 @@ def compared(question: Question) -> tuple[Array, Answers]:
 
 @dataclass(kw_only=True)
 class Programme:
-    """The programme of a question; `scale` is the largest objective of the design to compare with, or of one
-    beside it that has an answer, and `known` where that lies (N,), scaled.
+    """The optimisation problem of a question, in scaled variables (N,) [1].
 
-    Counts designs that were solved, and tells `progress` of them; keeps the last design's answer, and why the
-    last path `ended` early.
+    `scale` is the largest objective of the design to compare with, or of a neighbour that has an answer, in
+    its unit; `known` (N,) is its place. The object counts solved designs, reports them to `progress`, and
+    keeps the last answer and the reason why the last path `ended` early.
     """
 
     question: Question
@@ -238,7 +243,8 @@ class _Held(NamedTuple):
 
 
 def missed(question: Question, values: Array, found: Answers) -> str:
-    """Return a phrase for each constraint that a design with these variables (N,) misses, the worst first."""
+    """Return a phrase for each constraint that a design with these variables (N,) [1] misses, the worst
+    first."""
     unit, factor = (" mm", 1e3) if question.held == TRAVEL else (" N m/rad", 1.0)
     got, stress = float(found.followed[question.held].value[0]), found.largest(STRESS)
     held = [

@@ -54,8 +54,8 @@ class Variable(NamedTuple):
 class _Ratio(NamedTuple):
     """A limit on the ratio of two variables.
 
-    name: of the constraint. top, bottom: places of the variables. limit: of the ratio, which is the least one
-    if `side` is 1 and the largest if it is -1. words: what the ratio and the limit are.
+    name: of the constraint. top, bottom: places of the variables. limit: of the ratio, the least one if
+    `side` is 1 and the largest if it is -1. words: ratio and limit as a phrase.
     """
 
     name: str
@@ -213,7 +213,7 @@ class PivotQuestion(Question):
 
 
 def variables_of(problem: Problem) -> Array:
-    """Return the variables (5,) of a pivot, its section taken as the rectangle that A and I imply."""
+    """Return the variables (5,) [m, 1, rad] of a pivot, with the rectangular section that A and I imply."""
     values = vars(problem) | problem.rectangle()
     return np.array([values[name] for name in VARIABLES])
 

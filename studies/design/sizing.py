@@ -73,7 +73,8 @@ def baseline(name: str = TABLE_ONE) -> tuple[Problem, Answers]:
 
 
 def asked(name: str, objective: str, aspect: float) -> PivotQuestion:
-    """Return the question beside a baseline at the stiffness of its own answers."""
+    """Return the question of a baseline at the stiffness of its own answers; aspect: largest width over
+    thickness."""
     problem, own = baseline(name)
     allowable = BASELINES[name][2] or own.largest(STRESS)
     question = PivotQuestion.usual(problem, aspect=aspect, objective=objective)
@@ -122,10 +123,10 @@ def _error(problem: Problem, found: Answers) -> float:
 
 
 def toleranced(problem: Problem, found: Answers) -> dict[str, float]:
-    """Return the largest value of each quantity at the usual tolerances of all dimensions together.
+    """Return the largest value of each quantity, in its SI unit, at the usual tolerances of all dimensions.
 
-    Every state of the range, and every fibre, is followed by its own gradient, so that the largest value may
-    pass from one to another, as it does at an optimum.
+    Every state of the range, and every fibre, has its own gradient, so that the largest value may move from
+    one to another, as it does at an optimum.
     """
     length, _, _, thickness, _ = variables_of(problem)
     sizes = np.array([LENGTH, ANGLE, LENGTH / length, GRADE * thickness, LENGTH])

@@ -73,14 +73,18 @@ class Audit:
 
 
 def audit(design: Design, settings: SplineSettings, tolerance: float, progress: Progress = silent) -> Audit:
-    """Answer the full scene and those that leave effects out, and find the cheapest within the tolerance.
+    """Return the answers of the full scene and of scenes that neglect effects, and the cheapest sufficient
+    scene.
 
-    The full scene is that of the design with what could matter beside it: weight and the rotary inertia of
-    the sections, but for one of them that alone makes the design unstable, which is a finding with a row of
-    its own. Changes are against the full scene.
+    The full scene is that of the design, with weight and rotary inertia of the sections. If one of these two
+    alone makes the design unstable, it is not included but has a row of its own. Changes are relative to the
+    full scene.
+
+    Args:
+        tolerance: largest relative change that is accepted [1].
 
     Raises:
-        BadInput: the model refuses the full scene. Unanswered: the full scene has no answer.
+        BadInput: the model rejects the full scene. Unanswered: the full scene has no answer.
     """
     upset = _upsetting(design, settings)
     scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])

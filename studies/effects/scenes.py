@@ -84,14 +84,14 @@ CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
 
 
 def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
-    """Return the size of the design's scene in motion, released from the end of its path.
+    """Return the size of the design's scene in motion, released from the end of its path, by name.
 
-    Unknowns are coordinates, axial forces and multipliers of a step's equations, degrees of freedom the
-    independent coordinates that have inertia; the highest frequency is that at rest and at the start, where
-    the leapfrog has that largest stable step.
+    Unknowns [1] are coordinates, axial forces and multipliers of a step's equations; degrees of freedom [1]
+    are independent coordinates with inertia. The highest frequency [rad/s] is the larger one of the scene at
+    rest and at the start; it gives the largest stable step [s] of the leapfrog.
 
     Raises:
-        BadInput: what the model refuses. spline_model.errors.ConvergenceError: no start is reached.
+        BadInput: a setting that the model rejects. spline_model.errors.ConvergenceError: no start is reached.
     """
     asked = put(design, settings, moving=True)
     mechanism: Mechanism = asked.modelled

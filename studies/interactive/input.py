@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from spline_model.errors import FORMER
 from studies.cases.rules import TRUTH, Rule, choice, number, text, whole
 from studies.errors import BadInput
 from studies.interactive.design import Snapshot
@@ -16,7 +17,7 @@ from studies.interactive.motion import SOLVERS
 from studies.interactive.presets import STEP, STEPS_A_FRAME, Piece
 from studies.kinds import Array
 
-#: What the hand holds: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
+#: Grips of the hand: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
 #: alone; the whole pose.
 DRIVES = ("grip", "pull", "rotation", "pose")
 #: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told; most
@@ -38,9 +39,15 @@ _THREE = Rule(
     ),
     read=lambda value: np.array(value, dtype=float),
 )
-_DRIVE, _SOLVER, _SWEEPS = choice(*DRIVES), choice(*SOLVERS), whole(1, MOST_SWEEPS)
-#: What an event may do, each a method of the session, and the fields that go with it; those with a question
-#: mark may be left out.
+#: Session files of former versions are read with the former name of a solver.
+_SOLVER = Rule(
+    expected=choice(*SOLVERS).expected,
+    admits=lambda value: isinstance(value, str) and FORMER.get(value, value) in SOLVERS,
+    read=lambda value: FORMER.get(value, value),
+)
+_DRIVE, _SWEEPS = choice(*DRIVES), whole(1, MOST_SWEEPS)
+#: Actions of events, each a method of the session, with their fields; fields with a question mark are
+#: optional.
 EVENTS: Events = {
     "setup": {
         **{"preset": _NAME, "values": _MAP, "case?": _MAP, "drive": _DRIVE, "solver": _SOLVER},
@@ -113,7 +120,7 @@ class Clock:
         self.begin(None)
 
     def begin(self, time: float | None) -> None:
-        """Begin anew at `time` [s], or where the next frame is."""
+        """Start again at `time` [s], or at the next frame."""
         self.steps, self.simulated, self._last = 0, 0.0, time
         self.forget()
 
@@ -176,7 +183,7 @@ class Hand:
         self._poses.append((time, pose))
 
     def forget(self) -> None:
-        """The hand begins anew: its next pose is no jump."""
+        """Forget the poses of the hand: the next pose is no jump."""
         self._poses.clear()
         self._odd = None
 

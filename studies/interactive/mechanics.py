@@ -204,7 +204,8 @@ class Mechanics:
         return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
 
     def release(self, velocity: Array, solver: str, sweeps: int) -> None:
-        """Let go of the held body with a `velocity` (3,) of its pose; the strips follow it."""
+        """Release the held body with a `velocity` (3,) [m/s, m/s, rad/s] of its pose; the strips follow
+        it."""
         self._move(solver, sweeps, self._held.full_state(self._system), self._rates(velocity))
 
     def change_solver(self, solver: str, sweeps: int) -> None:

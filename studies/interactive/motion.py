@@ -1,5 +1,5 @@
 """What moves the body: an elastic hand or a load, to where strips, spring and load balance; and, released,
-step after step, sequential impulses (section 4.1), stable or as printed, or the energy-consistent
+step after step, sequential impulses (section 4.1), stable or as published, or the energy-consistent
 integrator."""
 
 import math
@@ -22,7 +22,7 @@ from studies.kinds import Array
 
 #: Least part of an energy-consistent step before the motion is given up: work stays bounded.
 SMALLEST_PART = 2.0**-6
-#: Part of its stability limit that a step of the printed form has, and most of them for one of the frame's.
+#: Part of its stability limit that a step of the published form has, and most of them for one of the frame's.
 STABLE_PART, MOST_PARTS = 0.8, 1000
 #: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and
 #: the force that is none, over EI / L^2.
@@ -33,7 +33,7 @@ FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
 #: Solvers by the name that the user chooses. The first is what one begins with.
 SOLVERS = {
     "stable": "impulses at once (Eq 30), stable form",
-    "printed": "impulses by sweeps over constraints, as printed",
+    "published": "impulses by sweeps over constraints, as published",
     "energy": "energy-consistent",
 }
 #: Most sweeps for one linear system, if the user says nothing.
@@ -81,14 +81,14 @@ class _Energy:
 
 
 class _Impulses:
-    """Sequential impulses: at once, stable at any step, or as printed by sweeps, in steps that are cut to
+    """Sequential impulses: at once, stable at any step, or as published by sweeps, in steps that are cut to
     what is stable."""
 
     def __init__(self, design: Mechanism, z: Array, v: Array, form: str, sweeps: int) -> None:
-        swept, body = sweeps if form == "printed" else None, design.design.bodies[0].name
+        swept, body = sweeps if form == "published" else None, design.design.bodies[0].name
         self._solver = solver = impulse_solver(design, form=form, sweeps=swept, body=body)
         self._out, self.longest = solver.look(solver.start_at(z, v)), math.inf
-        if form == "printed":
+        if form == "published":
             limit, damping = stability_limit(design), solver.system.scene.of(StripDamping)
             time = max((each.relaxation_time for each in damping), default=0.0)
             # damping is explicit too: h^2 + 2 T h < limit^2
@@ -116,9 +116,9 @@ Motion = _Energy | _Impulses
 
 
 def motion(solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> Motion:
-    """Return the motion of the released design from unknowns z (N or more,) and velocities v (Q,).
+    """Return the motion of the released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI].
 
-    sweeps: most of them for one linear system of the printed form.
+    sweeps: largest number for one linear system of the published form [1].
     """
     if solver == "energy":
         return _Energy(design, z, v)
@@ -184,18 +184,20 @@ class Pull:
 
 
 def softness(spread: Array | None, force: float) -> float:
-    """Return the stiffness of the spring from the centre to where the hand is seen [N/m].
+    """Return the stiffness [N/m] of the spring from the centre to the place where the hand is seen.
 
-    It is a finger's, in series with one that turns the columns of the pose's `spread` into no more force than
-    the strips' bending hides; `force`: EI / L^2 [N].
+    It is that of a finger, in series with a spring that turns the `spread` (3, K) of the pose [m, rad] into
+    no more force than the bending of the strips hides; force: EI / L^2 [N].
     """
     seen = POINTER if spread is None else float(np.linalg.norm(spread[:2], axis=1).max())
     return 1.0 / (1.0 / FINGER + seen / (SHARE * force))
 
 
 def ways(tangent: Array | None, drive: str, stiffness: float) -> Array:
-    """Return the body's pose over that of the hand (3, 3), as a spring of `stiffness` and a `drive` hold it,
-    to first order."""
+    """Return the body's pose over that of the hand (3, 3) [1, m, 1/m], to first order.
+
+    tangent: (3, 3) stiffness of the body, None if it is free; stiffness: of the hand's spring [N/m].
+    """
     rigid = np.eye(3)
     if drive == "pose" or tangent is None:
         return rigid

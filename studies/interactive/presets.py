@@ -24,7 +24,7 @@ from studies.errors import BadInput
 STEP = 0.01
 STEPS_A_FRAME = 4
 #: In EI/L^2: strips that a hand compresses fold their control points at the smaller default.
-SLIDE_STIFFNESS = 1000.0
+PENALTY_STIFFNESS = 1000.0
 #: Logarithmic sliders reach from a fifth to five times the value of the design.
 SPAN = 5.0
 
@@ -158,7 +158,7 @@ class Piece:
 
     def modelled(self, control_points: int | None = None, *, loaded: bool = True) -> Any:
         """Return the design as the spline model has it; without a number its control points are left open."""
-        settings = SplineSettings(control_points=control_points, slide_stiffness=SLIDE_STIFFNESS)
+        settings = SplineSettings(control_points=control_points, penalty_stiffness=PENALTY_STIFFNESS)
         piece = self if loaded else self.changed({"load": 0.0})
         return put(piece.design, settings).modelled
 

@@ -40,7 +40,7 @@ def _events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
 
 
 def replay(lines: Iterable[str], session: Session | None = None) -> Iterator[tuple[dict[str, Any], bool]]:
-    """Feed a session file to a new session; yield each state, and whether it is the one that was recorded."""
+    """Feed a session file to a session; yield each state, and whether it equals the recorded one."""
     session = session or Session()
     for event in _events(lines):
         known = event.pop("mark", None)
@@ -61,7 +61,7 @@ def _setup(session: Session) -> dict[str, Any]:
 
 class Recorder:
     """Gives a session's events as lines to `keep`, or keeps them up to a number of characters; begins with a
-    session made anew."""
+    new session."""
 
     MOST = 20_000_000
 

@@ -19,7 +19,7 @@ from studies.interactive.presets import STEP, Piece
 from studies.interactive.view import SENTENCES, shown, unstable
 from studies.kinds import Array
 
-#: Of what the hand holds, what it holds by a spring.
+#: Grips that hold the body by a spring.
 SPRUNG = ("grip", "pull")
 #: Farthest a pose may lie from rest: shift over the strips' length, and turn [rad].
 FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
@@ -95,7 +95,7 @@ class Session:
         return softness(self.spread, self.mechanics.scale["force"])
 
     def _setup(self, event: dict[str, Any]) -> None:
-        """Begin anew with these settings; the first event of a session file."""
+        """Start again with these settings; the first event of a session file."""
         self._begin(self._chosen(event["preset"], event), event["lock_step"], event["rest"])
         self.drive, self.solver, self.sweeps = event["drive"], event["solver"], event["sweeps"]
         self._settle()

@@ -42,7 +42,7 @@ NAMED: dict[str, tuple[Settings | None, Look, str]] = {
         "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
     ),
     PRINTED: (
-        replace(_AS_PAPER, measure="printed"),
+        replace(_AS_PAPER, measure="published"),
         Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
         "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
     ),
@@ -173,7 +173,7 @@ def _read() -> Answer:
 READINGS = Study(
     parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
 )
-"""What the paper leaves open: how it integrates, where the centre of mass lies, gravity and damping.
+"""Assumptions that the paper does not state: quadrature, centre of mass, gravity and damping.
 
 Coarser and finer quadratures of four control points as the paper has them, and what each open assumption
 changes of its Figs 4 and 6: the travel of the body's centre, the frequency after the release and the

@@ -90,7 +90,8 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
 
 
 def turning(rotation: Array) -> Array:
-    """Return rotations (S,) without those before the last state at the first of them, where loads come on."""
+    """Return rotations (S,) [rad] without the states of the loading, which precede the last first
+    rotation."""
     begin = np.flatnonzero(np.abs(rotation - rotation[0]) <= TURNED)[-1]
     return np.where(np.arange(len(rotation)) < begin, np.nan, rotation)
 

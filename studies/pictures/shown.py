@@ -18,7 +18,8 @@ LETTERS = "ABCDE"
 
 @dataclass(frozen=True, kw_only=True)
 class Shown:
-    """An answer as a picture shows it: what it is called, and a yield strength in place of its strips'."""
+    """An answer as a picture shows it: its name, and a yield strength [Pa] that replaces that of its
+    strips."""
 
     name: str
     answer: Answer
@@ -47,7 +48,7 @@ Curve = tuple[Look, Array, Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Chart:
-    """Curves of one quantity over another.
+    """Curves of one quantity over another, in the units of the axes.
 
     Attributes:
         level: a value that is drawn across, with its name; None for none.

@@ -1,1 +1,1 @@
-"""Problems that others published with values, our answers beside them, and what beams leave out of them."""
+"""Problems with published values, the results of both models, and effects that beam theory neglects."""

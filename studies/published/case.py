@@ -1,7 +1,7 @@
-"""Read a published problem: its design, and the values that are in print, each with source and uncertainty.
+"""Read a published problem: its design and its published values, each with source and uncertainty.
 
-A case file has [problem], [[values]] and a design as any case file has one. A table has rows of what is in
-print beside problems.
+A case file has [problem], [[values]] and a design as any case file has one. A table has published rows that
+belong to no problem.
 """
 
 from collections.abc import Mapping
@@ -64,7 +64,7 @@ def _limits(value: Any) -> dict[str, float]:
 
 PROBLEM = (
     _key("problem", "title", text("a title")),
-    _key("problem", "source", text("where the values are in print")),
+    _key("problem", "source", text("where the values are published")),
     _key("problem", "body", text("the name of the body whose place is asked"), optional=True),
     _key("problem", "models", _names(*MODELS)),
     _key("problem", "answers", _names(*ANSWERS)),
@@ -90,7 +90,7 @@ SIDE = 1e-4
 
 @dataclass(frozen=True, kw_only=True)
 class Value:
-    """A value in print.
+    """A published value.
 
     Attributes:
         quantity: of `QUANTITIES`. at: which of the limit points, 1 the first; of a load or a pivot at which
@@ -156,7 +156,7 @@ class _Published:
     """A published problem: what is asked, of whom, and of which design.
 
     Attributes:
-        name: of its file. title, source: in words. values: in print.
+        name: of its file. title, source: in words. values: as published.
         models, answers: who is asked, and for which kinds of answer.
         body: whose place is reported.
     """
@@ -180,7 +180,7 @@ class _Published:
 
 
 def printed(name: str) -> list[tuple[Any, ...]]:
-    """Return the rows of a table that is in print; its file says what they hold."""
+    """Return the rows of a published table; its file describes the columns."""
     return [tuple(row) for row in document.parsed(TABLES / f"{name}.toml")["rows"]]
 
 
@@ -191,7 +191,7 @@ def published(name: str) -> _Published:
 
 
 def read_published(path: Path) -> _Published:
-    """Read the case file of a published problem.
+    """Return the published problem of a case file.
 
     Raises:
         CaseError: one line: file, key, got, expected.

@@ -1,9 +1,9 @@
 """Published problems: what others printed, our answers by model, and whether they meet it.
 
-A published problem is added by one case file in `cases` and its name in `PROBLEMS`. Left out, as numbers
-could not be had with what they belong to: NAFEMS 3DNLG-1 (load, section and modulus are in print, as are tip
-deflections of 142.6 to 144.1 at a load of 4000, but the outline of the Z is in pictures alone); the bistable
-beam of Ma and Chen (its thickness is not in print, and who repeats it chose one that gives the printed peak);
+A published problem is added by one case file in `cases` and its name in `PROBLEMS`. Excluded, as their
+published data are incomplete: NAFEMS 3DNLG-1 (load, section and modulus are published, as are tip deflections
+of 142.6 to 144.1 at a load of 4000, but the outline of the Z is in pictures alone); the bistable beam of Ma
+and Chen (its thickness is not published, and those who repeat it chose one that gives the published peak);
 the four-bar coefficients of Jensen and Howell for cross-axis pivots; rates of catalogue pivots (diameters and
 rates to 10 % without the strips' thickness) and the shift of the Free-Flex pivot (a chart); and the turn of
 the parallelogram's stage (of the size of its mesh's error).
@@ -113,7 +113,7 @@ PROBLEMS = (
     "clamped_hinged_arch",
     "catalogue_pivot",
 )
-#: What a value in print says of itself in the table.
+#: Attributes of a published value that become columns of the table.
 OF_VALUES = ("quantity", "at", "load", "unit", "bound", "published", "uncertainty")
 
 
@@ -131,7 +131,7 @@ def _asked() -> Iterator[tuple[str, str, str]]:
 
 
 def _compared(name: str, model: str, answer: str) -> Answer:
-    """Return a row a value: as it is in print, as it was found, and whether it is met."""
+    """Return one row per value: published value, computed value, and whether they agree."""
     values = published(name).values
     return {"values": [_row(name, model, answer, value) for value in values if model in value.models]}
 
@@ -162,7 +162,7 @@ STUDY = Study(
     parts=(Part(at=_asked, ask=_compared),),
     claims=(
         Claim(
-            claim="Values in print are met within their uncertainty and the limit of their case file",
+            claim="Published values are met within their uncertainty and the limit of their case file",
             formulation="{problem}, {model}, {answer}",
             quantity="the difference of {quantity} at load {load:.3g}, {at:g}",
             rows=lambda tables: tables["values"],
@@ -222,7 +222,7 @@ PLATE = Study(
         ),
     ),
 )
-"""What a beam's clamps leave out: the stiffness of a strip as a plate, beside an independent solution.
+"""Neglected by clamps of a beam: the stiffness of a strip as a plate, compared with an independent solution.
 
 Ends that are built in over their whole width hold the section flat; away from them it curls. The stiffness of
 a strip lies between those of the two, EI and EI / (1 - nu^2).

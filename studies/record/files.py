@@ -63,10 +63,11 @@ def write_whole(path: Path, content: bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """Open a temporary neighbour of `path` that takes its place at the end of the context, unless that fails.
+    """Yield a temporary neighbour of `path`, opened to write, which replaces `path` at the end of the
+    context.
 
     Raises:
-        OutputError: the place cannot be written; a file that was there before is untouched.
+        OutputError: the place cannot be written; a file that existed before is untouched.
     """
     with _clear_error(path):
         handle, name = tempfile.mkstemp(prefix=temporary_prefix(path), dir=path.parent)

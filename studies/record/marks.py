@@ -54,10 +54,11 @@ class Level:
 
 @dataclass(frozen=True, kw_only=True)
 class HeatMap:
-    """A column of a table over two others that count: squares with the decimal exponent of the value.
+    """A column of a table over two integer columns: squares with the decimal exponent of the value.
 
     Attributes:
-        limits: values of the lowest and the highest colour. What is no finite number is a cross.
+        limits: values of the lowest and the highest colour, in the unit of the column. A value that is not
+            finite is a cross.
     """
 
     rows: pd.DataFrame

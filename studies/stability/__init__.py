@@ -1,1 +1,1 @@
-"""Hard cases: each is answered rightly, or refused with the reason; never wrongly in silence."""
+"""Hard cases: each is answered correctly or refused with the reason; no result is wrong without a warning."""

@@ -80,7 +80,7 @@ def _reversals(model: str, count: int) -> Found:
 
 
 def _catches(model: str, count: int) -> Found:
-    """Let the body go and catch it again, `count` times each: books of energy, none of which comes back."""
+    """Release and re-clamp the body, `count` times each: books of energy, none of which comes back."""
     held = DrivenRotation(body="body", angle=0.0)
     how: dict[str, Any] = {"duration": STEPS_BETWEEN * STEP, "step": STEP, "records": 1}
     run = _moved(model, start=RELEASE, **how)

@@ -146,12 +146,12 @@ GEOMETRY = family(lambda: chain(_grid(), _others()))
 """Geometry: crossing ratios and inclinations to their ends, parallel, unequal and curved strips."""
 
 COUNTS = (4, 5, 6, 8, 10)
-MODES, FLOATING = "axial modes,\nslide stiffness 10", "axial modes,\nno slide stiffness"
+MODES, FLOATING = "axial modes,\npenalty stiffness 10", "axial modes,\nno penalty stiffness"
 POINTS, PAPER_POINTS = "Gauss points,\nmixed stretch", "Gauss points,\nconsistent stretch"
 
 
 def _discretised() -> Iterator[Question]:
-    """Yield one path, asked with every count of axial modes, with and without slide stiffness, and of Gauss
+    """Yield one path, asked with every count of axial modes, with and without penalty stiffness, and of Gauss
     points; elements confirm the reference."""
     tries: list[Try] = []
 
@@ -163,7 +163,7 @@ def _discretised() -> Iterator[Question]:
         for m in range(1, n):
             modes = replace(plain, axial_modes=m)
             add(MODES, verdict.VARIED, m, modes)
-            add(FLOATING, verdict.VARIED, m, replace(modes, slide_stiffness=0.0))
+            add(FLOATING, verdict.VARIED, m, replace(modes, penalty_stiffness=0.0))
         for points in range(1, n + 3):
             few = replace(plain, gauss_points=points)
             add(POINTS, verdict.VARIED, points, few)

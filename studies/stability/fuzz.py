@@ -190,7 +190,7 @@ def _ends(rotation: Any, example: _Example) -> list[int]:
 
 
 def _motion(example: _Example, settings: SplineSettings) -> Found:
-    """Let the pivot go: whatever the step, the books of energy close and the clamps hold."""
+    """Release the pivot: for every step, the energy balance closes and the clamps hold."""
     problem, unit = example.problem(), flexural_scale(example.problem())
     inertia = problem.body_moment_of_inertia + problem.body_mass * problem.length**2
     step = 2.0 * math.pi * math.sqrt(inertia / (2.0 * unit)) * float(example.step or 0.0)

@@ -103,7 +103,7 @@ def _cases() -> Iterator[_BucklingCase]:
 
 
 def bent_column(degrees: float) -> Frame:
-    """Return the column under the load at which the elastica's tip has turned by `degrees`."""
+    """Return the column under the load at which the tip of the elastica has turned by `degrees` [deg]."""
     return published("column").frame(EULER * load_ratio(math.radians(degrees)))
 
 

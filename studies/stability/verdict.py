@@ -173,7 +173,7 @@ def _counted(outcomes: pd.DataFrame) -> pd.DataFrame:
 
 
 def as_mechanism(given: Problem, degrees: float) -> Mechanism:
-    """Return the pivot as a mechanism of two strips and a body, driven to `degrees`."""
+    """Return the pivot as a mechanism of two strips and a body, driven to `degrees` [deg]."""
     return Mechanism(
         strips=given.strips,
         bodies=given.bodies,
@@ -248,8 +248,12 @@ class Question:
 def of_path(
     name: str, x: float, y: float, design: Design, settings: Mapping[str, Settings] = PATHS, **more: Any
 ) -> Question:
-    """Return the question for a path: its name, its place on the map, the columns that are asked, and what
-    is not usual of its reference."""
+    """Return the question for a path.
+
+    Args:
+        name: of the family. x, y: place on the map, in the units of its axes. design: the case.
+        settings: of the columns, by name. more: of `Question`, for an unusual reference.
+    """
     place = {"case": name, "x": x, "y": y}
     tries: list[Try] = [(place, model, each, {}) for model, each in settings.items()]
     return Question(place=place, design=design, tries=tries, **more)

@@ -115,7 +115,7 @@ PIVOT_KEYS = _dotted(keys.KEYS)
 SETTINGS = "settings"
 #: L over the thickness of a rectangular section of the case's width: sets the thickness.
 SLENDERNESS = "strip.slenderness"
-#: Keys of a section without known sides, and what a slenderness takes the place of.
+#: Keys of a section without known sides; a slenderness replaces them.
 MOMENTS = ("strip.area_m2", "strip.second_moment_m4", "strip.outer_fibre_m")
 TAPER = {f"strip.{key.name}" for key in keys.TAPER}
 SECTION = (*MOMENTS, "strip.thickness_m")
@@ -135,7 +135,7 @@ _SETTING_RULES: dict[str, Rule] = {
     "axial_modes": whole(1, 100),
     "gauss_points": whole(1, 200),
     "elements": whole(1, 10_000),
-    "slide_stiffness": not_negative("EI/L^2"),
+    "penalty_stiffness": not_negative("EI/L^2"),
 }
 
 

@@ -279,10 +279,10 @@ def _paths_of(answer: Response) -> Paths:
 
 
 def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, float]]:
-    """Return status, reason and quantities of one design, without these where it has no answer.
+    """Return status, reason and quantities (in SI units) of one design; without an answer, no quantities.
 
-    The status is "converged"; "not_converged": the model stopped, with why and where as the reason;
-    "refused": the model does not take the design; "failed": anything else went wrong.
+    The status is "converged"; "not_converged": the model stopped, and the reason states why and where;
+    "refused": the model rejects the design; "failed": any other error.
     """
     try:
         status, reason, answer = _answered(task, task.design(given), task.settings_of(given))

@@ -60,7 +60,8 @@ def read_plan(path: str | Path) -> Plan:
 
 
 def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
-    """Return the sweep of a parsed file whose relative paths start from `folder`; errors as there."""
+    """Return the sweep of a parsed file whose relative paths start from `folder`; CaseError as of
+    `read_plan`."""
     tables = _tables(where, content)
     if not tables["vary"] and "file" not in tables["sample"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
@@ -106,7 +107,8 @@ def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, An
         if name not in ("case", "model", *SECTIONS):
             expected = document.nearest(name, ["case", "model", *SECTIONS])
             raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")
-    return {name: document.table(where, content, name) for name in SECTIONS}
+    tables = {name: document.table(where, content, name) for name in SECTIONS}
+    return tables | {"settings": {document.present(key): value for key, value in tables["settings"].items()}}
 
 
 def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:

@@ -184,8 +184,11 @@ def cluster(
 ) -> Iterator[_Pool]:
     """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
 
-    The suite, in the same version, must be installed on each. The chunks of a worker that is lost go to
-    others; rows come back to this process, which alone writes.
+    Every worker needs the suite in the same version. The chunks of a lost worker go to others. The rows
+    return to this process, which alone writes.
+
+    Args:
+        workers: least number [1]. timeout: for the scheduler [s]. workers_within: for the workers [s].
 
     Raises:
         BadInput: distributed is not installed, no scheduler answers, lacks workers or the suite; one line.

@@ -34,7 +34,8 @@ KEYS = tuple(
 def sample_of(
     where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
 ) -> Sample:
-    """Return the sample that the section [vary] and the values of `KEYS` describe."""
+    """Return the sample that the section [vary] and the values of `KEYS` describe; CaseError as of
+    `read_plan`."""
     method = given.get("method", "list" if "file" in given else "grid")
     random = method in METHODS[2:]
     for name in ("points", "seed"):

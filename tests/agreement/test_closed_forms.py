@@ -118,7 +118,7 @@ def test_small_angle_stiffness_is_the_linear_closed_form(models):
 
 def test_closed_forms_are_those_in_print():
     """Requirement: the elastica meets Mattiasson's table to its last digit, its quadrature the elliptic
-    integrals, and the equation of the end body its first roots in print."""
+    integrals, and the equation of the end body its published first roots."""
     for value in published("tip_force").values:
         angle, x, y = elastica_tip(value.load)
         found = {"displacement_x": x - 1.0, "displacement_y": y, "rotation": angle}[value.quantity]

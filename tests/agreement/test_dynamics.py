@@ -35,8 +35,8 @@ def refined_swing():
 @cache
 def spline_swing(control_points, step=1e-6, integrator="leapfrog", **settings):
     """Rotation of the spline at the same instants."""
-    slide = spline_model.swinging_slide_stiffness(control_points)
-    design = TABLE_ONE | {"control_points": control_points, "slide_stiffness": slide} | settings
+    slide = spline_model.motion_penalty_stiffness(control_points)
+    design = TABLE_ONE | {"control_points": control_points, "penalty_stiffness": slide} | settings
     run = spline_model.solve_release(
         spline_model.cross_axis_pivot(**design),
         duration=DURATION,

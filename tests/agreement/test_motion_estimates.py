@@ -142,7 +142,8 @@ def test_what_only_translates_has_an_error():
 
 @BOTH
 def test_critical_points_on_the_way_to_the_start_are_remarked_on(models):
-    """A column that is pressed beyond what it bears before it is turned: both models say so in a motion."""
+    """A column that is pressed beyond its critical load before it is turned: both models print a remark in a
+    motion."""
     rigidity = YOUNGS_MODULUS * 0.1 * 0.01**3 / 12.0
     load = {"applied_force": {"force": (-12.0 * rigidity, 0.0)}}
     column = strips(models, 0.1, 0.01, effects=tuple(load), parameters=load)

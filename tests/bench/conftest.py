@@ -9,5 +9,5 @@ TIMED = "test_ratios.py"
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Leave out what compares times unless benchmarks are asked for."""
+    """Skip the comparison of times unless benchmarks are enabled."""
     return True if collection_path.name == TIMED and not config.getoption("benchmark_enable") else None

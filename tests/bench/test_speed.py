@@ -1,4 +1,4 @@
-"""What a solve takes, and the work it is: seconds are reported by `make bench`, only counters are judged."""
+"""Time and operation counts of a solve: `make bench` reports seconds, tests judge counters only."""
 
 import math
 

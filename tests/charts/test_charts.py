@@ -56,6 +56,6 @@ def test_charts_are_the_answers_of_elements():
 
 
 def test_theory_ends_where_the_remarks_say():
-    """Requirement: at a ratio of the table what a beam leaves out is the share that stands beside it."""
+    """Requirement: at a ratio of the table beam theory neglects the share of that row."""
     for row in pivot.limits()["limits"]:
         assert pivot.LEFT_OUT[row["ratio"]][0](row["value"]) == pytest.approx(row["share"], rel=0.05)

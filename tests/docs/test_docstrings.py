@@ -22,7 +22,7 @@ FUNCTIONS = {
 #: Sections that each of them has.
 SECTIONS = ("Parameters", "Examples")
 #: Those without a refusal of their own, and those that rest on no publication.
-NO_RAISES = ("spline_model.plate_factors", "spline_model.swinging_slide_stiffness")
+NO_RAISES = ("spline_model.plate_factors", "spline_model.motion_penalty_stiffness")
 NO_SOURCE = ("plot", "overlay", "BodyDesign", "StripDesign")
 
 

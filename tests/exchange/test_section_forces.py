@@ -98,7 +98,7 @@ def test_clamps_carry_the_weight_of_the_strip(settings):
 
 @pytest.mark.parametrize("settings", [SPLINE, FeSettings(elements=20)], ids=lambda s: s.model)
 def test_a_release_begins_with_the_static_section_forces(settings):
-    """The first record of a motion has the fields and the stress of the static state that was let go."""
+    """The first record of a motion has the fields and the stress of the released static state."""
     step = {"step": 1e-4} if settings is SPLINE else {"integrator": "generalised-alpha", "step": 1e-4}
     pivot = design_of("cross_axis_pivot")
     motion, path = (

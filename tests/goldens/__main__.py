@@ -1,4 +1,4 @@
-"""Ask the goldens anew and print what differs from the stored ones; `--write` stores it.
+"""Compute the goldens again and print the differences from the stored ones; `--write` stores them.
 
     python -m tests.goldens [--write] [CASE ...]
 

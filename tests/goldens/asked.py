@@ -1,4 +1,4 @@
-"""What the goldens ask: every command on every shipped case, and on published problems where it can be.
+"""Requests of the goldens: every command on every shipped case, and on published problems where possible.
 
 Arguments are reduced where a command is expensive: few increments, control points and elements.
 """

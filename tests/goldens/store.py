@@ -19,7 +19,7 @@ def stored(case: str) -> dict[str, Any]:
 
 
 def asked(request: Request) -> Any:
-    """Ask a request anew, in a folder of its own, and return the answer in the form that is stored."""
+    """Run a request, in a folder of its own, and return the answer in the form that is stored."""
     with tempfile.TemporaryDirectory() as folder:
         found = answer(request, Path(folder))
     return rounded(found, request.words.partition(" ")[0], scales(request.case))
@@ -31,7 +31,7 @@ def compared(request: Request, old: Any, new: Any) -> list[Difference]:
 
 
 def renewed(case: str) -> tuple[dict[str, Any], list[str]]:
-    """Ask all of a case anew; return what is to be stored, and what has changed in lines.
+    """Run all requests of a case; return the answers to store, and their changes in lines.
 
     An answer that is within the tolerances of the stored one stays as it is.
     """

@@ -122,7 +122,7 @@ CONTRAST = """
 
 
 def drag(browser, places):
-    """Press the mouse at the first place [px], move through the others and let go at the last."""
+    """Press the mouse at the first place [px], move through the others and release at the last."""
     left = {"button": "left", "buttons": 1, "clickCount": 1}
     (x, y), *others = places
     browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)

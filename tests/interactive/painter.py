@@ -115,7 +115,7 @@ class Finger:
 
 @dataclass(eq=False)
 class Painter:
-    """Draws pictures of markers through fixed optics; noise follows from `seed` and the frame's number.
+    """Draws pictures (H, W) of markers through fixed optics; noise depends on `seed` and the frame's number.
 
     samples: in each direction of a pixel, whose mean it becomes.
     """

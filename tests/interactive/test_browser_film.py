@@ -162,7 +162,7 @@ def test_strips_end_in_the_clamps(still):
 
 
 def test_no_camera_is_explained(camera):
-    """Requirement: without a camera a sentence says so within 2 s, and the mouse drives; the console stays
+    """Requirement: without a camera a message is shown within 2 s, and the mouse drives; the console stays
     clean."""
     del camera
     with Server(Settings(camera="browser")) as hosted, Browser() as browser:

@@ -121,7 +121,7 @@ def test_solvers_are_chosen_by_their_names(page):
     assert names[0] == "impulses at once (Eq 30), stable form"
     assert "impulses by sweeps over constraints, as printed" in names
     assert page.ask("document.getElementById('sweeps-row').hidden")
-    chosen(page, "solver", "printed")
+    chosen(page, "solver", "published")
     page.wait("!document.getElementById('sweeps-row').hidden")
     chosen(page, "sweeps", "7")
     page.wait("studio.state.sweeps === 7")
@@ -190,8 +190,8 @@ def test_picture_fits_every_design(page, name):
 
 
 def test_unstable_load_is_named_on_the_page(page):
-    """Requirement: beyond its critical load the page says so, with the load, the negative stiffness, and that
-    contact is not modelled."""
+    """Requirement: beyond its critical load the page shows a message with the load, the negative stiffness,
+    and that contact is not modelled."""
     typed(page, "load, downward in N", "0.4")
     text = page.wait("(t => /critical load/.test(t) && t)(document.getElementById('faults').textContent)")
     assert re.search(r"Unstable under this load.*Contact.*not modelled.*283 mN.*stiffness -", text)

@@ -1,4 +1,5 @@
-"""Simulated time: as long as the time that passed, added up step by step, and begun anew with a design."""
+"""Simulated time: as long as the time that passed, added up step by step, and set to zero with a new
+design."""
 
 import math
 import re
@@ -25,7 +26,7 @@ def test_simulated_time_is_the_time_that_passed(rate, jitter, monkeypatch):
     assert abs(state["simulated"] / (state["t"] - 1.0) - 1.0) < 1e-3
 
 
-def test_simulated_time_is_added_up_and_begins_anew_with_a_design():
+def test_simulated_time_is_added_up_and_starts_again_with_a_design():
     """Requirement: a changed time scale does not rewrite what was simulated: it goes on at another pace, and
     another design begins at nought."""
     made = session()
@@ -52,13 +53,13 @@ def test_simulated_time_is_added_up_and_begins_anew_with_a_design():
         {"do": "parameter", "name": "relaxation_time", "value": 0.0},
         {"do": "parameter", "name": "body_mass", "value": 0.1},
         {"do": "solver", "name": "energy"},
-        {"do": "solver", "name": "printed"},
+        {"do": "solver", "name": "published"},
     ],
     ids=lambda change: change["name"],
 )
 def test_a_swing_goes_on_through_a_change(solver, change):
     """Requirement: another design, or the same by another solver, swings on from the pose and with the
-    velocity that the former one had; energies are counted anew."""
+    velocity that the former one had; energies are counted from zero."""
     made = session()
     made.feed({"do": "solver", "name": solver, "t": 0.0})
     turned(made, 20)
@@ -115,8 +116,8 @@ def test_every_solver_swings_the_pivot(solver):
 def test_sweeps_are_as_many_as_are_chosen():
     """Requirement: the number of sweeps that is typed is the most that a step of the printed form makes."""
     most = 71 * 4  # printed steps of a frame
-    assert swung("printed", 1, sweeps=2)["iterations"] <= 2 * most
-    assert swung("printed", 1, sweeps=30)["iterations"] > 5 * most
+    assert swung("published", 1, sweeps=2)["iterations"] <= 2 * most
+    assert swung("published", 1, sweeps=30)["iterations"] > 5 * most
 
 
 def test_time_goes_slower_where_there_is_no_room_for_its_steps():

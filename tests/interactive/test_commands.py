@@ -71,7 +71,7 @@ def test_bad_arguments_are_one_line(words, capfd):
 
 
 def test_packages_of_the_extra_are_those_of_pyproject():
-    """Requirement: what the command asks for is what the extra installs."""
+    """Requirement: the command needs the packages that the extra installs."""
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))

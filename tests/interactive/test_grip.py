@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from spline_model import cross_axis_pivot, solve_statics
-from studies.interactive.presets import OWN, PRESETS, SLIDE_STIFFNESS, opened
+from studies.interactive.presets import OWN, PENALTY_STIFFNESS, PRESETS, opened
 from studies.interactive.session import Session
 from tests import gates
 from tests.interactive.events import FRAME, codes, seen, session, turned
@@ -75,7 +75,7 @@ def test_strips_and_grip_are_in_balance(preset):
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_pulled_body_turns_until_no_moment_is_left(preset):
     """Requirement: a body that a spring pulls by its centre turns to where the strips' force is the spring's
-    and their moment nought; pulled aside it turns to that side, and let go of it is at rest."""
+    and their moment nought; pulled aside it turns to that side, and it is at rest when released."""
     made = session(preset, drive="pull")
     for k, x in enumerate((-4e-3, -8e-3, -12e-3, 6e-3)):
         state = made.feed({"do": "pose", "pose": [x, 0.0, 0.0], "t": k * FRAME})
@@ -124,7 +124,7 @@ def test_load_is_that_of_the_model(degrees):
     force = {"applied_force": {"force": (0.0, -load)}}
     given = {"effects": ("bending", "stretching", "applied_force"), "parameters": force}
     given["control_points"] = state["control_points"]
-    pivot = cross_axis_pivot(**TABLE_ONE, **given, slide_stiffness=SLIDE_STIFFNESS)
+    pivot = cross_axis_pivot(**TABLE_ONE, **given, penalty_stiffness=PENALTY_STIFFNESS)
     path = solve_statics(pivot, rotation=math.radians(degrees))
     assert np.abs(np.array(state["pose"][:2]) - path.centre[-1]).max() < 1e-9
     assert state["force"][2] == pytest.approx(path.torque[-1], rel=1e-9)
@@ -133,7 +133,7 @@ def test_load_is_that_of_the_model(degrees):
 
 @pytest.mark.parametrize("solver", ["stable", "energy"])
 def test_released_load_swings_and_gains_nothing(solver):
-    """Requirement: under a load the energy of strips, body and load never rises; let go where it balances,
+    """Requirement: under a load the energy of strips, body and load never rises; released where it balances,
     the body stays there."""
     made = loaded(0.05)
     made.feed({"do": "solver", "name": solver, "t": 0.0})

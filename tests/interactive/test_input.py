@@ -15,7 +15,8 @@ from tests.interactive.events import FRAME, codes, seen, session, turned
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_jumps_keep_a_good_state(preset):
-    """Requirement: jumps of 60 degrees and 20 mm give an equilibrium or keep the last state and say so."""
+    """Requirement: jumps of 60 degrees and 20 mm give an equilibrium, or keep the last state and show a
+    message."""
     made, rng = session(preset, drive="pose"), np.random.default_rng(3)
     refused = 0
     state = turned(made, 0)
@@ -66,7 +67,7 @@ def test_absurd_poses_are_left_out(pose):
         ({"do": "preset", "name": "polymer", "values": 3}, "values: got 3"),
         ({"do": "drive", "by": "will"}, 'by: got the text "will"'),
         (
-            {"do": "solver", "name": "printed", "sweeps": 0},
+            {"do": "solver", "name": "published", "sweeps": 0},
             "sweeps: got 0, expected a whole number from 1 to 1000",
         ),
         ({"do": "setup", "preset": "polymer"}, "values: got None"),

@@ -59,7 +59,7 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
 
 
 def test_a_recording_begins_at_rest():
-    """Requirement: a session that is recorded begins anew, held at rest, whatever it did before."""
+    """Requirement: a recorded session starts again, held at rest, whatever happened before."""
     session = Session()
     session.feed({"do": "pose", "pose": [0.0, 0.0, 0.3], "t": 0.0})
     session.feed({"do": "release", "t": 0.1})

@@ -124,7 +124,7 @@ def test_malformed_messages_close_their_socket_only(server, message, text):
 
 def test_too_large_messages_are_refused(server):
     """Requirement: a message above the limit closes the socket before any of it is read: its length is
-    enough. What a server leaves unread could take the reason of its closing away."""
+    enough. Unread bytes could hide the reason for closing."""
     binary, masked, of_eight_bytes = 0x82, 0x80, 127  # RFC 6455, section 5.2
     length, mask = (protocol.LARGEST_PICTURE + 10).to_bytes(8, "big"), bytes(4)
     with opened(server) as socket:
@@ -172,7 +172,7 @@ NETWORK = "127.0.0.2"
 
 def test_page_is_shared_at_one_more_address():
     """Requirement: shared, the page is there for this machine and at one address of its network, for those
-    with the token and pages of its own alone; other hosts and origins are refused; the page says so."""
+    with the token and pages of its own alone; other hosts and origins are refused; the page shows this."""
     with Server(Settings(camera="none", share=NETWORK)) as hosted:
         server = hosted
         own, theirs = f"127.0.0.1:{server.port}", f"{NETWORK}:{server.port}"

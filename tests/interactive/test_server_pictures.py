@@ -64,7 +64,7 @@ def test_wrong_size_is_refused_and_right_one_scales(server):
 
 
 def test_film_file_is_played(tmp_path):
-    """Requirement: a film file gives its pictures in order, and begins anew at its end."""
+    """Requirement: a film file gives its pictures in order, and starts again at its end."""
     import cv2
 
     path = tmp_path / "film.avi"

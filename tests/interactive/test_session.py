@@ -84,7 +84,7 @@ def test_release_takes_four_steps_a_frame_and_gains_no_energy(preset, solver):
 
 
 def swung(solver, load, degrees=90, frames=25, finer=1):
-    """Energies, over that at the start, of the soft pivot, a second after it is let go."""
+    """Energies, over that at the start, of the soft pivot, a second after its release."""
     made = session()
     made.feed({"do": "parameter", "name": "load", "value": load, "t": 0.0})
     made.feed({"do": "solver", "name": solver, "t": 0.0})

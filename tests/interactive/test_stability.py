@@ -47,7 +47,7 @@ def test_a_load_beyond_the_critical_one_is_named(preset):
 
 @pytest.mark.parametrize("solver", ["stable", "energy"])
 def test_no_body_falls_through_the_ground(solver):
-    """Requirement: under five times its critical load a body that is let go stops where its centre meets the
+    """Requirement: under five times its critical load a released body stops where its centre meets the
     ground, in a sentence, and time is paused."""
     made, _ = loaded("polymer", 1.4)
     made.feed({"do": "solver", "name": solver, "t": 0.0})
@@ -109,7 +109,7 @@ def test_body_of_a_four_bar_is_grasped():
 
 
 def test_free_end_is_refused_in_one_line():
-    """Requirement: a mechanism whose strip ends nowhere is refused with what is expected."""
+    """Requirement: a mechanism with a free strip end is refused with what is expected."""
     document = parsed(FOLDER / "cantilever_with_body.toml")
     document["strips"][0]["tip"] = "free"
     with pytest.raises(BadInput, match=r"strips: got .* with a free end, expected both ends on a body"):

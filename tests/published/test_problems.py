@@ -1,4 +1,4 @@
-"""Published problems: case files that say what is in print and where, and our answers beside it."""
+"""Published problems: case files with published values and sources, and the results of the models."""
 
 import math
 import re
@@ -43,7 +43,7 @@ def test_every_case_file_is_a_problem_of_the_study():
     assert sorted(problems.PROBLEMS) == NAMES
 
 
-#: Of a key that is left out, or of a text and what stands in its place, what must be said.
+#: Of a missing key, or of a text and what stands in its place, what must be said.
 LEFT_OUT = ("source", "published", "unit", "unit_SI", "uncertainty", "limit", "quantity", "title")
 WRONG = [
     *((f"^{key} =.*$", "", f"{key}: got no such key, expected") for key in LEFT_OUT),
@@ -88,7 +88,7 @@ def test_when_a_value_is_met(bound, found, within):
 
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(each, marks=pytest.mark.slow) for each in SLOWER)])
 def test_splines_meet_what_is_in_print(name):
-    """Requirement: the spline's answers to quick problems are those in print."""
+    """Requirement: the spline's answers to quick problems are the published ones."""
     for value in published(name).values:
         assert value.met(ours(name, "spline", "beam", value), value.limits["beam"])
 
@@ -105,7 +105,7 @@ def test_the_column_is_the_elastica_between_printed_digits():
 
 
 def test_all_values_are_met():
-    """Requirement: every value in print is met by every model that is asked, and the check has teeth."""
+    """Requirement: every published value is met by every model that is asked, and the check has teeth."""
     values = Store().load_tables("published/problems")["values"]
     missed = values[values["within"] != "yes"]
     assert missed.empty, missed[["case", "model", "answer", "quantity", "published", "found"]].to_string()

@@ -39,7 +39,7 @@ def test_pages_are_filled_and_keep_their_margins(pdf):
 
 
 def _filled(picture):
-    """Return how far down between the margins a page has ink [1], the running lines left out."""
+    """Return how far down between the margins a page has ink [1], without header and footer."""
     rows = np.flatnonzero((picture < 200).any(axis=1))
     top, bottom = 0.09 * len(picture), 0.925 * len(picture)
     inside = rows[(rows > top) & (rows < bottom)]

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from spline_model import cross_axis_pivot, swinging_slide_stiffness
+from spline_model import cross_axis_pivot, motion_penalty_stiffness
 from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2
@@ -22,9 +22,9 @@ SECTION = {"area": 8e-6, "second_moment_of_area": 4e-13, "youngs_modulus": 2e9, 
 
 
 def pivot(design=TABLE_ONE, **settings):
-    """A pivot in motion with its slide stiffness, of six control points unless said otherwise."""
+    """A pivot in motion with its penalty stiffness, of six control points unless said otherwise."""
     n = settings.setdefault("control_points", 6)
-    settings.setdefault("slide_stiffness", swinging_slide_stiffness(n))
+    settings.setdefault("penalty_stiffness", motion_penalty_stiffness(n))
     return cross_axis_pivot(**design, **settings)
 
 

@@ -49,7 +49,7 @@ def linkage() -> Mechanism:
 
 
 def rebuilt(given: Mechanism, i: int) -> Mechanism:
-    """One of the designs, typed anew."""
+    """One of the designs, written separately."""
     strips = []
     for strip in given.design.strips:
         width = strip.area / np.sqrt(12.0 * strip.second_moment_of_area / strip.area)

@@ -64,7 +64,7 @@ def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, k
 
 def test_printed_forces_have_no_inertia():
     """Requirement: forces without a potential have a path without inertia and critical points."""
-    pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="printed", stretch="consistent")
+    pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="published", stretch="consistent")
     answer = solve_statics(pivot, rotation=0.5, increments=5)
     assert (answer.inertia == -1).all()
     assert answer.critical_points == ()

@@ -7,10 +7,10 @@ from spline_model import (
     DEFAULT_EFFECTS,
     DrivenRotation,
     cross_axis_pivot,
+    motion_penalty_stiffness,
     solve_impulses,
     solve_mechanism,
     solve_motion,
-    swinging_slide_stiffness,
 )
 from tests import gates
 from tests.spline.effect_scenes import PARAMETERS, scene_with
@@ -51,7 +51,7 @@ def motion_balance(booked=1.0):
         "applied_force",
         "applied_moment",
     )
-    scene = scene_with(*names, slide_stiffness=swinging_slide_stiffness(6))
+    scene = scene_with(*names, penalty_stiffness=motion_penalty_stiffness(6))
     drive = DrivenRotation(body="body", angle=1.0, history=((0.02, 0.0), (0.03, -0.6)), held=(0.02, 0.035))
     run = solve_motion(scene, start=1.2, duration=0.05, step=5e-5, drive=drive)
     assert run.status.value == "converged", run.message

@@ -24,7 +24,7 @@ ROOTS = {
     "effects": ("bending", "stretching", "root_compliance"),
     "parameters": {"root_compliance": {"root": "monolithic"}},
 }
-ROBUST = {"slide_stiffness": 1000.0}
+ROBUST = {"penalty_stiffness": 1000.0}
 POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
 """Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""
 
@@ -42,7 +42,7 @@ def disagreement(pose, increments=8, slide=None, **settings):
     """Largest relative difference of force and control points to the multiplier path of the same pose."""
     *shift, rotation = pose
     solver, state = held(np.array(shift), rotation, **settings)
-    other = {} if slide is None else {"slide_stiffness": slide}
+    other = {} if slide is None else {"penalty_stiffness": slide}
     pivot = cross_axis_pivot(**(SIX | settings | other))
     reference, displacement = pivot, state.pose[:2] - pivot.centre
     drives = (
@@ -74,8 +74,8 @@ def test_agrees_with_the_multiplier_path(pose, scene):
     gates.check("spline_held_pose", disagreement(pose, **scene))
 
 
-def test_another_slide_stiffness_is_another_pose():
-    """Requirement: the check notices a slide stiffness that differs by a per mille."""
+def test_another_penalty_stiffness_is_another_pose():
+    """Requirement: the check notices a penalty stiffness that differs by a per mille."""
     gates.refuse("spline_held_pose", partial(disagreement, POSES[2]))
 
 

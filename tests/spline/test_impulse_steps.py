@@ -59,7 +59,8 @@ def test_catch_reaches_a_pose_that_is_20_degrees_away(design, turn):
 
 
 def caught_swing(step=2.5e-6):
-    """Largest difference of a swing, caught and let go by a drive, to the energy-consistent integrator's."""
+    """Largest difference of a swing, re-clamped and released by a drive, to the energy-consistent
+    integrator's."""
     chosen = pivot(control_points=4)
     drive = DrivenRotation(body="body", angle=0.0, held=(1e-3, 2e-3))
     options = {"start": 0.5, "drive": drive, "duration": 2.5e-3, "records": 25}
@@ -89,7 +90,7 @@ def balance_error(form, step=4e-6):
     return np.abs(balance - balance[0]).max() / balance[0]
 
 
-@pytest.mark.parametrize("form", ["printed", "stable"])
+@pytest.mark.parametrize("form", ["published", "stable"])
 def test_damping_is_booked(form):
     """Requirement: what damping takes is counted, to the accuracy of the step."""
     gates.hold(f"impulse_{form}_balance", partial(balance_error, form))

@@ -1,4 +1,4 @@
-"""Sudden events in a motion, the energy monitor, restart, bounded work and what a step leaves unresolved."""
+"""Sudden events in a motion, the energy monitor, restart, bounded work and frequencies beyond a step."""
 
 import math
 from functools import cache, partial

@@ -28,9 +28,9 @@ from tests.spline.test_batch_of_mechanisms import linkage
 from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 
 CURLED = {"effects": (*DEFAULT_EFFECTS, "anticlastic")}
-PRINTED = {"measure": "printed", "stretch": "consistent"}
+PRINTED = {"measure": "published", "stretch": "consistent"}
 SPATIAL = {"measure": "spatial", "stretch": "consistent"}
-UNSTEADY = "measure: got 'printed', expected material or spatial"
+UNSTEADY = "measure: got 'published', expected material or spatial"
 TAPERED = SIDES | {"thickness_end": 2.0 * SIDES["thickness"]}
 ROOT = 'expected "monolithic" or a number >= 0, its length over the thickness'
 
@@ -44,11 +44,11 @@ def more(**parameters):
 PIVOTS = [
     ({"axial_modes": 6}, "axial_modes: got 6, expected an integer >= 1 and <= 5"),
     ({"axial_modes": 2, "stretch": "consistent"}, "axial_modes: got 2, expected none"),
-    ({"measure": "printed"}, "stretch: got 'mixed', expected consistent"),
+    ({"measure": "published"}, "stretch: got 'mixed', expected consistent"),
     ({"measure": "spatial"}, "stretch: got 'mixed', expected consistent, ... measure = spatial"),
     ({"control_points": 8, "gauss_points": 5}, "5 Gauss points see 5 of 6 shapes of bending"),
     ({"control_points": 4, "gauss_points": 2, "stretch": "consistent"}, "2 of 3 shapes of stretching"),
-    ({"slide_stiffness": 0.0}, "4 axial modes leave 1 of 5 strains free"),
+    ({"penalty_stiffness": 0.0}, "4 axial modes leave 1 of 5 strains free"),
     ({"segments": 0}, "segments: got 0, expected an integer >= 1"),
     (scene(("bending", "gravty")), "effects: got 'gravty', expected one of bending, ... nearest: gravity"),
     (scene(("bending", "stretching", "shear")), "'shear', expected ... (use --model fe-shear)"),
@@ -199,7 +199,7 @@ def stepped(**pose):
 MASSLESS = scene(("bending", "stretching", "body_inertia"))
 STILL = scene(("bending", "stretching"))
 DAMPED = more(strip_damping={"relaxation_time": 1e-6})
-UNREACHED = {"control_points": 8, "slide_stiffness": 10.0}
+UNREACHED = {"control_points": 8, "penalty_stiffness": 10.0}
 LONG = {"duration": 1e6, "step": 1e-6}
 WITHIN = "duration: got 1000000.0, expected records within 2 GB"
 ASKED = [
@@ -226,7 +226,7 @@ ASKED = [
     # which of both is up to round-off: a drive against inextensible strips that cannot give way
     (lambda: solve_statics(opposed(stretch="inextensible", control_points=10), rotation=-0.1), "tangent"),
     (lambda: natural_frequencies(pivot(**PRINTED)), f"{UNSTEADY} for motions and modes"),
-    (lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(), f"{UNSTEADY}: printed"),
+    (lambda: solve_statics(pivot(**PRINTED), rotation=0.1).body_stiffness(), f"{UNSTEADY}: published"),
     (lambda: release(step=1.0), "step: got 1.0, expected at most the duration"),
     (lambda: release(**LONG), WITHIN),
     (lambda: release(records=0), "records: got 0, expected an integer >= 1"),
@@ -236,7 +236,7 @@ ASKED = [
     (lambda: release(accuracy=1e-2, step=1e-5), "accuracy: got 0.01, expected no step beside it"),
     (lambda: release(accuracy=0.0), "accuracy: got 0.0, expected a finite number > 0 [rad]"),
     (lambda: solve_motion(pivot(**STILL), start=0.5), "strip_inertia, section_rotary_inertia, b"),
-    (lambda: impulses(form="euler"), "form: got 'euler', expected one of printed, stable"),
+    (lambda: impulses(form="euler"), "form: got 'euler', expected one of published, stable"),
     (lambda: impulses(sweeps=30), "sweeps: got 30, expected none of the stable form"),
     (lambda: impulses(sweeps=0), "sweeps: got 0, expected an integer >= 1"),
     (lambda: impulses(tolerance=0.0), "tolerance: got 0.0"),
@@ -254,7 +254,7 @@ ASKED = [
     (lambda: HeldPivot(pivot(stretch="consistent")), "bodies on strips"),
     (lambda: derived(("depth",)), "parameters: got 'depth', expected one of length, "),
     (lambda: derived(()), "parameters: got [], expected at least one name, each once"),
-    (lambda: derived(given=PRINTED), f"{UNSTEADY}: printed forces are of static paths alone"),
+    (lambda: derived(given=PRINTED), f"{UNSTEADY}: published forces are for static paths only"),
     (lambda: derived(("strip_3.area",)), "parameters: got 'strip_3.area', expected one of length, "),
     (lambda: derived(given={"length": 0.09}, of=path()), "solution: got 'state 0 with residual"),
     (lambda: derived(given={"control_points": 7}, of=path()), "unknowns', expected a solution of this pivot"),

@@ -10,9 +10,9 @@ from spline_model import (
     StripDesign,
     compliant_mechanism,
     impulse_solver,
+    motion_penalty_stiffness,
     solve_impulses,
     solve_release,
-    swinging_slide_stiffness,
 )
 from tests import gates
 from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, total
@@ -28,7 +28,7 @@ def time_error(form, step=1.25e-7):
     return np.abs(solve_impulses(chosen, form=form, step=step, **options).rotation - exact).max()
 
 
-@pytest.mark.parametrize("form, order", [("printed", 1), ("stable", 2)])
+@pytest.mark.parametrize("form, order", [("published", 1), ("stable", 2)])
 def test_order_in_time(form, order):
     """Requirement: both forms tend to the other integrators' trajectory, of order 1 and 2."""
     errors = np.array([time_error(form, step) for step in (1e-6, 5e-7, 2.5e-7, 1.25e-7)])
@@ -43,7 +43,7 @@ def test_order_in_time(form, order):
 
 def test_an_unstable_printed_step_is_named():
     """Requirement: above the limit the run stops with a message and finite records."""
-    trajectory = solve_impulses(pivot(), start=0.1, duration=1.0, form="printed")
+    trajectory = solve_impulses(pivot(), start=0.1, duration=1.0, form="published")
     assert trajectory.status.value == "not_converged"
     assert "above the stability limit" in trajectory.message
     assert np.isfinite(trajectory.states).all()
@@ -94,7 +94,7 @@ def test_work_of_a_picture():
 def sweep_difference(sweeps=200):
     """Largest difference of the rotation with sweeps to that with the direct solution, over 50 steps."""
     chosen = pivot(control_points=4)
-    options = {"start": QUARTER, "form": "printed", "step": 4e-6, "duration": 2e-4}
+    options = {"start": QUARTER, "form": "published", "step": 4e-6, "duration": 2e-4}
     direct = solve_impulses(chosen, **options)
     swept = solve_impulses(chosen, sweeps=sweeps, **options)
     assert swept.counters["sweeps"] > 2 * swept.counters["solves"]
@@ -118,7 +118,7 @@ def tumbling(form, step):
     ends = {"start": (0.0, 0.0), "end": (0.1, 0.0), "root": "left", "tip": "right"}
     strip = StripDesign(name="strip", **ends, **SECTION)
     free = compliant_mechanism(
-        strips=[strip], bodies=bodies, control_points=5, slide_stiffness=swinging_slide_stiffness(5)
+        strips=[strip], bodies=bodies, control_points=5, penalty_stiffness=motion_penalty_stiffness(5)
     )
     solver = impulse_solver(free, body="left", form=form, tolerance=1e-11)
     system, layout, mass = solver.system, solver.system.layout, solver.motion.mass
@@ -146,7 +146,7 @@ def tumbling(form, step):
     return np.abs(after - linear).max() / np.linalg.norm(linear), abs(turned / angular - 1.0)
 
 
-@pytest.mark.parametrize("form, step", [("printed", 1e-6), ("stable", 1e-3)])
+@pytest.mark.parametrize("form, step", [("published", 1e-6), ("stable", 1e-3)])
 def test_free_flight_keeps_linear_momentum(form, step):
     """Requirement: impulses between bodies and a strip in free flight change no linear momentum."""
     gates.check("impulse_linear_momentum", max(tumbling(form, step)[0], 1e-17))
@@ -159,7 +159,7 @@ def test_forms_keep_angular_momentum():
     def stable(step=2.5e-4):
         return tumbling("stable", step)[1]
 
-    gates.check("impulse_angular_momentum", max(tumbling("printed", 1e-6)[1], 1e-17))
+    gates.check("impulse_angular_momentum", max(tumbling("published", 1e-6)[1], 1e-17))
     gates.refuse("impulse_angular_momentum", stable)
     assert stable(5e-4) / stable() > 2**1.85
     gates.hold("impulse_stable_angular_momentum", stable)

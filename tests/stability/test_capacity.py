@@ -87,7 +87,7 @@ def test_held_strips_bear_eulers_load(settings, inclination):
 
 @BY_MODEL
 def test_a_free_body_tips_where_its_stiffness_vanishes(settings):
-    """Requirement: let go, the pivot tips where the stiffness of its columns is that of the lever."""
+    """Requirement: released, the pivot tips where the stiffness of its columns is that of the lever."""
     lever = 0.5 * LENGTH * math.sin(INCLINATION)  # of the centre above the crossing
     tips = brentq(lambda push: stiffness(-push, 0.5) - lever * push, 1e-3 * EULER, EULER)
     found = capacity(PIVOT, settings, direction=DOWN)

@@ -65,7 +65,7 @@ def test_static_advice_as_json(command):
 
 @pytest.mark.usefixtures("few")
 def test_no_model_meets_an_impossible_error(case, command):
-    """Where no model meets the error the exit code says so, the best of each is told, and that verdicts are
+    """Where no model meets the error the exit code is 1, the best of each is printed, and that verdicts are
     not certain where a reference is too coarse for them."""
     path = case(("increments = 20", "increments = 4"))
     outcome = command("advise", path, "--accuracy", "1e-13")

@@ -68,7 +68,8 @@ def test_what_planar_beams_leave_out_is_priced():
 
 
 def test_what_has_no_price_says_why():
-    """Inextensible strips are unknown to the elements: the row of shear says so, the others have prices."""
+    """Inextensible strips are unknown to the elements: the row of shear has a reason, the others have
+    prices."""
     design = named_design("cross_axis_pivot")
     rigid = dataclasses.replace(
         design, effects=design.effects.renamed(["bending", "inextensible", "body_inertia"])

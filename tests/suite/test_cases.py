@@ -25,7 +25,7 @@ AREA, MOMENT = "width_m = 0.01000320153681966", "thickness_m = 0.004998399743918
 
 
 def test_every_key_says_what_it_is():
-    """A key has a meaning and an example that its own rule admits, and a default if it may be left out."""
+    """A key has a meaning and an example that its own rule admits, and a default if it is optional."""
     assert set(EFFECT_KEYS) == set(EFFECTS)
     for key in DECLARED:
         key.rule.parse(tomllib.loads(f"value = {key.example}")["value"])
@@ -63,7 +63,8 @@ def test_sides_are_area_and_second_moment(case):
 
 @pytest.mark.parametrize("name", MATERIALS)
 def test_named_material_fills_what_no_key_gives(name, case):
-    """A named material gives every value that the case leaves out, and a key beside it is taken as it is."""
+    """A named material gives every value that is missing in the case, and a key beside it is taken as it
+    is."""
     keys = ("youngs_modulus_Pa = 206e9", "poisson_ratio = 0.29", "density_kg_m3 = 7800")
     found = read_design(case((keys[0], f'name = "{name}"'), (keys[1], ""), (keys[2], "density_kg_m3 = 1234")))
     given = MATERIALS[name]

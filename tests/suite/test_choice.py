@@ -181,7 +181,8 @@ def no_more_than_eight(monkeypatch):
 
 
 def test_the_page_says_that_the_accuracy_is_missed(pivot, few):
-    """Requirement: where no number of control points reaches the accuracy, each state of the page says so."""
+    """Requirement: where no number of control points reaches the accuracy, each state of the page has a
+    warning."""
     state = page(pivot).feed({"do": "pose", "pose": [0.0, 0.0, 0.1], "t": 1.0})
     (told,) = state["warnings"]
     assert told["code"] == "coarse" and "above 1e-07 with 8 control points" in told["text"]

@@ -31,7 +31,7 @@ def test_a_limit_point_is_a_critical_load(held, answered):
 @pytest.mark.parametrize(("name", "share"), [("heavy_payload", 0.4521), ("heavy_pivot", 0.4490)])
 def test_stability_at_zero_force_is_checked_first(name, share, answered):
     """Requirement: a design that its own weight tips over bears no force, with the share of the weight; its
-    path says so too, where the body has not turned yet."""
+    path has the same message, although the body has not turned yet."""
     words = [FINDS / f"{name}.toml", "--model", "spline,fe"]
     for answer in answered("critical-load", *words)["answers"]:
         assert (answer["kind"], answer["critical_load_N"]) == ("unstable at zero force", 0.0)
@@ -74,7 +74,10 @@ def test_a_limit_point_that_coarse_meshes_do_not_have(answered):
     models find it, and the rotation there."""
     words = [FINDS / "late_limit_pivot.toml", "--force-direction-deg", -112.145, "--model", "spline,fe"]
     for answer in answered("critical-load", *words)["answers"]:
-        assert (answer["kind"], answer["critical_load_N"]) == ("limit point", pytest.approx(4.43734, rel=1e-5))
+        assert (answer["kind"], answer["critical_load_N"]) == (
+            "limit point",
+            pytest.approx(4.43734, rel=1e-5),
+        )
         assert answer["rotation_rad"] == pytest.approx(-1.592645, rel=1e-3)
         assert answer["rotation_error_rad"] < 2e-3
 
@@ -98,7 +101,7 @@ def test_a_body_that_nothing_holds_bears_no_force(name, model, command):
 
 @pytest.mark.parametrize("name", ["soft_column_pivot", "rolled_up_twice"])
 def test_too_few_control_points_are_not_physics(name):
-    """Requirement: a path that stops for lack of control points is not resolved, buckles nowhere, is cut."""
+    """Requirement: a path that stops for lack of control points is not resolved, does not buckle, is cut."""
     answer = answer_static(read_design(FINDS / f"{name}.toml"), SplineSettings(control_points=8))
     assert answer.status == "not_converged"
     assert answer.message.startswith("not resolved with 8 control points")
@@ -123,7 +126,8 @@ def test_few_elements_are_not_physics():
 
 @pytest.mark.slow
 def test_a_spline_that_stops_says_where_it_buckled(command, tmp_path):
-    """Pressed far beyond what it bears, the spline stops and says so, with the force, and what may go on."""
+    """Pressed far beyond its critical load, the spline stops with a message: the force, and a model that may
+    continue."""
     path = tmp_path / "pressed.toml"
     text = (FINDS / "pressed_pivot.toml").read_text(encoding="utf-8")
     turned = text.replace("rotation_deg = 0", "rotation_deg = 0.01").replace("-20e3", "-1e9")

@@ -52,7 +52,7 @@ def sprung(answer: dict) -> float:
 #: Stiffness at rest of a pivot whose strips are longer by the compliance of their supports [N m/rad].
 SUPPORTED = 2.0 * 205e9 * 0.01 * 0.001**3 / 12.0 / (0.08 + 2.0 * 0.416 * 0.001)
 #: What is asked, the number in its JSON, its value, and the part of it that finite axial stiffness (which the
-#: closed form leaves out) or the source's own digits may take [1].
+#: closed form neglects) or the source's own digits may take [1].
 KNOWN = {
     "pinned_column": ("critical-load", lambda a: a["critical_load_N"], math.pi**2 * EI / 0.2**2, 1e-4),
     "bistable_half_beam": ("solve", lambda a: min(a["shuttle_force_y_N"]), -3.231e-6, 5e-4),

@@ -28,7 +28,7 @@ PARSED = {
     "compile": "removes the kernels that other tests run at the same time; `make setup` runs it",
     "readme": "rewrites README.md; tests/suite/test_results.py has what it writes",
 }
-#: What an example is run with beside its own words, so that it writes nowhere but here.
+#: What an example is run with beside its own words, so that it writes only here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
 NUMBERS = (float, positive, not_negative, degrees, degrees_list, ROTATION.read)
@@ -109,7 +109,7 @@ def test_every_option_is_documented(name):
         ("crosspivot", "crit", ["critical-load"]),
         ("crosspivot solve", "titan", ["titanium_pivot"]),
         ("crosspivot solve titanium_pivot", "--incr", ["--increments"]),
-        ("crosspivot solve --measure", "", ["material", "spatial", "printed"]),
+        ("crosspivot solve --measure", "", ["material", "spatial", "published"]),
         ("crosspivot run", "convergence/el", ["convergence/elements"]),
     ],
 )

@@ -138,7 +138,7 @@ def test_what_does_not_go_over_one_another_is_refused():
 
 @pytest.mark.parametrize(("kind", "begin"), [("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")])
 def test_command_writes_a_picture_beside_its_answer(kind, begin, tmp_path, capsys):
-    """--plot writes a file of its ending and says so on the stream that holds no JSON."""
+    """--plot writes a file of its ending and prints its name on the stream without JSON."""
     path = tmp_path / f"drawn.{kind}"
     words = ["solve", PIVOT, "--model", "fe", "--elements", "4", "--increments", "2"]
     assert main([*words, "--plot", str(path), "--json", "-"]) == 0

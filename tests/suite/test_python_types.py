@@ -156,7 +156,7 @@ def _of(package):
 
 
 def _arrays(answer):
-    """Name and array of all that an answer holds or makes, but for what it makes anew each time."""
+    """Name and array of all stored or computed arrays of an answer, except those computed at each access."""
     for name in (each for each in dir(answer) if not each.startswith("_")):
         value = getattr(answer, name, None)
         for array in value.values() if isinstance(value, dict) else (value,):

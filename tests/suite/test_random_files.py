@@ -25,7 +25,7 @@ COMMANDS = (
 
 
 def changed(text, rng):
-    """A case file with one to three of its lines changed, left out, doubled, or joined by a key of none."""
+    """A case file with one to three of its lines changed, removed, doubled, or joined by a key of none."""
     lines = text.splitlines()
     for _ in range(rng.randint(1, 3)):
         place = rng.randrange(len(lines))

@@ -123,7 +123,7 @@ def test_free_flight_keeps_its_momentum(model, answered):
     assert moved == pytest.approx(exact, rel=0.03)
 
 
-#: The elements have a way of their own: the message that refuses the default says so.
+#: The elements need other settings: the message that refuses the default names them.
 PENDULUM = {
     "spline": ["--control-points", 6, "--step", 2e-3],
     "fe": [
@@ -140,7 +140,7 @@ def test_pendulum_period(model, answered, refused):
     words = ["release", ROOT / "docs" / "gallery" / "pendulum.toml", "--duration", 1.1]
     found = answered(*words, *PENDULUM[model], "--no-check")
     if model == "fe":
-        says = "leave out strip_inertia, if strips are light, and take --integrator generalised-alpha with a"
+        says = "remove strip_inertia, if strips are light, and take --integrator generalised-alpha with a"
         refused("release", FINDS / "pinned_pendulum.toml", *words[2:], "--model", model, says=says)
     x, time = np.array(found["bodies"]["mass"]["x_m"]), np.array(found["time_s"])
     at = int(np.flatnonzero((x[:-1] > 0.0) & (x[1:] <= 0.0))[0])

@@ -9,7 +9,7 @@ import pytest
 from tests import mutate
 
 SLIPS = mutate.slips()
-#: Slips that every run of the slow tests tries, drawn anew by each change of the list alone.
+#: Slips that every run of the slow tests tries, drawn again only if the list changes.
 TRIED = random.Random(len(SLIPS)).sample([slip for slip in SLIPS if slip.caught_by], 4)
 
 

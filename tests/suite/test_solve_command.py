@@ -9,7 +9,7 @@ import pytest
 
 def test_printed_forces_leave_the_stiffness_of_the_body_out(case, command):
     """A path of the paper's printed forces has torques, no stiffness of the body, and a line about that."""
-    words = ["solve", case(), "--measure", "printed", "--stretch", "consistent", "--control-points", 4]
+    words = ["solve", case(), "--measure", "published", "--stretch", "consistent", "--control-points", 4]
     words += ["--rotation-deg", 5, "--increments", 2]
     answer = json.loads(command(*words, "--json", "-").out)
     assert answer["torque_Nm"][-1] > 10.0
@@ -36,8 +36,8 @@ def test_stiffness_over_that_of_the_rotation(command):
 
 
 def test_file_holds_what_the_stream_would(case, command, tmp_path):
-    """`--json FILE` writes the same object as `--json -`, time aside, says so below the table, and leaves no
-    other file."""
+    """`--json FILE` writes the same object as `--json -`, time aside, prints its name below the table, and
+    leaves no other file."""
     words = ["solve", case(), "--model", "fe", "--rotation-deg", 5, "--increments", 1, "--json"]
     streamed = json.loads(command(*words, "-").out)
     outcome = command(*words, tmp_path / "answer.json")

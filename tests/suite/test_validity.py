@@ -1,4 +1,4 @@
-"""What an answer says of its own worth: ratios, what is left out, and slips of units that solve as well."""
+"""Warnings of an answer: ratios, neglected effects, and wrong units of a case that still solves."""
 
 from dataclasses import replace
 from functools import cache
@@ -42,7 +42,7 @@ def solved(name):
 
 
 def left_out(answer, *effects):
-    """Return what an answer leaves out if these effects are named."""
+    """Return the neglected effects of an answer if these effects are named."""
     return list(told(RULES, strips_of(answer.design, answer), effects))
 
 

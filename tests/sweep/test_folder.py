@@ -178,7 +178,7 @@ def test_what_a_killed_run_left_is_removed(whole, tmp_path):
 
 @pytest.mark.parametrize("room", [5000, *(pytest.param(n, marks=pytest.mark.slow) for n in (1000, 20000))])
 def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
-    """Requirement: where no more can be written the refusal says so, nothing is left half-written, and with
+    """Requirement: if the disk is full, the message is one line, no file is half-written, and with
     room the sweep goes on to the same table: full at the manifest, at a part, at the table."""
     out = tmp_path / "out"
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -37,8 +37,8 @@ BY_SPREAD, FAR = 64, 6
 _NODES = np.arange(-FAR * BY_SPREAD, FAR * BY_SPREAD + 1) / BY_SPREAD
 _BELOW = np.array([0.5 * math.erfc(-x / math.sqrt(2.0)) for x in _NODES])
 _BELL = np.exp(-0.5 * _NODES**2) / math.sqrt(2.0 * math.pi)
-#: Residual of a station from the line beyond which it is left out, in pixels and in standard deviations; its
-#: neighbours, half covered perhaps, go with it: so many to either side, over all stations.
+#: Residual of a station from the line beyond which the station is rejected, in pixels and in standard
+#: deviations; its neighbours, half covered perhaps, go with it: so many to either side, over all stations.
 OUTLIER_PX, OUTLIER, NEIGHBOURS = 0.15, 3.0, 0.036
 #: Distance from the line of levels at which a station is covered by something else, at least and at most
 #: [grey levels]: where half of an edge is covered, the scatter is as large as the difference.

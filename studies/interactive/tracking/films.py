@@ -174,7 +174,7 @@ class Video:
             video.release()
 
     def shots(self) -> Iterator[Shot]:
-        """Yield the pictures; a film begins anew at its end, a camera ends when it fails."""
+        """Yield the pictures; a film starts again at its end, a camera stops when it fails."""
         number = 0
         while True:
             first = number

@@ -113,19 +113,21 @@ class Fit:
 
 @cache
 def cells(number: int) -> NDArray[np.bool_]:
-    """Return which cells (8, 8) of a marker of the family 36h11 are light, its black border included."""
+    """Return which cells (8, 8) of a marker of the family 36h11 are light, its black border included; number:
+    id."""
     family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
     return np.asarray(cv2.aruco.generateImageMarker(family, number, BITS) > 127)
 
 
 def project(plane: Array, points: Array) -> Array:
-    """Return the pictures (..., 2) of points (..., 2) of the plane."""
+    """Return the pictures (..., 2) [px] of points (..., 2) [m] of the plane by the homography `plane` (3,
+    3)."""
     image = points @ plane[:, :2].T + plane[:, 2]
     return np.asarray(image[..., :2] / image[..., 2:])
 
 
 def homography(picture: Array) -> Array:
-    """Return the homography (3, 3), last entry 1, that takes CORNERS to their pictures (4, 2)."""
+    """Return the homography (3, 3), last entry 1, that maps CORNERS [m] to their pictures (4, 2) [px]."""
     return np.asarray(cv2.getPerspectiveTransform(CORNERS.astype(np.float32), picture.astype(np.float32)))
 
 

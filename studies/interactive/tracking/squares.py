@@ -32,8 +32,8 @@ KEPT = 0.5
 AFTER, BEFORE = [1, 2, 3, 0], [3, 0, 1, 2]
 #: Power of a camera's values that light is: of those that encode it, as nearly all do.
 GAMMA = 2.2
-#: Half length of the profiles across the edges of cells, and what is left out at the ends of such an edge,
-#: over the side of a cell.
+#: Half length of the profiles across the edges of cells, and the part that is skipped at the ends of such an
+#: edge, over the side of a cell.
 REACH, END = 0.45, 0.25
 #: Profiles an edge of cells, which is a few pixels long.
 STATIONS = 12

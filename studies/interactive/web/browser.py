@@ -132,7 +132,7 @@ class Browser:
         raise TimeoutError(f"page: {script} did not come true in {patience:g} s; it said {said[:3]}")
 
     def key(self, key: str, *, shift: bool = False) -> None:
-        """Press and let go of a key, by its name as events have it."""
+        """Press and release a key, by the name that events use."""
         text = key if len(key) == 1 else ("\r" if key == "Enter" else "")
         codes = {"Enter": 13, "Tab": 9, "Escape": 27, " ": 32}
         more: dict[str, Any] = {"text": text} if text else {}

@@ -69,7 +69,7 @@ def _refuse(constant: str) -> float:
 
 
 def sent_picture(data: bytes) -> tuple[int, float, NDArray[np.uint8]]:
-    """Return number, time of capture [s] and grey levels of the picture in a binary message.
+    """Return number, time of capture [s] and grey levels (H, W) of the picture in a binary message.
 
     Raises:
         BadInput: a header or size that does not fit; one line.

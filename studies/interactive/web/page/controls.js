@@ -180,7 +180,7 @@ export class Controls {
     }
     at("drive").value = state.drive;
     at("solver").value = state.solver;
-    at("sweeps-row").hidden = state.solver !== "printed";
+    at("sweeps-row").hidden = state.solver !== "published";
     if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]),
@@ -218,7 +218,7 @@ function pair(label, unit) {
   range.type = "range";
   number.type = "number";
   number.addEventListener("beforeinput", (event) => {
-    if (event.data !== ",") return; // which browsers leave out: 0,6 would become 6
+    if (event.data !== ",") return; // browsers ignore a comma: 0,6 would become 6
     event.preventDefault();
     document.execCommand("insertText", false, ".");
   });

@@ -25,7 +25,7 @@ export class Ring {
   get age() {
     return this.states.length ? this.states[this.states.length - 1].at - this.current.at : 0;
   }
-  // The path of the centre of rotation in this design; where the body all but stands it is nowhere.
+  // The trajectory of the centre of rotation in this design; undefined while the body hardly moves.
   get centres() {
     const now = this.current,
       recent = this.states
