@@ -57,6 +57,7 @@ _HOMES = {
     "compliant_mechanism": "mechanism",
     "cross_axis_pivot": "pivot",
     "impulse_solver": "sequential_impulse",
+    "motion_penalty_stiffness": "discretisation",
     "natural_frequencies": "modes",
     "plate_factors": "effects.plate",
     "sensitivities": "sensitivity",
@@ -67,7 +68,6 @@ _HOMES = {
     "solve_release": "dynamics",
     "solve_statics": "statics",
     "strip_fields": "section_forces",
-    "swinging_slide_stiffness": "discretisation",
 }
 
 

@@ -11,7 +11,7 @@ from typing import Any, Literal, Self, Unpack
 import numpy as np
 
 from spline_model.design import HINGE, BodyDesign, Design, StripDesign
-from spline_model.discretisation import Described, Discretisation
+from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
 from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
 from spline_model.effects.boundary import Sized

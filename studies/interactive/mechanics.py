@@ -11,7 +11,7 @@ from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
 from spline_model.held import HeldPivot, HeldState
 from spline_model.modes import natural_frequencies
-from spline_model.section_forces import StripFields, mode_fields, moving_fields
+from spline_model.section_forces import StripFields, strip_fields
 from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
@@ -263,7 +263,7 @@ class Mechanics:
         return float(self._load[:2] @ (self.placing.centre - pose[:2]))
 
     def _static(self, state: HeldState, iterations: int | None = None) -> Snapshot:
-        along = mode_fields(self._acting, self._held.full_state(self._system)[None])
+        along = strip_fields(self._acting, self._held.full_state(self._system)[None], "modes")
         return Snapshot(
             **self._shown(along, state.bending_energy + state.axial_energy),
             force=state.force - self._load,
@@ -274,7 +274,7 @@ class Mechanics:
 
     def _dynamic(self, moving: Motion) -> Snapshot:
         now = moving.state()
-        known = self._shown(moving_fields(self._acting, now.z[None]), now.strain, now.kinetic)
+        known = self._shown(strip_fields(self._acting, now.z[None], "release"), now.strain, now.kinetic)
         known["energy"]["dissipated"] = self.begun - sum(known["energy"].values())
         velocity = now.v[self._system.layout.body(self._body)].copy()
         centre = Snapshot.pole(known["pose"], velocity, LEAST_TURN / self.step)

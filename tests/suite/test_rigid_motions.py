@@ -148,8 +148,6 @@ def test_pendulum_period(model, answered, refused):
     assert 4.0 * quarter == pytest.approx(4.1335, rel=1e-3)
 
 
-<<<<<<< HEAD
-=======
 def test_a_strip_of_next_to_no_mass_costs_no_shorter_steps(answered):
     """Requirement: the bar weighs 3e-8 of its mass. The steps that suit the swing are not halved for it: they
     were 107,000 for 3.6 swings. Bent by the weight, the bar starts 3.6e-4 rad below the horizontal."""
@@ -164,31 +162,6 @@ def test_a_strip_of_next_to_no_mass_costs_no_shorter_steps(answered):
     assert 2.0 * np.diff(passed) == pytest.approx(4.1335, rel=3e-4)
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_what_nothing_holds_falls(model, tmp_path, answered):
-    """Requirement: two bodies on a strip, held until their release, fall by g t^2 / 2 in the mean."""
-    case = tmp_path / "falling.toml"
-    text = (FINDS / "free_flight.toml").read_text().split("[scene]")[0]
-    case.write_text(text + '[scene]\neffects = ["+gravity"]\n')
-    found, moved = flown(answered, case, model, 0.1)
-    assert found["bodies"]["A"]["y_m"][0] == pytest.approx(0.003, abs=1e-12)
-    gained = np.array(found["kinetic_J"]) + np.array(found["strain_J"]) + np.array(found["gravity_J"])
-    assert np.ptp(gained) < 1e-4 * max(found["kinetic_J"])
-    assert moved[1] == pytest.approx(-0.5 * 9.80665 * 0.01, rel=0.01)
-
-
-@pytest.mark.parametrize("size", [("--model", "fe"), ("--control-points", "28")])
-def test_modes_that_round_off_decides_are_one_line(command, tmp_path, size):
-    """Requirement: strips that are 3 million times as long as thick end in a line, not in a traceback."""
-    case = tmp_path / "long.toml"
-    content = (FOLDER / "silicon_pivot.toml").read_text()
-    case.write_text(content.replace("length_m = 0.001", "length_m = 60"))
-    refused = command("modes", str(case), "--rotation-deg", "5", *size)
-    assert (refused.code, len(refused.err.splitlines())) == (2, 1)
-    assert "round-off decides a frequency" in refused.err
-
-
->>>>>>> motions
 def test_gradients_of_lengths_far_apart():
     """Requirement: a path of strips of which one is 500 times shorter has gradients, though its residual is
     round-off of the short strip: the torque at a given displacement is proportional to Young's modulus."""
