@@ -1,5 +1,6 @@
 """The benchmark package, and the command that judges results of other codes by it."""
 
+import tomllib
 from functools import partial
 
 import pandas as pd
@@ -11,7 +12,7 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import named_case
 from studies.commands.findings import stored_table
 from studies.published import benchmark
-from studies.record.store import Store
+from studies.record.store import Store, read_csv
 
 CASE = named_case()
 
@@ -46,6 +47,29 @@ def test_package_is_of_the_stored_results():
     """The files of the package are those that the stored tables give."""
     for name, content in benchmark.package(partial(stored_table, Store())).items():
         assert (benchmark.FOLDER / name).read_bytes() == content, name
+
+
+def test_package_has_inputs_and_every_theory():
+    """Beams have statics, modes and free vibration, solids have statics; the inputs are those of the case."""
+    beam = read_csv((benchmark.FOLDER / "beam.csv").read_bytes())
+    known = pd.concat(beam.assign(theory=name) for name in benchmark.BEAMS)
+
+    def stored(study, table):
+        return known if table == "references" else stored_table(Store(), study, table)
+
+    files = benchmark.package(stored)
+    inputs = tomllib.loads(files.pop(benchmark.INPUTS).decode())
+    assert inputs["quantities"] == benchmark.QUANTITIES and set(inputs["references"]) == set(
+        benchmark.THEORIES
+    )
+    assert inputs["pivot"]["strip_length_m"] == pytest.approx(CASE.length, rel=1e-12)
+    found = {name.removesuffix(".csv"): set(read_csv(content)["quantity"]) for name, content in files.items()}
+    assert found == {
+        name: set(benchmark.QUANTITIES)
+        if name in benchmark.BEAMS
+        else {"torque_Nm", "centre_x_m", "centre_y_m"}
+        for name in benchmark.THEORIES
+    }
 
 
 def test_answers_of_the_suite_pass(judged):
