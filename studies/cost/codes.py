@@ -28,8 +28,8 @@ from studies.cost import tried
 from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import GROUPS, HINT, LOOKS, PEERS, SPLINE, paths, swings
-from studies.engine import Answer, Part, Row, Study, Tables, lacking
+from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
+from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper.formulations import INSTANTS
 from studies.record.marks import Level
@@ -59,12 +59,6 @@ SWINGS = {16: 3e-7, 14: 4e-7}
 SHEAR_MESHES = (36, 54, 81, 121)
 #: What the other codes' rods with shear have beside it.
 ROTARY = "section_rotary_inertia"
-
-
-def _missing() -> str:
-    """Return what this machine lacks of a study that holds the suite against all other codes; or nothing."""
-    gone = [name.split()[0] for name, peer in PEERS.items() if not peer.installed()]
-    return lacking("peers", list(dict.fromkeys(gone)))
 
 
 def _codes() -> list[dict[str, str]]:
@@ -250,5 +244,5 @@ STUDY = Study(
     made={"path_ratios": partial(_ratios, "paths"), "swing_ratios": partial(_ratios, "swings")},
     varying=("path_ratios", "swing_ratios"),
     figures={"cost": _figure},
-    missing=_missing,
+    missing=missing,
 )

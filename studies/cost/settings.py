@@ -15,6 +15,7 @@ from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements, spline
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.pseudo_rigid import four_bar, linear_pivot, pin_joint
+from studies.engine import lacking
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
 #: Models of which the rotation is the only coordinate, the one whose beams have others that are eliminated,
@@ -50,6 +51,12 @@ WORDS = {
 }
 #: What makes a setting finer: more of it, or less.
 FINER = {"step": -1.0, "accuracy": -1.0, "control_points": 1.0, "elements": 1.0}
+
+
+def missing() -> str:
+    """Return what this machine lacks of a study that holds the suite against all other codes; or nothing."""
+    gone = [name.split()[0] for name, peer in PEERS.items() if not peer.installed()]
+    return lacking("peers", list(dict.fromkeys(gone)))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
