@@ -53,8 +53,8 @@ MOST_SEGMENTS = 16
 FLOOR = 1e-8
 """Error below which a strip is not cut any more: what is left is round-off."""
 OF_ROOTS = 3.0
-"""Error of spread roots over what changes with twice the segments: 1.8 to 3.3 on guides that are led aside."""
-ROOTS = "accuracy {:.3g} is not reached: roots leave an estimated error of {:.2g}; --model fe has springs there"
+"""Error of spread roots over what changes with twice the segments: 1.8 to 3.3 on guides led aside."""
+ROOTS = "accuracy {:.3g} is not reached: roots leave an estimated error of {:.2g}; the elements have springs"
 """Message where it is the compliance of roots, spread along a segment, that misses the accuracy."""
 FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""

@@ -16,7 +16,7 @@ from studies.answers.answer import Answer
 from studies.answers.metrics import extrapolate
 from studies.answers.models import Asked, put
 from studies.answers.response import Response
-from studies.answers.settings import FeSettings, Settings, SplineSettings
+from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.effects import GROWING
 from studies.cases.keys import GROUND
