@@ -12,9 +12,9 @@ and pre-strain alone is checked first.
 
 A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
 error, as that of the rotation. Without --control-points the spline takes more control points until the force
-settles; elements are doubled until three meshes agree, and their limit is taken. If three discretisations find
-no critical load, the force at which the rotation passes 5 degrees and the force at first yield are printed.
-Exit code 0: a critical load, or none up to the largest force; 2: bad input; 3: not resolved, the
+settles; elements are doubled until three meshes agree, and their limit is taken. If three discretisations
+find no critical load, the force at which the rotation passes 5 degrees and the force at first yield are
+printed. Exit code 0: a critical load, or none up to the largest force; 2: bad input; 3: not resolved, the
 discretisations disagree.
 """
 

@@ -107,7 +107,7 @@ def _variable(where: str, document: Mapping[str, Any], text: str, heading: str) 
     """Return the number that a text stands for; errors as of `MechanismQuestion.of`."""
     names, _, bounds = text.partition("=")
     given = tuple(name.strip() for name in names.split(","))
-    known = plan.known(document, "spline")
+    known = plan.known(where, document, "spline")
     for name in given:
         if name not in known:
             alike = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]]

@@ -9,7 +9,7 @@ from typing import Any
 from studies.answers.settings import Settings, settings_of_model
 from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
-from studies.cases.document import is_mechanism
+from studies.cases.document import is_mechanism, tables, values
 from studies.cases.rules import Key, Rule, not_negative, number, positive, text, whole
 from studies.cases.section import of_sides, rectangle_of
 
@@ -147,19 +147,24 @@ def _names(value: Any) -> list[str]:
     return names
 
 
+#: What the strips and bodies of a mechanism must have, as keys go by it.
+NAME = [key for key in keys.BODY if key.name == "name"]
 #: A list of effects, written as names with commas.
 NAMES = Rule(expected="names of effects with commas", read=_names)
 
 
-def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
-    """Return the rule of every key that a sweep of the case's document with the model may vary."""
+def known(where: str, document: Mapping[str, Any], model: str) -> dict[str, Rule]:
+    """Return the rule of every key that a sweep of the case's document with the model may vary.
+
+    Raises CaseError where the parts of the case, whose keys go by their name or place, are no tables.
+    """
     if is_mechanism(document):
-        found = _of_mechanism(document)
+        found = _of_mechanism(where, document)
     else:
         found = {name: key.rule for name, key in PIVOT_KEYS.items()} | {SLENDERNESS: positive("1")}
     found |= {name: key.rule for rows in keys.EFFECT_KEYS.values() for name, key in _dotted(rows).items()}
     for section, listed in keys.LISTS.items():
-        for place in range(1, 1 + len(document.get(section, []))):
+        for place, _ in enumerate(tables(where, document, section), start=1):
             rows = (key for effect in listed for key in keys.EFFECT_KEYS[effect])
             found |= {f"{section}.{place}.{key.name}": key.rule for key in rows}
     for name, rule in list(found.items()):
@@ -173,14 +178,15 @@ def known(document: Mapping[str, Any], model: str) -> dict[str, Rule]:
     return {**found, EFFECTS: NAMES, **settings}
 
 
-def _of_mechanism(document: Mapping[str, Any]) -> dict[str, Rule]:
+def _of_mechanism(where: str, document: Mapping[str, Any]) -> dict[str, Rule]:
     """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
     shared = (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE)
     found = {name: key.rule for name, key in _dotted(shared).items()}
     own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
     for section, rows in own.items():
-        for part in document.get(section, []):
-            found |= {f"{section}.{part['name']}.{key.name}": key.rule for key in rows}
+        for label, part in tables(where, document, section):
+            name = values(where, NAME, {k: v for k, v in part.items() if k == "name"}, label)["name"]
+            found |= {f"{section}.{name}.{key.name}": key.rule for key in rows}
     return {key: rule for key, rule in found.items() if rule.kind != "text"}
 
 

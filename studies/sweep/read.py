@@ -67,7 +67,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
     case = _case(where, content.get("case"), folder)
     model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
-    known = plan.known(case, model)
+    known = plan.known(str(content["case"]), case, model)
     for key, value in leaves(tables["set"]):
         if plan.is_setting(key):
             raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")

@@ -127,7 +127,7 @@ def test_every_section_of_a_pivot(title, tmp_path, refused):
 def test_every_key_of_a_sweep(tmp_path, refused):
     """Whatever number a sweep varies is held to the rule of its key, and the folder is not made."""
     path, out, case = tmp_path / "designs.toml", tmp_path / "out", parsed(FOLDER / "cross_axis_pivot.toml")
-    for key, rule in (known(case, "fe") | known(case, "spline")).items():
+    for key, rule in (known("case", case, "fe") | known("case", case, "spline")).items():
         model = "fe" if key == "settings.elements" else "spline"
         for bad in bad_values(rule) if rule.kind == "number" or key.startswith("settings") else ():
             path.write_text(f'case = "cross_axis_pivot"\nmodel = "{model}"\nvary.{key} = [{bad}]')

@@ -4,6 +4,7 @@ import pytest
 
 from studies.__main__ import main
 from studies.cases.document import CaseError
+from studies.cases.problem import FOLDER
 from studies.sweep.points import solve
 from tests.sweep.sweeps import plan
 
@@ -87,6 +88,19 @@ def test_the_good_file_is_good(tmp_path, capsys):
     path.write_text("\n".join(GOOD.values()))
     assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 0
     assert "8 designs solved" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("part", ["strips", "bodies"])
+def test_a_part_without_a_name_is_named(part, tmp_path, refused):
+    """Requirement: keys to vary go by the names of parts: a sweep and `size` refuse a part without one."""
+    text = (FOLDER / "four_bar_of_flexures.toml").read_text(encoding="utf-8")
+    before, mark, after = text.partition(f"[[{part}]]\n")
+    case, path = tmp_path / "case.toml", tmp_path / "designs.toml"
+    case.write_text(before + mark + after.partition("\n")[2], encoding="utf-8")
+    path.write_text('case = "case.toml"\nvary.material.density_kg_m3 = [1000, 2000]')
+    says = f"{part} number 1.name: got no such key"
+    refused("sweep", path, "--out", tmp_path / "out", says=says)
+    refused("size", case, "--free", "section.thickness_m", "--objective", "stress", says=says)
 
 
 def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, refused):
