@@ -192,11 +192,6 @@ class HeldPivot:
         )
 
     @property
-    def poses(self) -> Array:
-        """Return the poses of all bodies (B, 3) [m, m, rad]."""
-        return self._y[: len(self.model.bodies.rest)].reshape(-1, 3) * self._unit
-
-    @property
     def control_points(self) -> Array:
         """Return the control points of the strips in the ground's frame (G, n, 2) [m]."""
         shape, points = self.model.shape, self._arrays.local.points

@@ -83,7 +83,7 @@ def browsed(seconds=20.0):
             ways = browser.ask("window.ways")
     with Server(Settings(camera="film", source=demo_film())) as hosted, Browser() as browser:
         load(browser, hosted)
-        browser.wait("studio.state.seq >= 290", 60.0)
+        browser.wait("studio.state.seq >= 290", 600.0)
         shown = browser.ask("studio.ring.states.filter((s) => s.track_ms !== undefined).map((s) => s.at)")
     return np.array(ways), np.array(shown)
 

@@ -19,9 +19,10 @@ from studies.interactive.tracking.films import encoded
 from studies.interactive.tracking.planar import project
 from studies.interactive.web.browser import Browser, executable
 from studies.interactive.web.server import Server, Settings
-from tests.interactive.films import both, film, true_corners, truth
+from tests.interactive.films import both, film, over, true_corners, truth
 from tests.interactive.pages import BODY, BUSY, WATCH, drag, load
 from tests.interactive.painter import Optics
+from tests.interactive.sockets import opened, told
 
 pytestmark = [
     pytest.mark.slow,
@@ -174,3 +175,34 @@ def test_no_camera_is_explained(camera):
         browser.wait("studio.state.pose[2] > 0.1")
         assert browser.ask("studio.errors") == []
         assert browser.console == []
+
+
+#: Films of which the page warns, their markers covered or seen through a lens, and what it says.
+WARNED = {
+    "included in ±": film(Optics(k1=-0.12), samples=2),
+    "followed by its edges": film(fingers=lambda k: over(k, (0.57, 0.0), 0.014) if k >= 3 else (), samples=2),
+}
+
+
+@pytest.mark.parametrize("said", WARNED)
+def test_errors_of_pictures_are_named(said):
+    """Requirement: what a lens that distorts does, and a thumb on a marker, is said on the page, and the
+    numbers go on with their uncertainty."""
+    with Server(Settings(camera="film", source=WARNED[said])) as hosted, Browser() as browser:
+        load(browser, hosted)
+        browser.wait(f"document.getElementById('faults').textContent.includes('{said}')")
+        assert browser.wait("studio.state.texts.rotation.includes('±')")
+        assert browser.ask("studio.errors") == []
+
+
+def test_guest_drives_a_pivot_of_its_own():
+    """Requirement: the page at the address that is shared is held by its own hand, whatever the owner's
+    does."""
+    with Server(Settings(camera="none", share="127.0.0.2")) as hosted, Browser() as browser:
+        browser.open(hosted.address_at("127.0.0.2"))
+        browser.wait("window.studio?.drawn && studio.welcome.shared")
+        with opened(hosted) as owner:
+            assert told(owner, do="pose", pose=[0, 0, 0.4])["pose"][2] == pytest.approx(0.4)
+            browser.key("ArrowUp")
+            browser.wait("studio.state.pose[2] > 0.08 && studio.state.pose[2] < 0.1")
+        assert browser.ask("studio.errors") == []

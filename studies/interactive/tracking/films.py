@@ -29,7 +29,7 @@ FINGER = range(150, 168)
 HIDDEN = range(235, 247)
 #: Its camera: size and focal length [px], distance [m] and angles to the plane, and places that it draws in a
 #: pixel, in each direction; light of the table, of ink, paper and skin, over that of white.
-WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.radians(20), math.radians(3), 3
+WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.radians(20), math.radians(3), 2
 TABLE, BLACK, WHITE, SKIN = 0.31, 0.006, 0.76, 0.14
 
 
@@ -92,10 +92,10 @@ def demo_film() -> Film:
     """Return the demo film: the body follows the pivot's own path, the hand pushes nothing else."""
     mechanics = Mechanics(PRESETS["polymer"])
     poses = [mechanics.marker_at(rotation(k)) for k in range(FRAMES)]
-    turn = Rotation.from_euler("xz", (math.pi - TILT, ROLL)).as_matrix()
-    place = np.array([0.0, 0.0, DISTANCE]) - 0.075 * turn[:, 1]
+    axes = Rotation.from_euler("xz", (math.pi - TILT, ROLL)).as_matrix()
+    place = np.array([0.0, 0.0, DISTANCE]) - 0.075 * axes[:, 1]
     lens = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0 / FINE]])
-    plane = FINE * lens @ np.column_stack((turn[:, :2], place))
+    plane = FINE * lens @ np.column_stack((axes[:, :2], place))
     table = TABLE * (1.0 + 0.05 * np.random.default_rng(1).standard_normal((HEIGHT // 40, WIDTH // 40)))
     ground = cv2.resize(table, (FINE * WIDTH, FINE * HEIGHT), interpolation=cv2.INTER_LINEAR)
     shade = 1.0 - 0.4 * np.arange(WIDTH) / WIDTH

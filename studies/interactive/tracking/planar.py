@@ -103,7 +103,7 @@ class Fit:
     @property
     def spare(self) -> int:
         """Residuals less unknowns."""
-        return int(2 * self.trust.any(axis=(1, 2)).sum()) - self.jacobian.shape[1]
+        return int(2 * self.trust.any(axis=(1, 2)).sum() - self.jacobian.shape[1])
 
     @property
     def spread(self) -> Array:
@@ -176,7 +176,7 @@ def fit(
 
 def rms(gap: Array) -> float:
     """Return the root mean square distance [px] of corners whose edges have residuals `gap` (16,)."""
-    edges = max(1, np.count_nonzero(gap) // 2)
+    edges = max(1, int(np.count_nonzero(gap)) // 2)
     return math.sqrt(4.0 / (1.0 + 4.0 * SPREAD**2) * float(gap @ gap) / edges)
 
 
