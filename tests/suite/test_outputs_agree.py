@@ -57,8 +57,8 @@ def expected_of(command, answer):
     ids=lambda path: path.stem,
 )
 def test_all_that_a_run_leaves_is_one_answer(path, name, model, command, tmp_path):
-    """Requirement: code 0 is the status converged, code 3 another one with its reason on the error stream, and
-    code 2 one line without files; the numbers of the table and of the CSV are those of the JSON."""
+    """Requirement: code 0 is the status converged, code 3 another one with its reason as an error, code 2 one
+    line without files; the numbers of the table and of the CSV are those of the JSON."""
     told, table = tmp_path / "answer.json", tmp_path / "path.csv"
     more = ["--csv", table] if name == "solve" else []
     outcome = command(name, path, "--model", model, *SMALL[model], *COMMANDS[name], "--json", told, *more)
