@@ -165,6 +165,8 @@ SAME = 0.05
 KEPT = 0.03
 #: Rotation up to which critical points are held against it, not against their own [rad].
 TURN = 1e-2
+#: Critical points that a message names.
+FEW = 3
 #: Smallest relative difference of two meshes that is printed.
 LEAST = 1e-6
 
@@ -212,10 +214,7 @@ def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[
             break
         known += 1
     whole = answer.status is Status.CONVERGED and kept == len(answer.work)
-    ends = [
-        ", ".join((*(f"{p.kind} at {p.load_factor:.6g}" for p in each.critical_points[known:]), _end(each)))
-        for each in (answer, other)
-    ]
+    ends = [_told(each, known) for each in (answer, other)]
     most = 2 * max(elements)
     message = (
         f"not resolved with {elements[0]} elements: {ends[0]}; with {elements[1]}: {ends[1]}; "
@@ -229,10 +228,15 @@ def _resolved(answer: StaticSolution, other: StaticSolution, elements: Sequence[
     )
 
 
-def _end(answer: StaticSolution) -> str:
+def _told(answer: StaticSolution, known: int) -> str:
+    """Return the first few critical points behind those that are known, and where a path ends and why."""
+    points = answer.critical_points[known:]
+    told = [f"{point.kind} at {point.load_factor:.6g}" for point in points[:FEW]]
+    told += [f"{len(points) - FEW} more"] * (len(points) > FEW)
     if answer.status is Status.CONVERGED:
-        return "the whole path"
-    return f"stops at load factor {answer.load_factor[-1]:.6g} ({answer.message})"
+        return ", ".join((*told, "the whole path"))
+    reason = answer.message.rpartition("; ")[2] if len(points) > FEW else answer.message
+    return ", ".join((*told, f"stops at load factor {answer.load_factor[-1]:.6g} ({reason})"))
 
 
 def _alike(answer: StaticSolution, other: StaticSolution) -> int:

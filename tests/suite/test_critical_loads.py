@@ -154,3 +154,13 @@ def test_what_a_converged_path_passed_is_told(command, tmp_path):
     assert point["rotation_rad"] is None
     assert point["load_factor"] == pytest.approx(euler / 4.0, rel=1e-3)
     assert f"bifurcation: load factor {point['load_factor']:.6g}" in outcome.out
+
+
+@pytest.mark.slow
+def test_a_mesh_that_is_lost_in_round_off_is_told_shortly(command):
+    """Requirement: of the dozens of critical points that round-off makes, a message names the first few."""
+    words = ("--model", "fe", "--accuracy", 1e-4)
+    outcome = command("solve", FINDS / "mixed_lengths.toml", *words)
+    assert outcome.code == 3
+    assert "not resolved with" in outcome.err and " more, stops at" in outcome.err
+    assert len(outcome.err) < 600

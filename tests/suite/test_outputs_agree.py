@@ -1,0 +1,82 @@
+"""Exit code, table, JSON and CSV of one run never disagree: shipped cases, and the inputs of users."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from studies.cases.problem import FOLDER
+
+FINDS = Path(__file__).with_name("finds")
+QUICK = ("titanium_pivot", "parallel_strip_guide", "shallow_arch", "free_flight", "led_guide", "half_circle")
+CASES = sorted((*FOLDER.glob("*.toml"), *FINDS.glob("*.toml")))
+COMMANDS = {
+    "solve": [],
+    "release": ["--duration", 0.002, "--no-check"],
+    "modes": ["--count", 3],
+    "critical-load": [],
+}
+SMALL = {"spline": ["--control-points", 6], "fe": ["--elements", 8]}
+#: What the JSON has as one number in every state, and the command that prints it in every row.
+SERIES = {"solve": "torque_Nm", "release": "strain_energy_J", "modes": "frequency_Hz"}
+CELL = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
+#: Digits of a cell by which it is known, and the part of a step of its last digit that rounding takes.
+ENOUGH, HALF = 3, 0.5000001
+
+
+def stands_in(value, text):
+    """Whether a number stands in a text, in a unit of any power of ten, to the digits of its cell."""
+    for cell in CELL.findall(text):
+        digits = re.sub(r"e.*", "", cell).replace("-", "").replace(".", "").lstrip("0")
+        if value == 0.0 and not digits:
+            return True
+        if value == 0.0 or len(digits) < ENOUGH:
+            continue
+        mantissa = abs(value) / 10.0 ** (math.floor(math.log10(abs(value))) + 1 - len(digits))
+        if min(abs(mantissa * by - int(digits)) for by in (0.1, 1.0, 10.0)) <= HALF:
+            return True
+    return False
+
+
+def expected_of(command, answer):
+    """The numbers of an answer that its table must have."""
+    if command == "critical-load":
+        share = answer["weight_share"] if answer["critical_load_N"] == 0.0 else None
+        forces = (answer["critical_load_N"] or None, answer["rotation_5_deg_N"] or None)
+        return [each for each in (share, *forces) if each is not None]
+    found = [each for each in answer.get(SERIES[command]) or [] if each is not None]
+    return [each for each in (found if command == "modes" else found[-1:]) if abs(each) > 1e-9]
+
+
+@pytest.mark.parametrize("model", SMALL)
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=[] if path.stem in QUICK else [pytest.mark.slow]) for path in CASES],
+    ids=lambda path: path.stem,
+)
+def test_all_that_a_run_leaves_is_one_answer(path, name, model, command, tmp_path):
+    """Requirement: code 0 is the status converged, code 3 another one with its reason as an error, code 2 one
+    line without files; the numbers of the table and of the CSV are those of the JSON."""
+    told, table = tmp_path / "answer.json", tmp_path / "path.csv"
+    more = ["--csv", table] if name == "solve" else []
+    outcome = command(name, path, "--model", model, *SMALL[model], *COMMANDS[name], "--json", told, *more)
+    if outcome.code == 2:
+        assert (outcome.out, outcome.err.count("\n"), told.exists(), table.exists()) == ("", 1, False, False)
+        return
+    answer = json.loads(told.read_text(encoding="utf-8"))
+    assert outcome.code == (0 if answer["status"] == "converged" else 3)
+    if outcome.code == 3:
+        assert answer["message"] and answer["message"] in outcome.err
+    elif name in ("solve", "release", "modes"):
+        assert answer["message"] in outcome.out
+        assert re.search(r"^converged", outcome.out, re.MULTILINE)
+    for value in expected_of(name, answer):
+        assert stands_in(value, outcome.out), (value, outcome.out)
+    if more:
+        for key, column in pd.read_csv(table).items():
+            if isinstance(answer.get(key), list):
+                assert [None if pd.isna(each) else each for each in column] == pytest.approx(answer[key])
