@@ -97,7 +97,7 @@ def demo_film() -> Film:
     lens = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0 / FINE]])
     plane = FINE * lens @ np.column_stack((axes[:, :2], place))
     table = TABLE * (1.0 + 0.05 * np.random.default_rng(1).standard_normal((HEIGHT // 40, WIDTH // 40)))
-    ground = cv2.resize(table, (FINE * WIDTH, FINE * HEIGHT), interpolation=cv2.INTER_LINEAR)
+    ground = np.asarray(cv2.resize(table, (FINE * WIDTH, FINE * HEIGHT)), dtype=float)
     shade = 1.0 - 0.4 * np.arange(WIDTH) / WIDTH
 
     def draw(k: int) -> Picture:
