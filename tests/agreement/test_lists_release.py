@@ -8,9 +8,9 @@ import pytest
 from studies.answers.adapters import answer_release
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
-from studies.cases.effects import GROWING
 from studies.commands.release import SWINGS, _usual
 from tests.agreement.random_scenes import listed
+from tests.agreement.test_loads_release import UNSTEADY
 
 #: Accuracy that either model is asked for, of rotations [rad] and places over a strip; they differ by both.
 ACCURACY = 1e-3
@@ -29,7 +29,7 @@ def moving(seed: int) -> tuple[Design, float]:
         return design, duration
     history = ((0.0, 1.0), (ENDS * duration, 0.0))
     tables = dict(design.effects.tables)
-    for name in GROWING.keys() & tables:
+    for name in set(UNSTEADY) & tables.keys():
         tables[name] = tuple({**own, "history": history} for own in design.effects.every(name))
     return replace(design, effects=replace(design.effects, tables=tables)), duration
 
