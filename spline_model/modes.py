@@ -23,7 +23,8 @@ from spline_model.reduced.states import coordinates_by, whole_tangents
 from spline_model.rigid import Unheld, props_of
 from spline_model.sections import STATIONS, by_piece
 from spline_model.solution import FrequencyEstimate
-from spline_model.statics import static_state
+from spline_model.static_answers import StaticSolution
+from spline_model.statics import settle, static_state
 
 Array = NDArray[np.float64]
 
@@ -215,11 +216,16 @@ def _modes(
     system = compile_scene(scene)
     system.require_dead("effects")
     layout = system.layout
+    about, starts = mechanism, False
     try:
-        z = static_state(mechanism, rotation, increments, body)[: layout.size]
+        z = static_state(about, rotation, increments, body)[: layout.size]
     except Unheld:  # under the loads in full: about the start of its motion
-        z = static_state(mechanism.at_start(), rotation, increments, body, starts=True)[: layout.size]
+        about, starts = mechanism.at_start(), True
+        z = static_state(about, rotation, increments, body, starts=True)[: layout.size]
     values, vectors, share = linear_modes(system, z, system.mass)
+    if np.sum(values < 0.0) > 1:
+        about = about.propped(rotation is not None, body)
+        _require_possible(values, settle(about, rotation, increments, body, starts=starts))
     slide = share > SLIDE_SHARE
     frequency = np.sign(values) * np.sqrt(np.abs(values)) / (2 * np.pi)
     kept = np.flatnonzero(~slide)[:count]
@@ -243,6 +249,17 @@ def _modes(
         segments=mechanism.design.discretisation.segments,
         control_points=mechanism.design.discretisation.points,
     )
+
+
+def _require_possible(values: Array, path: StaticSolution) -> None:
+    """Raise RoundOff if more squared frequencies are negative than the inertia of the state permits.
+
+    Each drive that a motion releases adds at most one (Cauchy's interlacing theorem).
+    """
+    unstable, most = int(np.sum(values < 0.0)), int(path.inertia[-1]) + path.reactions.shape[1]
+    if unstable > most:
+        expected = f"{most} at most by the inertia of the state: round-off decides a frequency [1]"
+        raise RoundOff("unstable modes", unstable, expected)
 
 
 def linear_modes(system: System, z: Array, mass: Array) -> tuple[Array, Array, Array]:

@@ -77,8 +77,7 @@ def answer_release(
 
     Args:
         design: the pivot or mechanism. If the design has no rotation, none is driven: the motion starts at
-        the
-            equilibrium under everything that acts at t = 0.
+            the equilibrium under everything that acts at t = 0.
         settings: the model and its discretisation.
         duration: of the motion [s].
         start: rotation at the start [rad]; None for the end of the design's path.

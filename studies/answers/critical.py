@@ -55,8 +55,7 @@ class CriticalLoad(Answer):
         kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
         uncertainty: relative, of force or share [1]; NaN if unknown.
         soft, yields: force at which the rotation exceeds SOFT, and at which a strip yields [N], if no
-        critical
-            load is found; None otherwise. softer: relative uncertainty of both [1].
+            critical load is found; None otherwise. softer: relative uncertainty of both [1].
     """
 
     analysis = "critical load"

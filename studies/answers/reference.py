@@ -171,8 +171,7 @@ class SwingReference(SolvedMotion):
 
     Attributes:
         uncertainty: largest one of the rotation, "rotation_rad" [rad], relative of the "frequency" [1], and
-        of
-            a limit of refinement those of the centre, "com_x_m" and "com_y_m" [m]. source: in words.
+            of a limit of refinement those of the centre, "com_x_m" and "com_y_m" [m]. source: in words.
     """
 
     uncertainty: Mapping[str, float]

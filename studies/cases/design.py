@@ -26,7 +26,7 @@ def read_design(path: str | Path, *, changes: str | None = None) -> Design:
     Args:
         path: of the file.
         changes: of its effects, "+gravity,-strip_inertia" or the whole list; None for the effects of the
-        file.
+            file.
 
     Raises:
         CaseError: the file cannot be used; one line.

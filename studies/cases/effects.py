@@ -107,9 +107,8 @@ class Effects:
         """Return the effects after "+gravity,-strip_inertia", or for the whole list "bending,stretching".
 
         Raises:
-            BadInput: an unknown effect, one that is added twice or removed without being there, signs on some
-            names
-                only, or an effect without a parameter that it needs.
+            BadInput: an unknown effect, one that is added twice or removed without being there, signs on
+                some names only, or an effect without a parameter that it needs.
         """
         words = [word.strip() for word in text.split(",") if word.strip()]
         if not words:

@@ -98,8 +98,7 @@ class Mechanism:
         increments: equal increments of the path [1].
         effects: of the case.
         history, held: of a rotation that is prescribed in a motion: pairs of time [s] and factor [1], and
-        begin
-            and end [s]; None for a release.
+            begin and end [s]; None for a release.
         order: of loads and rotation, "loads first" or "together".
         points: whose displacement is reported.
     """
