@@ -68,7 +68,8 @@ def condense_again(arrays):
         _forward(own, last, end, strips.coupled, strips.outer, strips.gain[s], h, b, local.gap[s], g)
         for i in range(last, end + strips.outer):
             force[place_of(i - last, tip, root, bodies.rest.size + s)] += g[i]
-    fold(force, bodies.frames, space.vectors[ARMS])
+    if bodies.frames.place.size > 0:
+        fold(force, bodies.frames, space.vectors[ARMS])
 
 
 @called()
@@ -101,7 +102,8 @@ def take_residual(y, load, arrays):
         evaluate_residual(s, y[at + own : at + own + modes], n, shape, strips, local, space.out)
         to_coordinates(s, local.nodal[s, GRADIENT], last, local.map[s], strips, local.reduced[s, LAST])
         norm = max(norm, residual_of(s, own, last, strips, local, space))
-    fold(space.vectors[RAW], bodies.frames, space.vectors[ARMS])
+    if bodies.frames.place.size > 0:
+        fold(space.vectors[RAW], bodies.frames, space.vectors[ARMS])
     return norm
 
 
@@ -176,7 +178,8 @@ def take_product(rate, load_rate, arrays):
     force, poses = space.vectors[FORCE], bodies.rest.size
     n, modes = shape.order.size, strips.compliance.shape[1]
     own, last, arms = 2 * n - 6, 2 * n - 6 + strips.coupled - strips.outer, space.vectors[ARMS]
-    spread(rate, bodies.frames, arms)
+    if bodies.frames.place.size > 0:
+        spread(rate, bodies.frames, arms)
     for i in range(bodies.load.size):
         force[i] = -load_rate * bodies.load[i]
     for f in range(bodies.frames.place.shape[0]):

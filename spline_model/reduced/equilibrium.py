@@ -130,7 +130,8 @@ def tangent(held_rate, load_rate, arrays):
     carry(REACTION, bodies, space)
     for i in range(bodies.load.size):
         move[i] = load_rate * bodies.load[i]
-    fold(move, bodies.frames, vectors[ARMS])
+    if bodies.frames.place.size > 0:
+        fold(move, bodies.frames, vectors[ARMS])
     for d in range(held.size):
         vectors[REACTION_RATE, d] = -move[held[d]]
     for i in range(free.size):
