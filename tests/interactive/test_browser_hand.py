@@ -242,7 +242,9 @@ def test_sliders_are_live_and_undone_at_once(page):
     assert page.ask(SLIDE) >= 15
     page.wait("studio.curve.moment.at(-1) > 2 * studio.ghost.moment.at(-1)")
     assert page.ask("studio.ghost.moment.at(-1)") == moment
-    page.wait("studio.state.values.thickness === JSON.parse(sessionStorage.design ?? 'null')?.values.thickness")
+    page.wait(
+        "studio.state.values.thickness === JSON.parse(sessionStorage.design ?? 'null')?.values.thickness"
+    )
     page.key("z")
     page.wait(f"studio.state.values.thickness === {before}")
 
