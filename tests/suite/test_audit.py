@@ -6,6 +6,7 @@ What a scene costs is counted here, not timed: an audit is told Newton iteration
 import dataclasses
 import json
 import math
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,7 @@ from studies.effects.audit import prices
 from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
 
 TOLERANCE = 1e-3
+FINDS = Path(__file__).with_name("finds")
 
 
 @pytest.fixture
@@ -42,6 +44,15 @@ def test_audit_of_a_mechanism_without_a_drive(command):
     assert "applied_force" in found["cheapest"]["effects"]
     for name in ("cantilever_with_body", "polymer_pivot"):  # which have no golden, as they hang on round-off
         assert "cheape" in command("audit", FOLDER / f"{name}.toml").out
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("brief")
+def test_audit_of_what_rests(command):
+    """A mechanism that rests under its loads, so that nothing moves after its release, is audited by path."""
+    case = FINDS / "clamped_mechanism.toml"
+    found = json.loads(command("audit", case, "--json", "-").out)
+    assert found["rows"] and found["cheapest"]["effects"]
 
 
 def test_audit_of_what_is_not_stable(command, tmp_path):
