@@ -31,7 +31,14 @@ from spline_model.content import STEPS_PER_PERIOD
 from spline_model.discretisation import require_uncut
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.elastic import ANTICLASTIC
-from spline_model.errors import InvalidParameter, present, require_choice, require_count, require_positive
+from spline_model.errors import (
+    InvalidParameter,
+    present,
+    require_choice,
+    require_count,
+    require_finite,
+    require_positive,
+)
 from spline_model.impulses.arrays import Problem, Space
 from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -91,8 +98,8 @@ class ImpulseSolver:
 
         Raises ConvergenceError if statics does not reach it.
         """
-        if rotation is not None and not math.isfinite(rotation):
-            raise InvalidParameter("rotation", rotation, "a finite angle [rad]")
+        if rotation is not None:
+            require_finite("rotation", rotation, "rad")
         return self.start_at(static_state(self.mechanism.at_start(), rotation, body=body))
 
     def start_at(self, z: Array, v: Array | None = None) -> State:
@@ -282,8 +289,8 @@ def solve_impulses(
     mechanism = pivot.in_motion()
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
-    if start is not None and not math.isfinite(start):
-        raise InvalidParameter("start", start, "a finite angle [rad]")
+    if start is not None:
+        require_finite("start", start, "rad")
     laps, body = Laps(), mechanism.design.body_named(body)
     released = mechanism.released()
     system = compile_scene(released if drive is None else released.with_effects(drive))

@@ -159,8 +159,11 @@ def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
 
 
 def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
-    """Return the fastest scene within the tolerance, of those not told apart the one with least in it."""
-    within = [each for each in outcomes if each.largest <= tolerance]
+    """Return the fastest scene within the tolerance, of those not told apart the one with least in it.
+
+    The full scene, which is the first, is one of them even where its motion has nothing to compare.
+    """
+    within = [outcomes[0], *(each for each in outcomes[1:] if each.largest <= tolerance)]
     fastest = min(each.wall_s for each in within)
     near = [each for each in within if each.wall_s <= (1.0 + SAME_TIME) * fastest]
 

@@ -231,7 +231,8 @@ class Run:
         massless = "strip_inertia" not in design.effects.names
         motion = answer_release(design, self.settings, duration=self.duration, step=self.step, check=massless)
         alone = motion.converged and massless and math.isnan(motion.rotation_error)
-        if full is not None and (left := motion.resolution if alone else motion.message):
+        early = "" if motion.converged else motion.message  # one that only remarks has its end
+        if full is not None and (left := motion.resolution if alone else early):
             return replace(answer, stopped=True, note=f"motion: {left}")
         largest = float((motion.whole().kinetic_energy + motion.strain_energy).max())
         return replace(
