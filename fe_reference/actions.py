@@ -168,7 +168,7 @@ def advance(
 
     v += h a(u, v), u += h v with the `compliance` (rows, 3): 1/mass of free nodes and bodies, else 0; dampers
     act at the velocities before the step. `led`: where in rows the coordinates are that drives lead. `totals`
-    gathers the work of loads and drives, exactly that of the scheme, and what the dampers take [J].
+    gathers the work of loads and drives, exactly that of the scheme, and the energy that dampers dissipate.
     """
     (_, carried, _, _), dissipative, loads, _, (force, _, _, _), _ = acting
     u, v = state

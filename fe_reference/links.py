@@ -118,7 +118,7 @@ def between(links: Links, u: Array, one: Array, other: Array) -> float:
 
 def fastest(links: Links, constants: Array, mass: Array, inertia: Array) -> float:
     """Return what no ratio of constants (K, 3) of links to masses and inertias (rows,) exceeds
-    [1/s^2 or 1/s], roots left out.
+    [1/s^2 or 1/s], roots excluded.
 
     It is the sum of the largest ratios of each link alone. At an arm o its end has the mass 1 / (1/m + o^2/J)
     at least.

@@ -207,7 +207,7 @@ class Symmetric:
 
 @dataclass(eq=False)
 class Factors:
-    """Factors of a matrix; negative: the number of its negative eigenvalues, the held rows left out.
+    """Factors of a matrix; negative: the number of its negative eigenvalues, without the held rows.
 
     border: of products left (x) right of vectors (R, size) that are added, right, the solutions for left
     (R, size) and the inverse of 1 + right.solutions (R, R).

@@ -174,7 +174,7 @@ def course(
         y, v = carried_over(before, y, scheme.structure), carried_over(before, y, scheme.structure, v)
         caught = span.caught(scheme.structure, scheme.bodies, y, v)
         gained = scheme.kinetic(y, caught) - scheme.kinetic(y, v)
-        # what a catch takes from the motion is lost; what a drive gives it, by a jump of rates too, is work
+        # energy that a catch ends is lost; what a drive adds, by a jump of rates too, is work
         samples.books += (0.0, -gained) if span.begins and gained < 0.0 else (gained, 0.0)
         now = scheme.start(span.begin, y, caught, span.held(scheme.structure))
         begun = scheme.beside(now)

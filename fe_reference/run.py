@@ -113,7 +113,7 @@ class Run(Checked):
             ways = [f"--integrator generalised-alpha takes about {implicit:.2g}"]
             if implicit > self.most_steps:
                 ways = [
-                    "leave out strip_inertia, if strips are light, and take --integrator generalised-alpha "
+                    "remove strip_inertia, if strips are light, and take --integrator generalised-alpha "
                     f"with a --step (its own are about {implicit:.2g})"
                 ]
         if steps <= FAR_MORE * MOST_STEPS:

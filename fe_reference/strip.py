@@ -96,7 +96,7 @@ class StripDesign(Checked):
                 raise InvalidParameter(name, JOINTS[1], f"{JOINTS[0]} at the free end of {self.name} [name]")
 
     def _read_sides(self) -> None:
-        """Fill in what the sides make of the section; refuse what contradicts them, and half a section."""
+        """Fill in area and second moment from the sides; refuse contradictions and half a section."""
         names = ("area", "second_moment_of_area")
         missing = [name for name in names if getattr(self, name) != getattr(self, name)]  # NOT_GIVEN
         ends = (self.width_end, self.thickness_end)

@@ -228,7 +228,7 @@ def _solve_accurately(
     if not answer.settled:
         return answer
     segments, points = outcome.best
-    message = outcome.message
+    message, of_refinement = outcome.message, dict(errors)
     if design.root_length:
         halves = solved((2 * segments, max(FIRST, points // 2 + 2)))
         errors |= _with_roots(design, errors, answer, halves)
@@ -236,9 +236,12 @@ def _solve_accurately(
     estimate = ErrorEstimate(
         accuracy=accuracy, **errors, segments=segments, control_points=points, trials=outcome.tried
     )
-    # the stiffness of a body may pass through zero: by itself it is no failure that was not asked about
-    judged = (error for name, error in errors.items() if least is None or name != "body_stiffness")
-    failed = largest(judged) > max(accuracy, least or 0.0)
+    judged = errors
+    if least is not None:
+        # no failures that were not asked about: the stiffness of a body may pass through zero, and roots are
+        # springs or spread by choice of the model
+        judged = {name: error for name, error in of_refinement.items() if name != "body_stiffness"}
+    failed = largest(judged.values()) > max(accuracy, least or 0.0)
     if failed and answer.status is Status.CONVERGED:
         answer = replace(answer, status=Status.NOT_CONVERGED, message=message)
     return replace(answer, estimate=estimate)

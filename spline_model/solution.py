@@ -242,7 +242,7 @@ class ErrorEstimate:
     supports exert, and of the moments, whichever is more. nan of what a path does not have.
     segments of a strip that were chosen, and control_points of each; trials: control points of a strip that
     were tried.
-    Leaves out what more control points do not mend: the theory's own simplifications.
+    Excludes errors that more control points do not reduce: the simplifications of the theory.
     """
 
     accuracy: float

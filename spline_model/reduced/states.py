@@ -34,8 +34,8 @@ Array = NDArray[Any]
 def _place_all(y, arms, bodies, shape, strips, local, out, points, forces):
     """Frames in y, control points (S, G, 2 n) and what the clamps do to the strips (S, G, 2, 3).
 
-    A clamp's force is what the gradient asks for at its two control points, its moment what it asks for at
-    the inner one across its direction.
+    A clamp's force is the sum of the gradient at its two control points; its moment is the gradient at the
+    inner one across its direction.
     """
     n, modes = shape.order.size, strips.compliance.shape[1]
     own = 2 * n - 6

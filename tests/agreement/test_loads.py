@@ -90,7 +90,7 @@ def test_work_of_one_increment_is_none():
 
 
 def frequencies(asked: Design, settings: Settings, count: int = 3) -> np.ndarray:
-    """Lowest frequencies about the state that the design is driven to, which is then let go [Hz]."""
+    """Lowest frequencies about the state that the design is driven to, which is then released [Hz]."""
     answer = answer_modes(asked, settings, rotation=asked.rotation or 0.0, count=count)
     assert answer.converged, answer.message
     return answer.frequency
@@ -110,7 +110,7 @@ def modes_apart(asked: Design, control_points: int = 8, meshes: tuple[int, int] 
     ids=angle,
 )
 def test_modes_about_loaded_states_agree(effect, rotation):
-    """Requirement: the first three modes of what a release lets go of agree under every load."""
+    """Requirement: the first three modes about a released state agree under every load."""
     gate, meshes = ("loads_modes_led", (10, 20)) if effect == STIFF else ("loads_modes", (5, 10))
     error = partial(modes_apart, loaded.design(effect, rotation), meshes=meshes)
     gates.check(gate, error())

@@ -143,8 +143,8 @@ def test_motions_under_loads_keep_their_energy_books(effect, history, rotation, 
         gates.refuse("loads_motion_books", lambda step: implicit(step=step).energy_error)
 
 
-#: A rotation that is held and then let go, one that is led back and let go as it moves, and the centre led
-#: on. Corners are off the grid of steps.
+#: A rotation that is held and then released, one that is led back and released as it moves, and the centre
+#: led on. Corners are off the grid of steps.
 HELD, LED_BACK = (0.0, 0.00301), ((0.0, 1.0), (0.00503, 0.7))
 AWAY = ((0.0, 1.0), (0.00307, 0.8), (0.00611, 1.0))
 

@@ -143,7 +143,7 @@ def test_shear_of_a_stubby_cantilever_is_timoshenkos() -> None:
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
-    """Two elements rolled by 1.2 turns stop where each is bent by half a turn, and say so; four go on."""
+    """Two elements rolled by 1.2 turns stop where each is bent by half a turn, and tell why; four go on."""
     coarse, fine = (
         tipped(TIP, elements=n, element=element, applied_moment={"moment": 2.4 * np.pi * EI / GUIDE})
         for n in (2, 4)

@@ -198,7 +198,7 @@ def test_every_design_of_a_batch_gets_the_points_that_it_takes():
 
 
 def test_a_design_of_a_batch_that_misses_its_accuracy_is_told():
-    """Requirement: where no number of control points reaches the accuracy, the row says so by name."""
+    """Requirement: where no number of control points reaches the accuracy, the row names it."""
     designs, rotation = spread(2, 90.0)
     batch = solve_many(designs, rotation=rotation, increments=4, section_depth=4e-3, accuracy=1e-13)
     assert batch.converged.all()

@@ -75,7 +75,7 @@ def test_estimates_of_all_designs_are_within_their_band():
     tables = Store().load_tables("convergence/error_estimate")
     rows = tables["estimates"]
     assert rows[rows["problem"] == "statics"]["design"].nunique() >= 30
-    least = rows["accuracy"] == rows["accuracy"].min()  # there stresses may end at round-off, and say so
+    least = rows["accuracy"] == rows["accuracy"].min()  # there stresses may end at round-off, with a message
     assert (rows.loc[~least, "status"] == "converged").all()
     assert (rows.loc[least, "status"] == "converged").mean() > 0.9
     counted = {name: each for name, each in rows[rows["counts"]].groupby("problem")}

@@ -164,7 +164,7 @@ follower = true
 
 @pytest.mark.parametrize("model", ["spline", "fe"])
 def test_the_stability_under_a_load_that_follows_is_not_judged(model, tmp_path, command):
-    """A load that follows its body has no modes: a release that starts in equilibrium under it says so."""
+    """A load that follows its body has no modes: a release that starts in balance under it has a remark."""
     case = tmp_path / "followed.toml"
     case.write_text(FOLLOWED)
     words = ["release", case, "--model", model, "--duration", 1e-3, "--no-check"]

@@ -169,7 +169,7 @@ class Causes:
         return best if self.weights[best] > least else ""
 
     def unexplained(self, seen: View) -> Array:
-        """Return the residual (16,) [px] less what the causes leave."""
+        """Return the residual (16,) [px] without the patterns of the causes."""
         return np.asarray(seen.gap + seen.pattern @ self.sizes)
 
     def spread_of(self, seen: View, *, own: bool) -> float:

@@ -33,7 +33,7 @@ FOLLOW = 1.0
 BLIND = 1.0
 #: Most powers of light that are tried on one picture.
 POWERS = 3
-#: Share of good stations of an edge below which it is called blurred, may be left out where the others fit
+#: Share of good stations of an edge below which it is called blurred, may be ignored where the others fit
 #: without it, and is not taken for whole.
 CLEAR, PART, WHOLE = 0.6, 0.75, 0.9
 #: Places in the white around a marker, in sides; the value from which they are clipped, and their share that

@@ -126,7 +126,7 @@ class Browser:
             try:
                 if value := self.ask(script):
                     return value
-            except RuntimeError as error:  # a page that is being loaded has not what the script asks for
+            except RuntimeError as error:  # a page that is being loaded lacks objects of the script
                 said = [str(error)]
             time.sleep(0.03)
         raise TimeoutError(f"page: {script} did not come true in {patience:g} s; it said {said[:3]}")
