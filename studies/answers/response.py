@@ -1,5 +1,6 @@
 """The neutral answer to a static path."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -11,9 +12,10 @@ from studies.answers.models import Asked
 from studies.answers.quantities import stress_of
 from studies.kinds import Array
 
-#: What the models call the errors of the bodies' places, and of what is exerted on bodies.
+#: Names of the models for the errors of the bodies' places, of the forces exerted on bodies, and of stresses.
 PLACES = ("trajectory", "path")
 REACTIONS = ("reactions", "exerted")
+STRESSES = ("stress", "largest_stress")
 #: Turn below which a path is not one of a rotation [rad].
 TURNED = 1e-9
 
@@ -129,12 +131,15 @@ class Response(Answer):
         return replace(found, resolution="; ".join(filter(None, (found.resolution, above))))
 
     def _errors_beside(self, estimate: dict[str, Any]) -> dict[str, float]:
-        """Return the error of a pivot's centre shift."""
+        """Return the error of a pivot's centre shift, and none of stresses without an outer fibre."""
         known = next((estimate[name] for name in PLACES if name in estimate), None)
+        found = {}
+        if not any(strip.outer_fibre or strip.thickness for strip in self.design.strips):
+            found = {name: math.nan for name in STRESSES if name in estimate}
         if known is None or self.crossing is None:
-            return {}
+            return found
         error = shift_error(np.array([known]), self.centre[None], self.centre_shift[None])
-        return {"centre_shift": float(error[0])}
+        return found | {"centre_shift": float(error[0])}
 
     def _in_full(self, along: Any) -> Any:
         """Return the fields with the forces by balance, where a spline has chosen its points."""
