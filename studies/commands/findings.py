@@ -229,7 +229,7 @@ def _hard_cases(store: Store) -> Iterator[str]:
 
 
 def _time(seconds: float) -> str:
-    return f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s"
+    return f"{1e3 * seconds:.2g} ms" if seconds < 0.0995 else f"{seconds:.2g} s"
 
 
 #: Rotations of the table of solids [deg].
