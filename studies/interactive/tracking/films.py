@@ -111,7 +111,7 @@ def demo_film() -> Film:
         light = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
         seen = 255.0 * (shade * cv2.GaussianBlur(light, (0, 0), 0.8)) ** (1.0 / GAMMA)
         noise = np.random.default_rng(k).standard_normal(seen.shape, dtype=np.float32)
-        return np.clip(np.rint(seen + 4.0 * noise), 0, 255).astype(np.uint8)
+        return np.asarray(np.clip(np.rint(seen + 4.0 * noise), 0, 255), dtype=np.uint8)
 
     return Film(draw=draw, frames=FRAMES)
 
