@@ -77,6 +77,7 @@ def test_pivot_and_sliders_are_seen_together(width, height):
     with Server(Settings(camera="none")) as hosted, Browser(width=width, height=height) as browser:
         load(browser, hosted)
         assert browser.ask("document.documentElement.scrollWidth") <= width
+        assert browser.ask("document.getElementById('mode').getBoundingClientRect().width") > 0
         if width > 1200:
             for name in ("#stage", "#status", "#release", "#record", "#moment"):
                 assert browser.ask(f"{inside}('{name}')"), name

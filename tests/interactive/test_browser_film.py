@@ -192,6 +192,9 @@ def test_errors_of_pictures_are_named(said):
         load(browser, hosted)
         browser.wait(f"document.getElementById('faults').textContent.includes('{said}')")
         assert browser.wait("studio.state.texts.rotation.includes('±')")
+        x, y = browser.ask(BODY)
+        drag(browser, [(x, y), (x + 20, y)])  # which the markers move here: the page gives the reason
+        browser.wait("document.body.textContent.includes('The markers in the picture move the body')")
         assert browser.ask("studio.errors") == []
 
 

@@ -42,6 +42,18 @@ def test_touch_moves_with_two_fingers(page):
     touch(page, "touchEnd", [])
 
 
+def test_swipe_beside_the_body_leaves_it(page):
+    """Requirement: a finger that moves beside the body does not turn it; on the body it does."""
+    for beside, turns in ((150, False), (0, True)):
+        x, y = page.ask(BODY)
+        touch(page, "touchStart", [(x + beside, y - beside)])
+        for k in range(1, 6):
+            touch(page, "touchMove", [(x + beside - 4 * k, y - beside)])
+        touch(page, "touchEnd", [])
+        page.ask("new Promise((done) => setTimeout(done, 200))")
+        assert (page.ask("studio.state.displacement[2]") != 0) == turns
+
+
 def test_keyboard_alone_does_everything(page):
     """Requirement: turn, move, release, pause, step, catch, export, list of keys and scrubbing need
     no mouse."""

@@ -62,6 +62,8 @@ export class Pointer {
     const { bodies, body } = this.studio.state.placing,
       other = this.view.bodyAt(this.studio.state, event.clientX, event.clientY, this.reach(event));
     if (!clamp && other >= 0 && other !== body) return this.send({ do: "grasp", body: bodies[other] });
+    // The first finger takes hold of the body: a swipe beside it is no drag.
+    if (!clamp && other < 0 && event.pointerType === "touch" && !this.down.size) return;
     this.canvas.setPointerCapture(event.pointerId);
     this.canvas.focus();
     if (clamp) {
