@@ -60,6 +60,10 @@ FIRST_GAIN = 6.0
 """By how much a control point is expected to lower the error before it was measured."""
 GAINS = (2.0, 12.0)
 """Limits of what is believed of a measured gain: the error does not fall evenly."""
+ROUGH = 4.0
+"""Growth of the error with more control points of a segment that is round-off."""
+PATIENCE = 3
+"""Trials in a row with a larger error than the best that end a search."""
 
 
 @dataclass(kw_only=True)
@@ -69,7 +73,8 @@ class Search(Generic[Found]):
     accuracy: wanted error [1]; grid: discretisation of the design, whose number of control points, or FIRST,
     is the first trial; most_segments: into how many a strip may be cut. at: the next trial, or the last one
     when it has ``ended``; trials: those that were made. error: the least estimated one [1], inf where no
-    trial had an answer, of the one that was ``best``; found: its answer.
+    trial had an answer, of the one that was ``best``; found: its answer; worse: trials with a larger error
+    since then.
     """
 
     accuracy: float
@@ -82,6 +87,7 @@ class Search(Generic[Found]):
     at: Grid = field(init=False)
     best: Grid = field(init=False)
     levels: list[tuple[int, float]] = field(init=False, default_factory=list)
+    worse: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
         own = self.grid.control_points
@@ -110,9 +116,10 @@ class Search(Generic[Found]):
         self.trials, better = (*self.trials, self.at), False
         if error is not None:
             self.levels.append((self.at[1], error))
+            self.worse += 1
             if better := error < self.error:
-                self.error, self.found, self.best = error, found, self.at
-        self.ended = self.error <= self.accuracy or not self._go_on()
+                self.error, self.found, self.best, self.worse = error, found, self.at, 0
+        self.ended = self.error <= self.accuracy or self.worse == PATIENCE or not self._go_on()
         return better
 
     def _go_on(self) -> bool:
@@ -120,6 +127,8 @@ class Search(Generic[Found]):
         (segments, points), most = self.at, max(MOST, self.trials[0][1])
         expected, may_cut = self._expected(), 2 * segments <= self.most_segments and self.error > FLOOR
         far = expected > most and len(self.levels) > 1 if self.levels else points >= MOST_CUT
+        if len(self.levels) > 1 and self.levels[-1][1] > ROUGH * self.levels[-2][1]:
+            most = points
         if points < most and not (far and may_cut):
             self.at = segments, min(expected, most)
         elif may_cut:

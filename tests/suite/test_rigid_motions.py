@@ -170,3 +170,12 @@ def test_gradients_of_lengths_far_apart():
     names = [f"s{i}.youngs_modulus" for i in range(3)]
     found = spline_model.sensitivities(asked.modelled, path, parameters=names, body="b3")
     assert 3.5e9 * found.torque.derivative[-1].sum() == pytest.approx(path.torque[-1], rel=1e-5)
+
+
+@pytest.mark.slow
+def test_a_search_ends_where_round_off_begins(answered):
+    """Requirement: with strips of which one is 500 times shorter, finer discretisations are worse at last.
+    The search ends there, and does not go on for minutes."""
+    found = answered("solve", FINDS / "mixed_lengths.toml", "--rotation-deg", 60)
+    assert found["estimate"]["torque"] < 1e-4
+    assert len(found["estimate"]["trials"]) <= 12
