@@ -223,6 +223,7 @@ def _by_state(stiffness: Array, better: Array) -> float:
     entries in that state: they fall by powers of ten along a path. nan where there is none."""
     size = np.abs(np.diagonal(better, axis1=1, axis2=2))
     size = np.sqrt(np.fmax(size, NO_STIFFNESS * np.fmax.reduce(size, axis=0)))
+    size[size == 0.0] = math.nan  # a body that turns freely on a hinge
     shares = np.abs(stiffness - better) / (size[:, :, None] * size[:, None, :])
     return float(np.fmax.reduce(shares, axis=None))
 

@@ -131,7 +131,7 @@ def test_solvers_are_chosen_by_their_names(page):
     any, and a motion that cannot keep up says on the picture how slow it runs."""
     names = page.ask("[...document.getElementById('solver').options].map((option) => option.text)")
     assert names[0] == "impulses at once (Eq 30), stable form"
-    assert "impulses by sweeps over constraints, as printed" in names
+    assert "impulses by sweeps over constraints, as published" in names
     assert page.ask("document.getElementById('sweeps-row').hidden")
     chosen(page, "solver", "published")
     page.wait("!document.getElementById('sweeps-row').hidden")
