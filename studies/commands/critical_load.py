@@ -32,7 +32,7 @@ from studies.commands.parser import Argument, command, degrees
 from studies.record.progress import Bar
 
 #: Digits of a force; rotation that is none [deg].
-DIGITS, NO_TURN = 6, 1e-6
+DIGITS, NO_TURN = 6, 1e-3
 
 
 @command(
