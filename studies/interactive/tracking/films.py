@@ -30,6 +30,8 @@ HIDDEN = range(235, 247)
 #: Its camera: size and focal length [px], distance [m] and angles to the plane, and places that it draws in a
 #: pixel, in each direction; light of the table, of ink, paper and skin, over that of white.
 WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.radians(20), math.radians(3), 2
+#: Texels of a bit of a marker: about one for a fine pixel, so that edges between them have no steps.
+TEXELS = 16
 TABLE, BLACK, WHITE, SKIN = 0.31, 0.006, 0.76, 0.14
 
 
@@ -118,14 +120,13 @@ def demo_film() -> Film:
 
 def _lay(light: Array, plane: Array, number: int, pose: Array) -> None:
     """Lay a marker with its white margin at `pose` (3,) into the picture of the plane."""
-    paper = np.where(
-        np.pad(cells(number).repeat(2, axis=0).repeat(2, axis=1), 3, constant_values=True), WHITE, BLACK
-    )
-    size, middle = SIDE / (2 * BITS), (paper.shape[0] - 1) / 2
+    bits = cells(number).repeat(TEXELS, axis=0).repeat(TEXELS, axis=1)
+    paper = np.where(np.pad(bits, 3 * TEXELS // 2, constant_values=True), WHITE, BLACK)
+    size, middle = SIDE / (TEXELS * BITS), (paper.shape[0] - 1) / 2
     own = size * np.array([[1.0, 0.0, -middle], [0.0, -1.0, middle], [0.0, 0.0, 1.0 / size]])
     laid = np.column_stack((np.vstack((turn(pose[2]), np.zeros(2))), (*pose[:2], 1.0)))
     place = plane @ laid @ own
-    how = {"flags": cv2.INTER_NEAREST, "borderMode": cv2.BORDER_TRANSPARENT}
+    how = {"flags": cv2.INTER_LINEAR, "borderMode": cv2.BORDER_TRANSPARENT}
     cv2.warpPerspective(paper, place, light.shape[::-1], light, **how)
 
 
