@@ -10,6 +10,7 @@ pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 
 from studies.interactive.design import SIDE
 from studies.interactive.tracking.causes import MODELS, Causes
+from studies.interactive.tracking.films import demo_film
 from studies.interactive.tracking.planar import Camera, fit
 from studies.interactive.tracking.squares import refine
 from studies.interactive.tracking.tracker import Tracker
@@ -290,3 +291,9 @@ def test_texture_alone_shows_no_marker():
     """Requirement: noise without markers gives no marker and its sentence."""
     (event,) = watch(film(Optics(noise=20.0), frames=1, markers=lambda k: []))
     assert names(event) == "lost-both"
+
+
+def test_the_demo_film_has_no_false_warning():
+    """Requirement: markers of the demo film are flat, its lens is ideal: no picture has a warning of them."""
+    events = watch(replace(demo_film(), frames=60))
+    assert {fault for event in events for fault in event["faults"]} & CAUSES == set()
