@@ -267,7 +267,7 @@ def own(case: str) -> Piece:
     """Return the design of a case file, or of a case of that name; BadInput as of `opened`."""
     path = FOLDER / f"{case}.toml" if case in SHIPPED else Path(case)
     try:
-        return opened(OWN, parsed(path), title=path.stem.replace("_", " "), note="of one's own")
+        return opened(OWN, parsed(path), title=path.stem.replace("_", " "))
     except BadInput as error:
         raise BadInput(str(error).replace("design.toml", str(path))) from None
 
@@ -275,7 +275,7 @@ def own(case: str) -> Piece:
 def preset(name: str) -> Piece:
     """Return the preset of that name; BadInput lists the names."""
     if name in SHIPPED and name not in PRESETS:
-        PRESETS[name] = opened(name, parsed(FOLDER / f"{name}.toml"), note="a case of the suite")
+        PRESETS[name] = opened(name, parsed(FOLDER / f"{name}.toml"))
     if name == OWN and OWN not in PRESETS:
         raise BadInput(f"preset: got {OWN!r}, expected its case file beside the command")
     if name not in PRESETS:
@@ -296,8 +296,8 @@ def chosen(name: str, now: Piece, case: Mapping[str, Any] | None, values: Mappin
 
 def catalogue() -> dict[str, Any]:
     """Return parameters, presets and what each material that yields sets, for whoever shows them."""
-    every = {name: {"title": name.replace("_", " "), "note": "a case of the suite"} for name in SHIPPED}
-    every = {name: {"title": p.title, "note": p.note} for name, p in PRESETS.items()} | every
+    every: dict[str, dict[str, Any]] = {name: {"title": name.replace("_", " ")} for name in SHIPPED}
+    every = {n: {"title": p.title, "note": p.note, "values": p.values} for n, p in PRESETS.items()} | every
     known = {each["title"].partition(",")[0]: each for each in MATERIALS.values() if "yield_strength" in each}
     return {
         "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],

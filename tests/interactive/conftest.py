@@ -36,5 +36,5 @@ def page(hand):
     chosen(hand, "preset", "polymer")
     chosen(hand, "drive", "rotation")
     hand.wait("studio.state.mode === 'held' && studio.state.displacement[2] === 0")
-    hand.wait("studio.state.drive === 'rotation'")
+    hand.wait("studio.state.drive === 'rotation' && studio.state.preset === 'polymer'")
     return hand

@@ -285,6 +285,28 @@ def test_body_is_grasped_by_pointing(page):
     assert page.ask("studio.errors") == []
 
 
+def test_no_word_outlives_what_it_is_of(page):
+    """Requirement: the note of a preset is shown for its own values alone; an error is gone with the next
+    change, whether the page or the server found it, and so is that of a server that was away."""
+    note, error = (f"document.getElementById('{name}').textContent" for name in ("preset-note", "note"))
+    assert page.ask(note) == "swings about once a second, in real time"
+    typed(page, "strip width in mm", "12")
+    page.wait(f"studio.state.values.width === 0.012 && {note} === ''")
+    typed(page, "strip thickness in mm", "8000")
+    page.wait(f"{error}.startsWith('strip thickness: from')")
+    page.key("z")
+    page.wait(f"studio.state.values.width === 0.01 && {note} !== '' && {error} === ''")
+    chosen(page, "preset", "titanium_pivot")
+    page.wait(f"studio.state.preset === 'titanium_pivot' && {note} === ''")
+    page.ask("studio.send({ do: 'parameter', name: 'length', value: 70 })")
+    page.wait(f"{error}.startsWith('length: got 70000')")
+    page.key("ArrowUp")
+    page.wait(f"studio.state.pose[2] > 0 && {error} === ''")
+    shown = page.ask("studio.socket.socket.close(), studio.shown")
+    page.wait(f"{error}.startsWith('The server does not answer')")
+    page.wait(f"{error} === '' && studio.shown > {shown + 2} && studio.state.preset === 'titanium_pivot'")
+
+
 def test_comma_is_a_decimal_point(page):
     """Requirement: a number that is typed with a comma is not read without it."""
     page.ask(

@@ -1,6 +1,7 @@
 """What the server lets in: hosts, pages, tokens, sizes, rates."""
 
 import contextlib
+import logging
 import math
 import secrets
 import socket as sockets
@@ -45,17 +46,29 @@ def test_nothing_else_is_served(server, path):
     assert get(server, path)[0].status == 404
 
 
+def shaken(server, *, host=None, origin=None, end=b"\r\n"):
+    """Status that answers the request for a socket, None of one that breaks off before its `end`."""
+    own = f"127.0.0.1:{server.port}"
+    lines = [
+        *("GET /ws HTTP/1.1", f"Host: {host or own}", f"Origin: {origin or f'http://{own}'}"),
+        *("Upgrade: websocket", "Connection: Upgrade", "Sec-WebSocket-Version: 13"),
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+    ]
+    with sockets.create_connection(("127.0.0.1", server.port), timeout=5.0) as plain:
+        plain.sendall("".join(f"{line}\r\n" for line in lines).encode() + end)
+        return int(plain.recv(12).split()[1]) if end else None
+
+
 @pytest.mark.parametrize(
     "host", ["evil.example", "evil.example:{}", "127.0.0.1", "127.0.0.1:81", "127.0.0.1.evil.example:{}"]
 )
 def test_foreign_hosts_are_refused(server, host):
-    """Requirement: a request for another host (DNS rebinding) gets 400, for page and socket."""
+    """Requirement: a request for another host (DNS rebinding) gets 400, and 403 for a socket."""
     host = host.format(server.port)
     assert get(server, "/", host=f"localhost:{server.port}")[0].status == 200
     assert get(server, "/", host=host)[0].status == 400
-    with pytest.raises(InvalidStatus) as caught, opened(server, additional_headers={"Host": host}):
-        pass
-    assert caught.value.response.status_code == 400
+    assert shaken(server, host=host) == 403
+    assert shaken(server) == 101
 
 
 @pytest.mark.parametrize(
@@ -67,6 +80,33 @@ def test_foreign_pages_are_refused(server, origin):
     with pytest.raises(InvalidStatus) as caught, opened(server, origin=own):
         pass
     assert caught.value.response.status_code == 403
+
+
+def test_refused_sockets_leave_no_line_in_the_log(server):
+    """Requirement: sockets of foreign pages and hosts, that break off, that never say hello, with a wrong
+    token and that close in the middle of an answer are no errors of the server: its log stays empty."""
+    lines, keeper = [], logging.Handler()
+    keeper.emit = lambda record: lines.append(record.getMessage())
+    log = logging.getLogger("uvicorn.error")
+    log.addHandler(keeper)
+    try:
+        assert shaken(server, origin="http://evil.example") == 403
+        assert shaken(server, host="evil.example") == 403
+        shaken(server, end=b"")
+        with opened(server, hello=False):
+            pass
+        with opened(server, hello=False) as socket:
+            say(socket, do="hello", version=1, token="x" * 32)
+            assert closing(socket)[0] == 4403
+        with opened(server) as socket:
+            say(socket, do="pose", pose=[0, 0, 0.1])
+            socket.socket.close()
+        assert emptied(server)
+        assert lines == []
+        log.error("any line")
+        assert lines == ["any line"]
+    finally:
+        log.removeHandler(keeper)
 
 
 def test_token_is_needed(server):

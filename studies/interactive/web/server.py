@@ -23,7 +23,7 @@ from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
-from starlette.websockets import WebSocket, WebSocketDisconnect
+from starlette.websockets import WebSocket, WebSocketClose, WebSocketDisconnect
 
 from spline_model.reduced import many
 from studies.errors import BadInput
@@ -79,10 +79,13 @@ class Server:
     async def _guarded(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse that of a foreign host (DNS rebinding) or page."""
         given, hosts = Headers(scope=scope), self._hosts
-        if given.get("host") not in hosts:
+        known = given.get("host") in hosts
+        if scope["type"] == "websocket":
+            known = known and given.get("origin") in [f"http://{each}" for each in hosts]
+        if not known and scope["type"] == "websocket":
+            await WebSocketClose()(scope, receive, send)  # 403: uvicorn logs any other answer as an error
+        elif not known:
             await PlainTextResponse("host: expected this machine", status_code=400)(scope, receive, send)
-        elif scope["type"] == "websocket" and given.get("origin") not in [f"http://{each}" for each in hosts]:
-            await PlainTextResponse("origin: expected this page", status_code=403)(scope, receive, send)
         else:
             await self._app(scope, receive, send)
 

@@ -19,6 +19,7 @@ const studio = {
   shown: 0,
   errors: [],
   trips: [],
+  wrong: false,
 };
 window.studio = studio;
 
@@ -27,19 +28,25 @@ const numbers = new Numbers();
 const ring = new Ring();
 Object.assign(studio, { view, ring });
 const socket = new Socket(received, lost);
+Object.assign(studio, { socket, send });
 const camera = new Camera(socket, say);
-const controls = new Controls(send, say);
+const controls = new Controls(send, wrong);
 const pointer = new Pointer(at("stage"), view, studio, send, controls, redraw);
 
 function send(event) {
+  if (studio.wrong && event.do !== "tick") say(""); // an error is of what was sent before
   if (event.do !== "pose") pointer.forget();
   if (["preset", "undo", "redo"].includes(event.do)) controls.settle();
   if (!ring.live && !["pose", "tick"].includes(event.do)) actions.live(); // no change of a state that is not shown
   if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
   socket.send(event);
 }
-function say(text) {
+function say(text, error = false) {
   at("note").textContent = text;
+  studio.wrong = error;
+}
+function wrong(text) {
+  say(text, true);
 }
 
 function received(message, picture) {
@@ -48,7 +55,7 @@ function received(message, picture) {
     studio.errors.push(message.text);
     camera.answered(message.seq);
     controls.answered(message.seq);
-    return say(message.text);
+    return wrong(message.text);
   }
   if (message.kind === "skipped") return camera.skipped(message.seq);
   if (message.kind === "curve") return curve(message);
@@ -119,6 +126,7 @@ function keep() {
 
 function welcome(message) {
   studio.welcome = message;
+  if (studio.wrong) say("");
   controls.build(message);
   studio.source = { browser: "camera", film: "film", none: "no camera", server: "camera of the server" }[
     message.camera
@@ -142,13 +150,13 @@ function noCamera(why) {
   at("stage").classList.add("grab");
   pointer.on = true;
   at("hand-box").hidden = false;
-  if (why) say(`${why} Drag the body, or use the arrow keys.`);
   send({ do: "drive", by: "rotation" });
+  if (why) say(`${why} Drag the body, or use the arrow keys.`);
 }
 
 function lost(text) {
   at("source").textContent = "not connected";
-  say(text);
+  wrong(text);
 }
 
 function recorded(message) {

@@ -36,7 +36,7 @@ export class Controls {
       at("sweeps").checkValidity() &&
       at("sweeps").value &&
       this.send({ do: "solver", name: at("solver").value, sweeps: Number(at("sweeps").value) });
-    this.flying = this.next = this.drag = null;
+    Object.assign(this, { seen: "", flying: null, next: null, drag: null });
     at("material").replaceChildren(
       new Option("other", ""),
       ...Object.keys(welcome.materials).map((name) => new Option(name, name)),
@@ -196,7 +196,9 @@ export class Controls {
       Object.entries(this.welcome?.materials ?? {}).find(([, m]) =>
         Object.entries(this.of(m)).every(([name, value]) => state.values[name] === value),
       )?.[0] ?? "";
-    at("preset-note").textContent = this.welcome?.presets[state.preset]?.note ?? "";
+    const known = this.welcome?.presets[state.preset] ?? {},
+      same = Object.entries(known.values ?? {}).every(([name, value]) => state.values[name] === value);
+    at("preset-note").textContent = same ? (known.note ?? "") : "";
     for (const [name, row] of this.rows) {
       const value = state.values[name];
       if (typeof value === "number") row.fit(value, state, renewed);
