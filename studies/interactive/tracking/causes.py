@@ -56,20 +56,18 @@ _OWN = ((CORNERS + _AFTER)[:, None] / 2.0 + _NODES[:, None] * (_AFTER - CORNERS)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class View:
-    """One picture's residuals, and what causes of unit size do to them.
+    """The fit of one picture, and what causes of unit size do to it.
 
     Attributes:
-        gap (16,): residual of the edges [px]; pattern (16, K): by the causes; error (3, K): of the pose.
-        spare: residuals less unknowns of the fit.
+        pattern (16, K): residuals of the edges by the causes [px]; error (3, K): of the pose.
     """
 
-    gap: Array
+    fit: Fit
     pattern: Array
     error: Array
-    spare: int
 
 
-def view(fit: Fit, size: tuple[int, int], velocity: Array, camera: Camera | None) -> View:
+def view(fit: Fit, size: tuple[int, ...], velocity: Array, camera: Camera | None) -> View:
     """Return the view of a fitted picture of a `size` (width, height) [px], whose corners move by `velocity`
     (2, 4, 2) [px/s]."""
     sizes = np.vstack((np.zeros(len(EXPECTED)), np.diag(EXPECTED)))
@@ -81,15 +79,14 @@ def view(fit: Fit, size: tuple[int, int], velocity: Array, camera: Camera | None
         along, axis=-1, keepdims=True
     )
     across = np.einsum("ksepi,sei->sepk", moved, normal)
-    spread = SPREAD
-    tables = np.stack((_WEIGHTS, _WEIGHTS * _NODES / spread))
+    tables = np.stack((_WEIGHTS, _WEIGHTS * _NODES / SPREAD))
     pattern = (fit.trust @ np.einsum("sepk,tp->setk", across, tables).reshape(8, 2, -1)).reshape(16, -1)
     taken = np.linalg.lstsq(fit.jacobian, pattern)[0]
     left = pattern - fit.jacobian @ taken
-    return View(gap=fit.gap, pattern=left, error=taken[-3:], spare=fit.spare)
+    return View(fit=fit, pattern=left, error=taken[-3:])
 
 
-def _seen(fit: Fit, size: tuple[int, int], velocity: Array, camera: Camera | None, causes: Array) -> Array:
+def _seen(fit: Fit, size: tuple[int, ...], velocity: Array, camera: Camera | None, causes: Array) -> Array:
     """Return where the places along all edges are seen (N, 24, 2) [px] with causes (N, K)."""
     lens, height, *slopes = np.moveaxis(causes[:, :4, None], 1, 0)
     late, grown = np.moveaxis(causes[:, 12:, None], 1, 0)
@@ -132,10 +129,10 @@ class Causes:
     def add(self, seen: View, weight: float = 1.0) -> None:
         """Take one more view into account, of a picture that was not seen before."""
         kept = 1.0 - 1.0 / MEMORY
-        self._square = kept * self._square + weight * float(seen.gap @ seen.gap)
-        self._count = kept * self._count + weight * seen.spare
+        self._square = kept * self._square + weight * float(seen.fit.gap @ seen.fit.gap)
+        self._count = kept * self._count + weight * seen.fit.spare
         self._matrix = kept * self._matrix + weight * seen.pattern.T @ seen.pattern
-        self._vector = kept * self._vector - weight * seen.pattern.T @ seen.gap
+        self._vector = kept * self._vector - weight * seen.pattern.T @ seen.fit.gap
         self._views += 1
         if self._views > MEMORY and self._views % EVERY:
             return
@@ -170,13 +167,13 @@ class Causes:
 
     def unexplained(self, seen: View) -> Array:
         """Return the residual (16,) [px] without the patterns of the causes."""
-        return np.asarray(seen.gap + seen.pattern @ self.sizes)
+        return np.asarray(seen.fit.gap + seen.pattern @ self.sizes)
 
     def spread_of(self, seen: View, *, own: bool) -> float:
         """Return the variance of an edge's offset [px^2]; of a view that is not among the others, `own`, with
         what its residual tells."""
         left = self.unexplained(seen)
-        now = (WORTH * self.variance + float(left @ left)) / (WORTH + seen.spare)
+        now = (WORTH * self.variance + float(left @ left)) / (WORTH + seen.fit.spare)
         return max(now, self.variance) if own else self.variance
 
     def error(self, seen: View) -> Array:

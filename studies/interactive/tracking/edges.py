@@ -1,293 +1,135 @@
-"""An edge from dark to light, compiled: grey-level profiles across it, made linear in light, the place of the
-edge on each, and a line through the places.
+"""Edges from dark to light: grey-level profiles across them, made linear in light, the place of the edge on
+each, and a line through the places.
 
 The place is at first where the area under the profile says, which a symmetric blur of any width does not
 shift, and in the last pass where a blurred step of the edge's own width fits best, which has the least noise.
-Powers and error functions of each sample would take most of the time that a picture has, so all three are
-read from tables: of light and of trust one for each power, between whose nodes is a straight line, and of
-the bell curve a series about the nearest node.
+All edges are computed at once: E edges with S stations of P samples.
 """
 
 import math
-from functools import lru_cache
 
+import cv2
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates  # type: ignore[attr-defined]
+from scipy.special import ndtr
 
 from studies.kinds import Array
 
 Picture = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 
 #: Profiles an edge, and where along it: the ends are left to the neighbouring edges.
 STATIONS, INSET = 56, 0.08
-#: Samples a pixel along a profile; how often the step is fitted to them in the last pass.
-DENSITY, FITS = 2.0, 2
+#: Samples a pixel along the longest profile.
+DENSITY = 2.0
 #: Least step from dark to light that is an edge [grey levels of 255].
 LEAST_STEP = 15.0
 #: Bounds of the blur of an edge [px].
 LEAST_BLUR, MOST_BLUR = 0.5, 2.5
-#: Light of the dark, over that of the white, below which no noise is less.
-DARKEST = 0.05
-#: Nodes a grey level, and in the light of the white; the light up to which trust is told, beyond it stays.
-BY_LEVEL, BY_LIGHT, BRIGHTEST = 8, 1024, 1.5
-#: Nodes a standard deviation of the bell curve, and how many of them its table reaches to either side: what
-#: lies beyond weighs 1e-8 of the middle.
-BY_SPREAD, FAR = 64, 6
-_NODES = np.arange(-FAR * BY_SPREAD, FAR * BY_SPREAD + 1) / BY_SPREAD
-_BELOW = np.array([0.5 * math.erfc(-x / math.sqrt(2.0)) for x in _NODES])
-_BELL = np.exp(-0.5 * _NODES**2) / math.sqrt(2.0 * math.pi)
+#: Light of the dark, over that of the white, below which no noise is less; the light up to which noise grows.
+DARKEST, BRIGHTEST = 0.05, 1.5
 #: Residual of a station from the line beyond which the station is rejected, in pixels and in standard
 #: deviations; its neighbours, half covered perhaps, go with it: so many to either side, over all stations.
 OUTLIER_PX, OUTLIER, NEIGHBOURS = 0.15, 3.0, 0.036
 #: Distance from the line of levels at which a station is covered by something else, at least and at most
 #: [grey levels]: where half of an edge is covered, the scatter is as large as the difference.
 LEAST_SPREAD, MOST_SPREAD = 12.0, 40.0
+#: Least stations of a line.
+FEWEST = 4
 
 
-@lru_cache(maxsize=8)
-def _of_power(gamma: float) -> tuple[Array, Array]:
-    """Return the tables of light by level and of trust by light, of values whose power `gamma` is light;
-    noise that is even in values grows with light, and weighs the less there."""
-    levels = np.arange(255 * BY_LEVEL + 2) / BY_LEVEL
-    light = np.arange(round(BRIGHTEST * BY_LIGHT) + 2) / BY_LIGHT
-    return levels**gamma, (light + DARKEST) ** (2.0 / gamma - 2.0)
+def _median(values: Array, known: Mask) -> Array:
+    """Return the upper median (...) of the known ones of values (..., N), 0 where none is known."""
+    size = values.shape[-1]
+    ordered = np.sort(np.where(known, values, np.inf), axis=-1).reshape(-1, size)
+    middle = np.minimum(np.count_nonzero(known, axis=-1) // 2, size - 1)
+    found = ordered[np.arange(len(ordered)), middle.ravel()].reshape(middle.shape)
+    return np.asarray(np.nan_to_num(found, posinf=0.0))
 
 
-@njit(cache=True)
-def _between(table: Array, at: float) -> float:
-    """A table's value at a place of its nodes; beyond the last one on the last straight line."""
-    i = min(int(at), table.size - 2)
-    return float(table[i] + (at - i) * (table[i + 1] - table[i]))
-
-
-@njit(cache=True)
-def _bell(x: float) -> tuple[float, float]:
-    """The share of the bell curve below x and its height there, within 1e-8 of them."""
-    x = min(max(x, -1.0 * FAR), 1.0 * FAR)
-    i = int((x + FAR) * BY_SPREAD + 0.5)
-    node = _NODES[i]
-    d, square = x - node, node * node
-    # derivatives of the bell curve are itself times Hermite's polynomials
-    two, three = 0.5 * (square - 1.0), node * (3.0 - square) * (1.0 / 6.0)
-    height = _BELL[i] * (1.0 + d * (d * (two + d * three) - node))
-    below = _BELL[i] * d * (1.0 + d * (d * (two * (1.0 / 3.0) + d * 0.25 * three) - 0.5 * node))
-    return _BELOW[i] + below, height
-
-
-@njit(cache=True)
-def _whole(blur: float, half: float) -> float:
-    """Standard deviation of the bell curve, at most MOST_BLUR wide, whose part in -half ... half has that of
-    `blur`."""
-    wide = blur
-    for _ in range(10):
-        a = half / wide
-        inside = math.erf(a / math.sqrt(2.0))
-        bell = math.exp(-0.5 * a * a) / math.sqrt(2.0 * math.pi)
-        before, wide = wide, min(blur / math.sqrt(1.0 - 2.0 * a * bell / inside), MOST_BLUR)
-        if abs(wide - before) < 1e-9:
-            break
-    return wide
-
-
-@njit(cache=True)
-def _by_step(
-    level: Array, good: NDArray[np.bool_], half: float, near: Array, place: Array, trust_of: Array
-) -> None:
-    """Places (S,) of the good ones by the blurred step that fits best, in one step of Gauss and Newton from
-    those of a line, near (S,); of a profile that has none it is not good."""
-    count, size = level.shape
-    spacing = 2.0 * half / (size - 1)
-    total = first = second = 1e-9
-    for p in range(size - 1):
-        slope = 0.0
-        for s in range(count):
-            if good[s]:
-                slope += level[s, p + 1] - level[s, p]
-        slope, at = max(slope, 0.0), -half + (p + 0.5) * spacing
-        total, first, second = total + slope, first + slope * at, second + slope * at * at
-    blur = _whole(math.sqrt(max(second / total - (first / total) ** 2, LEAST_BLUR**2)), half)
-    sharp, end = 1.0 / blur, half - 0.5 * spacing  # the levels were taken there
-    for s in range(count):
-        if not good[s]:
-            continue
-        low, high = _bell((-end - near[s]) * sharp)[0], _bell((end - near[s]) * sharp)[0]
-        share = 1.0 / max(high - low, 0.1)
-        top = bottom = 0.0
-        for p in range(size):
-            x = (-half + p * spacing - near[s]) * sharp
-            if abs(x) >= FAR:
-                continue
-            below, height = _bell(x)
-            weight, step = height * sharp, (below - low) * share
-            trust = _between(trust_of, min(max(step, 0.0), BRIGHTEST) * BY_LIGHT)
-            top += trust * weight * (level[s, p] - step)
-            bottom += trust * weight * weight
-        if bottom > 0.0:
-            place[s] = near[s] - top / bottom
-        else:  # the line leaves the profile: there is no edge on it
-            good[s] = False
-
-
-@njit(cache=True)
-def _least_squares(x: Array, y: Array, kept: NDArray[np.bool_]) -> tuple[float, float]:
-    """The line y = a + b x through those that are kept, by sums alone: arrays of them would take longer."""
-    total = mean_x = mean_y = top = bottom = 0.0
-    for i in range(x.size):
-        if kept[i]:
-            total, mean_x, mean_y = total + 1.0, mean_x + x[i], mean_y + y[i]
-    mean_x, mean_y = mean_x / total, mean_y / total
-    for i in range(x.size):
-        if kept[i]:
-            top, bottom = top + (x[i] - mean_x) * (y[i] - mean_y), bottom + (x[i] - mean_x) ** 2
-    return mean_y - top / bottom * mean_x, top / bottom
-
-
-@njit(cache=True)
-def _robust_slope(u: Array, place: Array, good: NDArray[np.bool_]) -> tuple[float, float]:
-    """The repeated-median line place = a + b u, which bears with nearly half of the stations covered.
+def _robust(u: Array, place: Array, good: Mask) -> Array:
+    """Return the repeated-median lines (E, 2) place = a + b u, which bear with nearly half of the stations
+    covered.
 
     Source: Siegel, Robust regression using repeated medians, Biometrika 69 (1982) 242.
     """
-    known = np.flatnonzero(good)
-    slopes, pairs = np.empty(known.size), np.empty(known.size - 1)
-    for i in range(known.size):
-        count = 0
-        for j in range(known.size):
-            if j != i:
-                pairs[count] = (place[known[j]] - place[known[i]]) / (u[known[j]] - u[known[i]])
-                count += 1
-        slopes[i] = np.median(pairs)
-    slope = float(np.median(slopes))
-    return float(np.median(place[known] - slope * u[known])), slope
+    pairs = good[:, :, None] & good[:, None] & ~np.eye(len(u), dtype=bool)
+    rise = place[:, None] - place[:, :, None]
+    slopes = _median(rise / np.where(np.eye(len(u)) > 0.0, 1.0, u - u[:, None]), pairs)
+    slope = _median(slopes, good)
+    return np.column_stack((_median(place - slope[:, None] * u, good), slope))
 
 
-@njit(cache=True)
-def _line(
-    u: Array,
-    place: Array,
-    good: NDArray[np.bool_],
-    a: float,
-    b: float,
-    least: float,
-    beside: int,
-    most: float = np.inf,
-) -> tuple[float, float, NDArray[np.bool_]]:
-    """Least-squares line through the good stations near a + b u, within `least` to `most` by their scatter,
-    and not `beside` one that is farther; a, b and which (S,) were kept, none where they are too few."""
-    kept = good.copy()
+def _lines(
+    u: Array, place: Array, good: Mask, line: Array, least: float, most: float = np.inf, beside: int = 0
+) -> tuple[Array, Mask]:
+    """Return the least-squares lines (E, 2) through the good stations (E, S) near `line` (E, 2), within
+    `least` to `most` by their scatter, and not `beside` one that is farther, and which (E, S) are kept, none
+    where they are too few."""
+    powers, kept = np.column_stack((np.ones_like(u), u, u**2)), good
     for k in range(3):
-        gap = np.abs(place - a - b * u)
-        if kept.sum() < 4:
-            return a, b, np.zeros_like(kept)
-        now = good & (gap <= min(most, max(least, OUTLIER * 1.48 * float(np.median(gap[kept])))))
-        far = ~now
-        for i in range(u.size):
-            if far[i]:
-                now[max(0, i - beside) : i + beside + 1] = False
-        if now.sum() < 4:
-            return a, b, np.zeros_like(kept)
-        if k > 0 and (now == kept).all():  # whose line is the same
+        gap = np.abs(place - line[:, :1] - line[:, 1:] * u)
+        limit = np.clip(OUTLIER * 1.48 * _median(gap, kept), least, most)
+        now = good & (gap <= limit[:, None])
+        now = cv2.erode(now.astype(np.uint8), np.ones((1, 2 * beside + 1), dtype=np.uint8)) > 0
+        now = now & (np.count_nonzero(now, axis=1) >= FEWEST)[:, None]
+        if k > 0 and (now == kept).all():  # whose lines are the same
             break
-        kept = now
-        a, b = _least_squares(u, place, kept)
-    return a, b, kept
+        kept, weight = now, now.astype(float)
+        (count, by_u, by_square), (level, turn) = (weight @ powers).T, (weight * place @ powers[:, :2]).T
+        some = count > 0.0
+        slope = (count * turn - by_u * level) / np.where(some, count * by_square - by_u**2, 1.0)
+        fitted = np.column_stack(((level - slope * by_u) / np.where(some, count, 1.0), slope))
+        line = np.where(some[:, None], fitted, line)
+    return line, kept
 
 
-@njit(cache=True)
-def _smooth(u: Array, level: Array) -> NDArray[np.bool_]:
-    """Replace the levels (S,) along an edge by a straight line through those that agree; which they are."""
-    every = np.ones(u.size, dtype=np.bool_)
-    a, b, kept = _line(u, level, every, float(np.median(level)), 0.0, LEAST_SPREAD, 0, MOST_SPREAD)
-    level[:] = a + b * u
-    return kept
-
-
-@njit(cache=True)
-def _grey(picture: Picture, x: float, y: float) -> float:
-    """Grey level at a place, bilinear; beyond the border as on it."""
-    height, width = picture.shape
-    x, y = min(max(x, 0.0), width - 1.001), min(max(y, 0.0), height - 1.001)
-    i, j = int(x), int(y)
-    fx, fy = x - i, y - j
-    top = picture[j, i] * (1.0 - fx) + picture[j, i + 1] * fx
-    bottom = picture[j + 1, i] * (1.0 - fx) + picture[j + 1, i + 1] * fx
-    return float(top * (1.0 - fy) + bottom * fy)
-
-
-@njit(cache=True)
-def _normalised(values: Array, u: Array, light_of: Array) -> NDArray[np.bool_]:
-    """Profiles (S, P) at u (S,) in place to 0 in the dark and 1 in the light; which (S,) are edges."""
-    count, size = values.shape
-    dark, light = np.empty(count), np.empty(count)
-    good = np.zeros(count, dtype=np.bool_)
-    for s in range(count):
-        dark[s] = 0.5 * (values[s, 0] + values[s, 1])
-        light[s] = 0.5 * (values[s, size - 1] + values[s, size - 2])
+def _normalised(values: Array, u: Array, gamma: float) -> tuple[Array, Mask]:
+    """Return profiles (E, S, P) of light, from 0 in the dark to 1, and which (E, S) are edges."""
     # both levels vary slowly along an edge: their straight lines have less noise than themselves
-    clear = _smooth(u, dark) & _smooth(u, light)
-    for s in range(count):
-        step, rough = light[s] - dark[s], 0.0
-        for p in range(size - 1):
-            rough += abs(values[s, p + 1] - values[s, p])
-        good[s] = clear[s] and step > LEAST_STEP and rough < 4.0 * step
-        if not good[s]:
-            values[s] = 0.0
-            continue
-        low = _between(light_of, max(dark[s], 0.0) * BY_LEVEL)
-        high = _between(light_of, max(light[s], 1.0) * BY_LEVEL)
-        for p in range(size):
-            share = (_between(light_of, values[s, p] * BY_LEVEL) - low) / (high - low)
-            values[s, p] = min(max(share, -0.3), 1.3)
-    return good
+    level = np.concatenate((values[..., :2].mean(axis=-1), values[..., -2:].mean(axis=-1)))
+    start = np.column_stack((np.median(level, axis=1), np.zeros(len(level))))
+    line, clear = _lines(u, level, np.ones(level.shape, dtype=bool), start, LEAST_SPREAD, MOST_SPREAD)
+    (dark, light), good = np.split(line[:, :1] + line[:, 1:] * u, 2), np.logical_and(*np.split(clear, 2))
+    rough = np.abs(np.diff(values, axis=-1)).sum(axis=-1)
+    good = good & (light - dark > LEAST_STEP) & (rough < 4.0 * (light - dark))
+    low, high = np.maximum(dark, 0.0) ** gamma, np.maximum(light, 1.0) ** gamma
+    step = np.where(good, high - low, 1.0)
+    return np.clip((values**gamma - low[..., None]) / step[..., None], -0.3, 1.3), good
 
 
-@njit(cache=True)
-def _profiles(picture: Picture, line: Array, u: Array, half: float) -> Array:
-    """Grey levels (S, P) across a line (3, 2), at u (S,) of it."""
-    (p, q, normal), size = line, 2 * round(half * DENSITY) + 1
-    level = np.empty((u.size, size))
-    for s in range(u.size):
-        x, y = p[0] + u[s] * (q[0] - p[0]), p[1] + u[s] * (q[1] - p[1])
-        for k in range(size):
-            r = -half + 2.0 * half * k / (size - 1)
-            level[s, k] = _grey(picture, x + r * normal[0], y + r * normal[1])
-    return level
+def _by_step(share: Array, good: Mask, half: Array, near: Array, gamma: float) -> Array:
+    """Return the places (E, S) by the blurred step that fits best, in one step of Gauss and Newton from
+    those of lines, near (E, S), infinite where a profile has none."""
+    r = half[:, None] * np.linspace(-1.0, 1.0, share.shape[-1])
+    spacing = r[:, 1] - r[:, 0]
+    slope, at = (
+        np.maximum(np.diff(np.sum(share * good[..., None], axis=1)), 0.0),
+        r[:, :-1] + spacing[:, None] / 2,
+    )
+    total = slope.sum(axis=1) + 1e-9
+    mean = np.sum(slope * at, axis=1) / total
+    blur = np.sqrt(np.maximum(np.sum(slope * at**2, axis=1) / total - mean**2, LEAST_BLUR**2))
+    wide = blur
+    for _ in range(10):  # the part of the bell curve within the profile is narrower than all of it
+        a = half / wide
+        inside = 1.0 - 2.0 * a * _bell(a) / (2.0 * ndtr(a) - 1.0)
+        wide = np.minimum(blur / np.sqrt(np.maximum(inside, 1e-9)), MOST_BLUR)
+    wide, end = wide[:, None], (half - spacing / 2.0)[:, None]  # the levels were taken there
+    x = (r[:, None] - near[..., None]) / wide[..., None]
+    low, high = ndtr((-end - near) / wide), ndtr((end - near) / wide)
+    step = (ndtr(x) - low[..., None]) / np.maximum(high - low, 0.1)[..., None]
+    # noise that is even in values grows with light, and weighs less there
+    trust = (np.clip(step, 0.0, BRIGHTEST) + DARKEST) ** (2.0 / gamma - 2.0)
+    weight = _bell(x) / wide[..., None]
+    top, bottom = np.sum(trust * weight * (share - step), axis=-1), np.sum(trust * weight**2, axis=-1)
+    return np.where(bottom > 1e-12, near - top / np.maximum(bottom, 1e-12), np.inf)
 
 
-@njit(cache=True)
-def _edges(
-    picture: Picture,
-    lines: Array,
-    half: Array,
-    first: bool,
-    last: bool,
-    light_of: Array,
-    trust_of: Array,
-    stations: int,
-) -> Array:
-    """One edge after another; see `edges`."""
-    u, found = np.linspace(INSET, 1.0 - INSET, stations), np.zeros((len(half), 5))
-    beside, place = round(NEIGHBOURS * stations), np.empty(stations)
-    for e in range(len(half)):
-        level = _profiles(picture, lines[:, e], u, half[e])
-        good, size = _normalised(level, u, light_of), level.shape[1]
-        for s in range(stations):  # by the area under the profile
-            area = level[s].sum() - 0.5 * (level[s, 0] + level[s, size - 1])
-            place[s] = half[e] - area * 2.0 * half[e] / (size - 1)
-            good[s] = good[s] and abs(place[s]) < 0.9 * half[e]
-        if good.sum() < 4:
-            continue
-        a, b = _robust_slope(u, place, good) if first else (float(np.median(place[good])), 0.0)
-        a, b, kept = _line(u, place, good, a, b, OUTLIER_PX, beside)
-        if last and kept.any():
-            for _ in range(FITS):
-                _by_step(level, good, half[e], a + b * u, place, trust_of)
-                a, b, kept = _line(u, place, good, a, b, OUTLIER_PX, beside)
-        found[e, :3] = a, a + b, kept.sum() / stations
-        if kept.any():
-            found[e, 3:] = (u[kept].mean() - u.mean()) / u.std(), u[kept].std() / u.std()
-    return found
+def _bell(x: Array) -> Array:
+    """Return the height of the bell curve."""
+    return np.asarray(np.exp(-0.5 * x**2) / math.sqrt(2.0 * math.pi))
 
 
 def edges(
@@ -307,4 +149,26 @@ def edges(
         lines: both ends and the unit normal (3, E, 2) of each; half: half lengths (E,) of the profiles [px].
         gamma: power of the picture's values that light is.
     """
-    return np.asarray(_edges(picture, lines, half, first, last, *_of_power(gamma), stations))
+    u, (p, q, normal) = np.linspace(INSET, 1.0 - INSET, stations), lines
+    count = 2 * round(DENSITY * float(half.max())) + 1
+    r = half[:, None] * np.linspace(-1.0, 1.0, count)
+    along = p[:, None] + u[:, None] * (q - p)[:, None]
+    x, y = np.moveaxis(along[:, :, None] + r[:, None, :, None] * normal[:, None, None], -1, 0)
+    share, good = _normalised(map_coordinates(picture, (y, x), float, order=1, mode="nearest"), u, gamma)
+    area = share.sum(axis=-1) - share[..., [0, -1]].mean(axis=-1)
+    place = half[:, None] * (1.0 - 2.0 / (count - 1) * area)
+    good = good & (np.abs(place) < 0.9 * half[:, None])
+    start = np.column_stack((_median(place, good), np.zeros(len(place))))
+    start = _robust(u, place, good) if first else start
+    beside = round(NEIGHBOURS * stations)
+    line, kept = _lines(u, place, good, start, OUTLIER_PX, beside=beside)
+    if last:
+        place = _by_step(share, good, half, line[:, :1] + line[:, 1:] * u, gamma)
+        good = np.any(kept, axis=1, keepdims=True) & good & np.isfinite(place)
+        line, kept = _lines(u, np.where(good, place, 0.0), good, line, OUTLIER_PX, beside=beside)
+    some = np.count_nonzero(kept, axis=1)
+    away = (u - u.mean()) / u.std()
+    middle = np.sum(kept * away, axis=1) / np.maximum(some, 1)
+    spread = np.sqrt(np.maximum(np.sum(kept * away**2, axis=1) / np.maximum(some, 1) - middle**2, 0.0))
+    found = np.column_stack((line[:, 0], line.sum(axis=1), some / stations, middle, spread))
+    return np.where(np.any(kept, axis=1, keepdims=True), found, 0.0)

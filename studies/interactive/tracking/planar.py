@@ -7,7 +7,6 @@ residual can tell is the printed size.
 
 import json
 import math
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import leastsq
 from scipy.spatial.transform import Rotation
 
 from studies.errors import BadInput
@@ -26,8 +26,7 @@ from studies.kinds import Array
 CORNERS = np.array([[-0.5, 0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, -0.5]])
 #: Cells of a marker's side with its black border, and of the white margin around it.
 BITS, MARGIN = 8, 1.5
-ITERATIONS = 12
-#: Steps of the central differences in the unknowns of a plane, of sides and radians.
+#: Step of the central differences in the unknowns.
 STEP = 1e-6
 #: Root mean square distance of an edge's stations from its middle, over its length.
 SPREAD = (1.0 - 2.0 * INSET) / math.sqrt(12.0)
@@ -60,9 +59,10 @@ class Camera:
         return np.asarray(straight, dtype=float).reshape(picture.shape)
 
     def distorted(self, straight: Array) -> Array:
-        """Return where points (P, 2) [px] that are so without the lens are seen."""
-        rays = cv2.convertPointsToHomogeneous(straight)[:, 0] @ np.linalg.inv(self.matrix).T
-        return np.asarray(cv2.projectPoints(rays, np.zeros(3), np.zeros(3), self.matrix, self._lens)[0][:, 0])
+        """Return where points (..., 2) [px] that are so without the lens are seen."""
+        rays = cv2.convertPointsToHomogeneous(straight.reshape(-1, 2))[:, 0] @ np.linalg.inv(self.matrix).T
+        seen = cv2.projectPoints(rays, np.zeros(3), np.zeros(3), self.matrix, self._lens)[0]
+        return np.asarray(seen, dtype=float).reshape(straight.shape)
 
     @classmethod
     def read(cls, path: Path) -> "Camera":
@@ -86,19 +86,33 @@ class Fit:
     """The fitted pose.
 
     Attributes:
-        pose: x, y, theta (3,) of the second square's centre in the first one's frame, lengths in sides.
-        plane: homography (3, 3) from that frame, in sides, to pixels.
-        rms: of the corners' residuals [px].
+        known (K,): the unknowns, those of the pose last.
+        plane: homography (3, 3) from the first square's frame, in sides, to pixels.
         gap (16,): residuals of the edges' offsets and turns [px], by their trust; jacobian (16, K): by the
-            unknowns, those of the pose last; trust (8, 2, 2): in an edge's offset and turn, see `trusted`.
+            unknowns; trust (8, 2, 2): in an edge's offset and turn, see `trusted`.
     """
 
-    pose: Array
+    known: Array
     plane: Array
-    rms: float
     gap: Array
     jacobian: Array
     trust: Array
+
+    @property
+    def pose(self) -> Array:
+        """x, y, theta (3,) of the second square's centre in the first one's frame, lengths in sides."""
+        return self.known[-3:]
+
+    @property
+    def rms(self) -> float:
+        """Of the corners' residuals [px]."""
+        return rms(self.gap)
+
+    @property
+    def corners(self) -> Array:
+        """Where the plane has the corners of both squares (2, 4, 2) [px], without the lens."""
+        places = np.stack((CORNERS, CORNERS @ turn(self.pose[2]).T + self.pose[:2]))
+        return project(self.plane, places)
 
     @property
     def spare(self) -> int:
@@ -153,25 +167,26 @@ def fit(
         trust: (8, 2, 2) in each edge, in all alike if it is not given.
 
     Raises:
-        np.linalg.LinAlgError: corners that are no picture of two squares.
+        np.linalg.LinAlgError, ValueError: corners that are no picture of two squares.
     """
     data = corners if camera is None else camera.undistorted(corners)
-    if start is None:
-        plane = homography(data[0])
-        back = project(np.asarray(np.linalg.inv(plane)), data[1])
-        edge = back[[1, 2]].mean(axis=0) - back[[0, 3]].mean(axis=0)
-        pose = np.array([*back.mean(axis=0), math.atan2(edge[1], edge[0])])
-    else:
-        plane, pose = start.plane, start.pose.copy()
-    chart, known = (_free, (plane / plane[2, 2]).ravel()[:8]) if camera is None else _seen_by(camera, plane)
-    known = np.concatenate((known, pose))
     trust = np.tile(np.eye(2), (8, 1, 1)) if trust is None else trust
-    weigh = (trust @ _independent(data).reshape(8, 2, 16)).reshape(16, 16)
-    solved, jacobian, gap = _least_squares(chart, known, data, weigh)
-    if start is not None and rms(gap) > 1.0:
+    weigh = (trust @ _independent(data)).reshape(16, 16)
+
+    def gap(known: Array) -> Array:
+        return np.asarray(weigh @ (_drawn(known, camera) - data).ravel())
+
+    def slope(known: Array) -> Array:
+        steps = STEP * np.eye(len(known))
+        ahead, back = _drawn(known + np.stack((steps, -steps)), camera)
+        return np.asarray(weigh @ (ahead - back).reshape(len(known), 16).T / (2.0 * STEP))
+
+    known = _guess(data, camera) if start is None else start.known
+    known, _ = leastsq(gap, known, Dfun=slope)
+    if start is not None and rms(gap(known)) > 1.0:
         return fit(corners, camera, trust=trust)
-    plane = chart(solved[:-3])
-    return Fit(pose=solved[-3:], plane=plane, rms=rms(gap), gap=gap, jacobian=jacobian, trust=trust)
+    plane = _plane(known[:-3], camera)
+    return Fit(known=known, plane=plane, gap=gap(known), jacobian=slope(known), trust=trust)
 
 
 def rms(gap: Array) -> float:
@@ -180,53 +195,39 @@ def rms(gap: Array) -> float:
     return math.sqrt(4.0 / (1.0 + 4.0 * SPREAD**2) * float(gap @ gap) / edges)
 
 
-#: From the unknowns (..., K) of a plane to its homographies (..., 3, 3).
-_Chart = Callable[[Array], Array]
+def _guess(data: Array, camera: Camera | None) -> Array:
+    """Return unknowns near those of corners (2, 4, 2) [px]: by the picture of the first square."""
+    plane = homography(data[0])
+    back = project(np.asarray(np.linalg.inv(plane)), data[1])
+    edge = back[[1, 2]].mean(axis=0) - back[[0, 3]].mean(axis=0)
+    pose = (*back.mean(axis=0), math.atan2(edge[1], edge[0]))
+    if camera is None:
+        return np.array([*plane.ravel()[:8], *pose])
+    flat = np.column_stack((CORNERS, np.zeros(4)))
+    places = np.concatenate((flat, np.column_stack((back, np.zeros(4)))))
+    _, rotated, place = cv2.solvePnP(places, data.reshape(8, 2), camera.matrix, None, flags=cv2.SOLVEPNP_IPPE)
+    return np.array([*np.ravel(rotated), *np.ravel(place), *pose])
 
 
-def _free(known: Array) -> Array:
-    """The planes seen by a camera that is not known: any homographies, by their first eight entries."""
-    last = np.ones((*known.shape[:-1], 1))
-    return np.concatenate((known, last), axis=-1).reshape(*known.shape[:-1], 3, 3)
+def _plane(known: Array, camera: Camera | None) -> Array:
+    """Return homographies (..., 3, 3): by their first eight entries (..., 8), or by the turn and the place
+    (..., 6) of the plane before a known camera."""
+    if camera is None:
+        last = np.ones((*known.shape[:-1], 1))
+        return np.concatenate((known, last), axis=-1).reshape(*known.shape[:-1], 3, 3)
+    frame = Rotation.from_rotvec(known[..., :3]).as_matrix()
+    frame[..., 2] = known[..., 3:]
+    return np.asarray(camera.matrix @ frame)
 
 
-def _seen_by(camera: Camera, plane: Array) -> tuple[_Chart, Array]:
-    """The chart of a plane seen by a known camera, by a small turn on top of that of `plane` and the place,
-    and the unknowns of `plane`."""
-    matrix = camera.matrix
-    frame = np.linalg.inv(matrix) @ plane
-    size = math.sqrt(np.linalg.norm(frame[:, 0]) * np.linalg.norm(frame[:, 1]))
-    frame *= np.sign(frame[2, 2]) / size
-    left, _, right = np.linalg.svd(np.column_stack((frame[:, :2], np.cross(frame[:, 0], frame[:, 1]))))
-    start = left @ right
-
-    def chart(known: Array) -> Array:
-        turn = Rotation.from_rotvec(known[..., :3]).as_matrix() @ start
-        return np.asarray(matrix @ np.stack((turn[..., 0], turn[..., 1], known[..., 3:]), axis=-1))
-
-    return chart, np.array([0.0, 0.0, 0.0, *frame[:, 2]])
-
-
-def _residual(chart: _Chart, known: Array, data: Array) -> tuple[Array, Array]:
-    """Residual (16,) [px] and its Jacobian (16, K + 3) in the plane and the pose."""
-    x, y, angle = known[-3:]
-    steps = STEP * np.eye(known.size - 3)
-    plane, (ahead, back) = chart(known[:-3]), chart(known[:-3] + np.stack((steps, -steps)))
-    slope = (ahead - back) / (2.0 * STEP)
-    turned = CORNERS @ turn(angle).T
-    points = np.concatenate((CORNERS, turned + np.array([x, y])))
-    homogeneous = np.column_stack((points, np.ones(8)))
-    image = homogeneous @ plane.T
-    place = image[:, :2] / image[:, 2:]
-    by_image = np.zeros((8, 2, 3))
-    by_image[:, 0, 0] = by_image[:, 1, 1] = 1.0 / image[:, 2]
-    by_image[:, :, 2] = -place / image[:, 2:]
-    jacobian = np.zeros((8, 2, known.size))
-    jacobian[:, :, :-3] = np.einsum("pab,kbc,pc->pak", by_image, slope, homogeneous)
-    by_point = by_image[4:] @ plane[:, :2]
-    jacobian[4:, :, -3:-1] = by_point
-    jacobian[4:, :, -1] = np.einsum("pab,pb->pa", by_point, np.column_stack((-turned[:, 1], turned[:, 0])))
-    return (place - data.reshape(8, 2)).ravel(), jacobian.reshape(16, -1)
+def _drawn(known: Array, camera: Camera | None) -> Array:
+    """Return the corners (..., 2, 4, 2) [px] of both squares, without the lens, of unknowns (..., K)."""
+    plane, (x, y, angle) = _plane(known[..., :-3], camera), np.moveaxis(known[..., -3:, None], -2, 0)
+    cos, sin, (right, up) = np.cos(angle), np.sin(angle), CORNERS.T
+    moving = np.stack((x + cos * right - sin * up, y + sin * right + cos * up), axis=-1)
+    places = np.stack((np.broadcast_to(CORNERS, moving.shape), moving), axis=-3)
+    image = places @ plane[..., None, :, :2].swapaxes(-1, -2) + plane[..., None, None, :, 2]
+    return np.asarray(image[..., :2] / image[..., 2:])
 
 
 def turn(angle: float) -> Array:
@@ -236,37 +237,17 @@ def turn(angle: float) -> Array:
 
 
 def _independent(corners: Array) -> Array:
-    """Matrix (16, 16) from the corners' residuals to the edges' offsets and turns, whose errors are
+    """Matrices (8, 2, 16) from the corners' residuals to the offset and turn of each edge, whose errors are
     independent.
 
     A line through stations spread evenly over an edge has a mean offset and a slope with errors of their
     own, so that those of its ends, and with them of neighbouring corners, are not.
     """
-    matrix = np.zeros((16, 16))
-    for square in range(2):
-        for i in range(4):
-            j = (i + 1) % 4
-            along = corners[square, j] - corners[square, i]
-            normal = np.array([along[1], -along[0]]) / math.hypot(*along)
-            row, at, to = 8 * square + 2 * i, 8 * square + 2 * i, 8 * square + 2 * j
-            matrix[row, at : at + 2] = matrix[row, to : to + 2] = normal / 2.0
-            matrix[row + 1, to : to + 2], matrix[row + 1, at : at + 2] = SPREAD * normal, -SPREAD * normal
-    return matrix
-
-
-def _least_squares(chart: _Chart, known: Array, data: Array, weigh: Array) -> tuple[Array, Array, Array]:
-    """Levenberg and Marquardt's method; the solution, its Jacobian and residual."""
-    gap, jacobian = (weigh @ part for part in _residual(chart, known, data))
-    damping = 1e-6
-    for _ in range(ITERATIONS):
-        normal = jacobian.T @ jacobian
-        step = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), -jacobian.T @ gap)
-        trial, slope = (weigh @ part for part in _residual(chart, known + step, data))
-        before, after = float(gap @ gap), float(trial @ trial)
-        if not after <= before:
-            damping = max(1e-6, 10.0 * damping)
-            continue
-        known, gap, jacobian, damping = known + step, trial, slope, 0.1 * damping
-        if before - after <= 1e-9 * before:
-            break
-    return known, jacobian, gap
+    along = (np.roll(corners, -1, axis=1) - corners).reshape(8, 2)
+    normal = along @ [[0.0, -1.0], [1.0, 0.0]] / np.linalg.norm(along, axis=1, keepdims=True)
+    matrix, edge = np.zeros((8, 2, 8, 2)), np.arange(8)
+    after = np.roll(edge.reshape(2, 4), -1, axis=1).ravel()
+    matrix[edge, 0, edge] = matrix[edge, 0, after] = normal / 2.0
+    matrix[edge, 1, after] = SPREAD * normal
+    matrix[edge, 1, edge] = -SPREAD * normal
+    return matrix.reshape(8, 2, 16)

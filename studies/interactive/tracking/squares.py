@@ -10,16 +10,14 @@ edges of the cells give it.
 """
 
 import math
+from collections.abc import Collection
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from studies.interactive.tracking.edges import Picture, edges
-from studies.interactive.tracking.planar import homography, project
+from studies.interactive.tracking.planar import BITS, cells, homography, project
 from studies.kinds import Array
-
-Cells = NDArray[np.bool_]
 
 #: Half length of the profiles in successive passes [px], and the share of the side that keeps them inside the
 #: black border.
@@ -36,7 +34,7 @@ GAMMA = 2.2
 #: edge, over the side of a cell.
 REACH, END = 0.45, 0.25
 #: Profiles an edge of cells, which is a few pixels long.
-STATIONS = 12
+FEW = 12
 #: Least share of good stations of an edge of cells.
 LEAST_OF_CELLS = 0.5
 #: Offset [px] over the step to another power, damped: one that is too large by one makes 0.55; from which one
@@ -116,18 +114,20 @@ class Shrinkage:
         self._pictures = 0
         self._since = 0
 
-    def taken_out(self, picture: Picture, corners: Array, cells: dict[int, Cells]) -> Array:
-        """Return corners (Q, 4, 2) of dark squares with the offset taken out; cells by the place in Q."""
-        self._since += bool(cells)
+    def taken_out(self, picture: Picture, corners: Array, whole: Collection[int]) -> Array:
+        """Return corners (Q, 4, 2) of markers with the offset taken out; `whole`: those that are not covered,
+        by their numbers, which are their places in Q."""
+        self._since += bool(whole)
         settled = self._pictures == PICTURES
-        looked = {} if settled and self._since < EVERY else cells
-        found = [_offset(picture, corners[place], each, self.gamma) for place, each in looked.items()]
-        weight = sum(each for _, each, _ in found)
+        slope, gap = np.zeros((2, 0))
+        if whole and not (settled and self._since < EVERY):
+            slope, gap = _edges_of_cells(picture, corners, whole, self.gamma)
+        weight = float(slope @ slope)
         if weight > 0.0:
-            now = sum(offset * each for offset, each, _ in found) / weight
+            now = float(slope @ gap) / weight
             self._since, self._pictures = 0, min(self._pictures + 1, PICTURES)
             count = PICTURES // EVERY if settled else self._pictures
-            scatter = max(each for _, _, each in found)
+            scatter = float(np.sqrt(np.mean((gap - now * slope) ** 2)))
             self.sd = math.hypot(scatter / math.sqrt(weight * count), APART)
             before = now if self.offset is None else self.offset
             self.offset = before + (now - before) / count
@@ -142,47 +142,42 @@ class Shrinkage:
 
 def _grown(corners: Array, offset: float) -> Array:
     """Return squares (Q, 4, 2) whose edges lie further out by `offset` [px]."""
-    after = corners[:, AFTER] - corners
-    after /= np.sqrt(np.sum(after**2, axis=-1, keepdims=True))
-    before = after[:, BEFORE]
-    # a corner moves by t before - s after where both edges move by the offset: t = s = offset / sin(angle)
-    sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
-    return np.asarray(corners + offset * (before - after) / np.abs(sine)[..., None])
+    end = corners[:, AFTER]
+    moved = -offset * _normal(corners, end, corners.mean(axis=1, keepdims=True))
+    p, q = corners + moved, end + moved
+    return _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
 
 
-def _offset(picture: Picture, corners: Array, cells: Cells, gamma: float) -> tuple[float, float, float]:
-    """Return the offset [px] by the cells (C, C), light or not, of a square, its weight, 0 for none, and the
-    standard deviation of an edge [px]."""
-    side = float(np.hypot(*(np.roll(corners, -1, axis=0) - corners).T).min())
-    half = min(REACHES[-1], REACH * side / len(cells))
-    if half < LEAST_REACH:
-        return 0.0, 0.0, 0.0
-    across, places = _edges_of_cells(cells.tobytes())
-    p, q, lit = project(homography(corners), places)
-    lines = np.stack((p, q, _normal(p, q, lit)))
-    found = edges(picture, lines, np.full(len(p), half), gamma, stations=STATIONS)
-    kept = found[:, 2] >= LEAST_OF_CELLS
-    if kept.sum() < 2:
-        return 0.0, 0.0, 0.0
-    slope, gaps = 2.0 * across[kept] - 1.0, found[kept, :2].mean(axis=1)
-    weight = float(slope @ slope)
-    offset = float(slope @ gaps) / weight
-    return offset, weight, float(np.sqrt(np.mean((gaps - offset * slope) ** 2)))
+def _edges_of_cells(
+    picture: Picture, corners: Array, numbers: Collection[int], gamma: float
+) -> tuple[Array, Array]:
+    """Return (2, E) of the edges of cells of these markers: what an offset of one pixel does to each, and how
+    far it is off [px]."""
+    slopes, lines, half = list[Array](), list[Array](), list[Array]()
+    for number in numbers:
+        side = float(np.hypot(*(np.roll(corners[number], -1, axis=0) - corners[number]).T).min())
+        across, places = _cell_edges(number)
+        p, q, lit = project(homography(corners[number]), places)
+        slopes.append(2.0 * across - 1.0)
+        lines.append(np.stack((p, q, _normal(p, q, lit))))
+        half.append(np.full(len(p), min(REACHES[-1], REACH * side / BITS)))
+    every, reach = np.concatenate(lines, axis=1), np.concatenate(half)
+    found = edges(picture, every, reach, gamma, stations=FEW)
+    kept = (found[:, 2] >= LEAST_OF_CELLS) & (reach >= LEAST_REACH)
+    return np.concatenate(slopes)[kept], found[kept, :2].mean(axis=1)
 
 
 @cache
-def _edges_of_cells(cells: bytes) -> tuple[Array, Array]:
-    """Return u (E,) towards the light of the edges of cells, and both their ends and a place in the light
-    (3, E, 2), in sides."""
-    count = math.isqrt(len(cells))
-    grid = np.frombuffer(cells, dtype=bool).reshape(count, count).astype(int)
-    across, places = list[float](), list[Array]()
+def _cell_edges(number: int) -> tuple[Array, Array]:
+    """Return u (E,) towards the light of the edges between the cells of a marker, and both their ends and a
+    place in the light (3, E, 2), in sides."""
+    grid, across, places = cells(number).astype(int), list[float](), list[Array]()
     for turned in (False, True):  # lines along y, then along x
         for j, kinds in enumerate(np.diff(grid.T if turned else grid, axis=1).T, start=1):
-            at, starts = j / count - 0.5, np.flatnonzero(np.diff(kinds, prepend=0))
-            for i, stop in zip(starts, np.append(starts[1:], count), strict=True):
+            at, starts = j / BITS - 0.5, np.flatnonzero(np.diff(kinds, prepend=0))
+            for i, stop in zip(starts, np.append(starts[1:], BITS), strict=True):
                 if kinds[i]:
-                    y, low = 0.5 - (i + END) / count, 0.5 - (stop - END) / count
+                    y, low = 0.5 - (i + END) / BITS, 0.5 - (stop - END) / BITS
                     place = np.array([(at, y), (at, low), (at + 0.1 * kinds[i], 0.5 * (y + low))])
                     across.append(at * kinds[i])
                     places.append(-place[:, ::-1] if turned else place)

@@ -2,7 +2,6 @@
 wrong."""
 
 from collections import deque
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,24 +24,19 @@ UNLIKELY = 0.1
 EDGES = 3
 #: Share of the cells of a marker that is followed, light or dark as they should be, by which its id is read.
 READ = 0.75
-#: Side [px] below which all pixels are looked at where a marker is missed.
-FAR_PX = 50.0
-#: Longest that a marker is followed by its edges without its id being read [s].
-FOLLOW = 1.0
-#: Time without any marker after which a mirrored picture is tried [s].
-BLIND = 1.0
+#: Side [px] below which all pixels are looked at where a marker is missed; of other missed ones, in one
+#: picture of SOMETIMES, which is then looked at in a mirror too.
+FAR_PX, SOMETIMES = 50.0, 5
+#: Longest that a marker is followed by its edges without its id being read, and after which its velocity is
+#: not known [s].
+FOLLOW, LONG = 1.0, 0.3
 #: Most powers of light that are tried on one picture.
 POWERS = 3
 #: Share of good stations of an edge below which it is called blurred, may be ignored where the others fit
 #: without it, and is not taken for whole.
 CLEAR, PART, WHOLE = 0.6, 0.75, 0.9
-#: Places in the white around a marker, in sides; the value from which they are clipped, and their share that
-#: is named.
-MARGIN = np.array(
-    [[x, s * 0.56] for s in (-1, 1) for x in np.linspace(-0.5, 0.5, 9)]
-    + [[s * 0.56, y] for s in (-1, 1) for y in np.linspace(-0.5, 0.5, 9)]
-)
-WHITEST, CLIPPED = 254, 0.5
+#: Value from which light is clipped, and its share of a marker that is named.
+WHITEST, CLIPPED = 254, 0.1
 #: Distance of the pixels by which a picture is told from others [px], and how many pictures are known: of a
 #: film that is repeated, noise would look like a systematic error.
 COARSE, PICTURES = 7, 5000
@@ -51,13 +45,15 @@ WIDE = 1000
 
 
 @dataclass(eq=False)
-class _Known:
-    """The last place of a square: corners, their velocity [px/s], when, and when its id was last read."""
+class _Last:
+    """The last places of both squares: corners (2, 4, 2), their velocity [px/s], when they were seen and when
+    the id of each was read, and the fit."""
 
     corners: Array
     velocity: Array
     time: float
-    read: float
+    read: list[float]
+    fit: planar.Fit
 
 
 class Tracker:
@@ -73,12 +69,9 @@ class Tracker:
         cv2.setNumThreads(1)
         family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
         self._detector = cv2.aruco.ArucoDetector(family)
-        self._known: dict[int, _Known] = {}
-        self._fit: planar.Fit | None = None
+        self._last: _Last | None = None
         self._shrinkage, self._causes = Shrinkage(), Causes()
-        self._blind_since: float | None = None
-        self._mirrored = False
-        self._tries = 0
+        self._mirrored, self._tries = False, 0
         self._pictures: deque[int] = deque(maxlen=PICTURES)
 
     def markers(self, picture: Picture, *, whole: bool = False) -> dict[int, list[Array]]:
@@ -99,34 +92,29 @@ class Tracker:
 
     def see(self, picture: Picture, time: float) -> dict[str, Any]:
         """Return the event "seen" or "unseen" of a picture taken at `time` [s]; see `session`."""
-        found = self.markers(picture)
-        if {0, 1} <= set(found) or _doubles(found):
-            self._tries = 0
+        found, last = self.markers(picture), self._last
+        if {0, 1} <= set(found):
+            self._mirrored, self._tries = False, 0
         else:
             self._tries += 1
-            if not self._known or self._far() or self._tries % 5 == 0:  # look at every pixel, now and then
+            far = last is None or np.hypot(*(last.corners[:, 1] - last.corners[:, 0]).T).min() < FAR_PX
+            if far or self._tries % SOMETIMES == 0:
                 found = self.markers(picture, whole=True)
-        if doubles := _doubles(found):
-            return _unseen(f"duplicate-{min(doubles)}")
+        for number in (0, 1):
+            if len(found.get(number, ())) > 1:
+                return _unseen(f"duplicate-{number}")
         read = {number: found[number][0] for number in (0, 1) if number in found}
         quads = self._predicted(time) | read
         if len(quads) < 2:
-            return self._missing(picture, set(found), set(quads), time)
-        self._blind_since = None
+            return self._missing(picture, set(found), set(quads))
         return self._fitted(picture, quads, {0, 1} - set(read), time)
-
-    def _far(self) -> bool:
-        """Whether a marker was too small, when last seen, for a part of the pixels."""
-        sides = [np.hypot(*(known.corners[1] - known.corners[0])) for known in self._known.values()]
-        return bool(min(sides) < FAR_PX)
 
     def _predicted(self, time: float) -> dict[int, Array]:
         """Where the corners of the squares that were read lately move to."""
-        return {
-            number: known.corners + known.velocity * (time - known.time)
-            for number, known in self._known.items()
-            if time - known.read <= FOLLOW
-        }
+        if (last := self._last) is None:
+            return {}
+        corners = last.corners + last.velocity * (time - last.time)
+        return {number: corners[number] for number in (0, 1) if time - last.read[number] <= FOLLOW}
 
     def _fitted(
         self, picture: Picture, quads: dict[int, Array], followed: set[int], time: float
@@ -134,26 +122,22 @@ class Tracker:
         for _ in range(POWERS):  # the first pictures tell the power that their values are of light
             gamma = self._shrinkage.gamma
             refined, good = squares.refine(picture, np.stack((quads[0], quads[1])), gamma)
-            lit = {n: planar.cells(n) for n in (0, 1) if n not in followed and good[n, :, 0].min() >= KEPT}
-            corners = self._shrinkage.taken_out(picture, refined, lit)
+            whole = [n for n in (0, 1) if n not in followed and good[n, :, 0].min() >= KEPT]
+            corners = self._shrinkage.taken_out(picture, refined, whole)
             if self._shrinkage.gamma == gamma:
                 break
-        size = (picture.shape[1], picture.shape[0])
-        found = self._fit_to(corners, good, size, time)
-        torn = found is None or self._left(found[1]) > REFUSE_PX
-        if torn and not followed:  # a corner that is covered pulls the square: take the last one instead
-            for number, predicted in self._predicted(time).items():
-                other = quads | {number: predicted}
-                again, kept = squares.refine(picture, np.stack((other[0], other[1])), self._shrinkage.gamma)
-                second = self._fit_to(self._shrinkage.taken_out(picture, again, {}), kept, size, time)
-                if second is not None and self._left(second[1]) <= REFUSE_PX:
-                    refined, good, found, followed, torn = again, kept, second, {number}, False
-                    break
+        seen = self._fit_to(corners, good, picture.shape, time)
+        torn = seen is None or self._left(seen) > REFUSE_PX
         if followed and torn:
             return _unseen(_lost(followed))
-        if found is None:
+        last = self._predicted(time)
+        if torn and len(last) == 2 and (good[..., 0] < WHOLE).any():  # a covered corner pulls the square
+            again = self._fitted(picture, last, {0, 1}, time)
+            if again["do"] == "seen":
+                return again
+        if seen is None:
             return _unseen("refused")
-        fit, seen = found
+        fit = seen.fit
         if torn:
             alone = Causes()
             alone.add(seen)
@@ -165,10 +149,10 @@ class Tracker:
             self._causes.add(seen, self._causes.variance / spread)
         hidden = ~fit.trust.any(axis=(1, 2)).reshape(2, 4)
         hidden |= np.roll(hidden, 1, axis=1)
-        refined = np.where(hidden[..., None], self._drawn(fit), refined)
-        self._remember(picture, refined, followed, time)
-        self._fit = fit
-        return self._seen(picture, fit, seen, refined, good[..., 0], followed)
+        drawn = fit.corners if self.camera is None else self.camera.distorted(fit.corners)
+        refined = np.where(hidden[..., None], drawn, refined)
+        self._remember(picture, fit, refined, followed, time)
+        return self._seen(picture, seen, refined, good[..., 0], followed)
 
     def _is_new(self, picture: Picture) -> bool:
         """Return whether a picture, its noise included, was not seen before."""
@@ -177,16 +161,15 @@ class Tracker:
         self._pictures.append(number)
         return not known
 
-    def _fit_to(
-        self, corners: Array, good: Array, size: tuple[int, int], time: float
-    ) -> tuple[planar.Fit, View] | None:
-        """Return the fit to corners (2, 4, 2) [px] of a picture of a `size` [px], and its view; None where
-        there is none."""
+    def _fit_to(self, corners: Array, good: Array, shape: tuple[int, ...], time: float) -> View | None:
+        """Return the fit to corners (2, 4, 2) [px] of a picture of a `shape`, with what causes do to it; None
+        where there is none."""
         if ((good[..., 0] >= KEPT).sum(axis=1) < EDGES).any():
             return None
         try:
-            fit = planar.fit(corners, self.camera, self._fit, planar.trusted(good, KEPT))
-            seen = view(fit, size, self._velocity(corners, time), self.camera)
+            start = None if self._last is None else self._last.fit
+            fit = planar.fit(corners, self.camera, start, planar.trusted(good, KEPT))
+            seen = view(fit, shape[::-1], self._velocity(corners, time), self.camera)
         except (np.linalg.LinAlgError, ValueError):
             return None
         if not (np.isfinite(fit.pose).all() and np.isfinite(seen.error).all()):
@@ -195,48 +178,43 @@ class Tracker:
         if self._left(seen) > REFUSE_PX and good[worst][0] < PART:  # it may be that of a finger
             fewer = good.copy()
             fewer[worst] = 0.0
-            without = self._fit_to(corners, fewer, size, time)
-            if without is not None and without[0].rms <= DOUBT_PX:
+            without = self._fit_to(corners, fewer, shape, time)
+            if without is not None and without.fit.rms <= DOUBT_PX:
                 return without
-        return fit, seen
+        return seen
 
     def _left(self, seen: View) -> float:
         """Return the residual [px] of the corners, or that which known causes do not explain."""
-        return min(planar.rms(seen.gap), planar.rms(self._causes.unexplained(seen)))
-
-    def _drawn(self, fit: planar.Fit) -> Array:
-        """Return where the fit has the corners (2, 4, 2) [px]."""
-        moving = planar.CORNERS @ planar.turn(fit.pose[2]).T + fit.pose[:2]
-        seen = planar.project(fit.plane, np.concatenate((planar.CORNERS, moving)))
-        return (seen if self.camera is None else self.camera.distorted(seen)).reshape(2, 4, 2)
+        return min(seen.fit.rms, planar.rms(self._causes.unexplained(seen)))
 
     def _velocity(self, corners: Array, time: float) -> Array:
         """Return the velocity (2, 4, 2) [px/s] of corners since they were last seen, 0 where that is long
         ago."""
-        velocity = np.zeros((2, 4, 2))
-        for number, known in self._known.items():
-            if 0.0 < time - known.time < 0.3:
-                velocity[number] = (corners[number] - known.corners) / (time - known.time)
-        return velocity
+        last = self._last
+        if last is None or not 0.0 < time - last.time < LONG:
+            return np.zeros((2, 4, 2))
+        return (corners - last.corners) / (time - last.time)
 
-    def _remember(self, picture: Picture, corners: Array, followed: set[int], time: float) -> None:
+    def _remember(
+        self, picture: Picture, fit: planar.Fit, corners: Array, followed: set[int], time: float
+    ) -> None:
+        read = [time, time]
+        for number in followed:
+            if self._last is not None and not _reads(picture, corners[number], number):
+                read[number] = self._last.read[number]
         velocity = self._velocity(corners, time)
-        for number in (0, 1):
-            known, now = self._known.get(number), corners[number]
-            read = time
-            if known is not None and number in followed and not _reads(picture, now, number):
-                read = known.read
-            self._known[number] = _Known(corners=now, velocity=velocity[number], time=time, read=read)
+        self._last = _Last(corners=corners, velocity=velocity, time=time, read=read, fit=fit)
 
     def _seen(
-        self, picture: Picture, fit: planar.Fit, seen: View, refined: Array, share: Array, followed: set[int]
+        self, picture: Picture, seen: View, refined: Array, share: Array, followed: set[int]
     ) -> dict[str, Any]:
+        fit = seen.fit
         covered = bool(followed) or bool((share < WHOLE).any())
         noise = fit.spread * np.sqrt(self._causes.spread_of(seen, own=covered) + STILL_PX**2)
         error = self._causes.error(seen)
         doubt = fit.rms > DOUBT_PX or (self._causes.none < UNLIKELY and bool((error > noise).any()))
         faults = {
-            "over-exposed": _clipped(picture, fit) > CLIPPED,
+            "over-exposed": _clipped(picture, refined[0]) > CLIPPED,
             "followed": bool(followed),
             self._causes.name() or "not-flat": doubt,
             "blurred": bool((share < CLEAR).any()) and not followed,
@@ -252,35 +230,25 @@ class Tracker:
             "rms": fit.rms,
             "state": "followed" if followed else "found",
             "plane": (fit.plane @ np.diag([1.0 / self.side, 1.0 / self.side, 1.0])).ravel().tolist(),
-            "quads": self._shrinkage.taken_out(picture, refined, {}).tolist(),
+            "quads": self._shrinkage.taken_out(picture, refined, ()).tolist(),
             "faults": [name for name, wrong in faults.items() if wrong],
         }
 
-    def _missing(self, picture: Picture, found: set[int], quads: set[int], time: float) -> dict[str, Any]:
+    def _missing(self, picture: Picture, found: set[int], quads: set[int]) -> dict[str, Any]:
         """Why there is no pose."""
         if quads:
-            self._blind_since = None
             return _unseen(_lost({0, 1} - quads))
         if found:
             return _unseen("other-ids", ", ".join(map(str, sorted(found))))
-        if self._blind_since is None:
-            self._blind_since, self._mirrored = time, False
-        if time - self._blind_since >= BLIND and (self._mirrored or self._tries % 5 == 0):
+        if self._tries % SOMETIMES == 0:
             self._mirrored = not {0, 1}.isdisjoint(self.markers(np.ascontiguousarray(picture[:, ::-1])))
         return _unseen("mirrored" if self._mirrored else "lost-both")
 
 
-def _doubles(found: Mapping[int, list[Array]]) -> set[int]:
-    """Return the ids of ours that are seen twice."""
-    return {number for number in (0, 1) if len(found.get(number, ())) > 1}
-
-
-def _clipped(picture: Picture, fit: planar.Fit) -> float:
-    """Return the share of places in the white around marker 0 that have the largest value."""
-    places = np.rint(planar.project(fit.plane, MARGIN)).astype(int)
-    height, width = picture.shape
-    there = places[((places >= 0) & (places < (width, height))).all(axis=1)]
-    return float(np.mean(picture[there[:, 1], there[:, 0]] >= WHITEST)) if len(there) else 0.0
+def _clipped(picture: Picture, corners: Array) -> float:
+    """Return the share of the largest value in the box around corners (4, 2) [px]."""
+    (left, top), (right, bottom) = corners.clip(0.0).min(axis=0), corners.max(axis=0)
+    return float(np.mean(picture[int(top) : int(bottom), int(left) : int(right)] >= WHITEST))
 
 
 def _reads(picture: Picture, corners: Array, number: int) -> bool:
