@@ -167,13 +167,3 @@ class Placing:
         the body's turn [rad]."""
         arm = turned(turn, self._arm)
         return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]], [0.0, 0.0, 1.0]]) * sd
-
-    def looks_swapped(self, marker: Array) -> bool:
-        """Return whether the markers fit the design much better the other way round."""
-
-        def strangeness(pose: Array) -> float:
-            """How far the body would be from any place that bending takes it to, over the rest distance."""
-            return math.dist(self.body(pose)[:2], self.centre) / math.hypot(*self.rest[:2])
-
-        other = np.array([*turned(-marker[2], -marker[:2]), -marker[2]])
-        return strangeness(marker) > 0.8 and strangeness(other) < 0.5 * strangeness(marker)

@@ -36,8 +36,6 @@ HAND_STEP = 1e-4
 LEAST_TURN = 2e-4
 #: Part of a standard deviation over which a stiffness is taken to be linear.
 PART = 1e-3
-#: A step that the solver cannot take is tried at this part of it, then at the part's part, down to the least.
-SHORTER, SHORTEST = 0.25, 2.0**-10
 
 
 class Mechanics:
@@ -102,7 +100,7 @@ class Mechanics:
 
     def pace(self, piece: Piece) -> None:
         """From now on as many simulated seconds in one as a design has that differs in this alone."""
-        self.piece, self.step, self._part = piece, STEP * (piece.values["time_scale"] or 1.0), 1.0
+        self.piece, self.step = piece, STEP * (piece.values["time_scale"] or 1.0)
 
     @property
     def moving(self) -> bool:
@@ -216,7 +214,7 @@ class Mechanics:
 
     def _move(self, solver: str, sweeps: int, z: Array, v: Array) -> None:
         """Move from unknowns z and velocities v (Q,) on; energies are counted from there."""
-        self._motion, self._part = motion(solver, sweeps, self._acting, z, v), 1.0
+        self._motion = motion(solver, sweeps, self._acting, z, v)
         now = self._motion.state()
         self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(self._body)])
         self.snapshot = self._dynamic(self._motion)
@@ -225,18 +223,15 @@ class Mechanics:
     def resolved(self) -> bool:
         """Whether a moving body's steps resolve its swing."""
         moving = self._motion
-        return moving is None or min(self._part * self.step, moving.longest) <= self.longest_step
+        return moving is None or min(self.step, moving.longest) <= self.longest_step
 
     def advance(self, steps: int) -> float:
-        """Take steps of the released body, shorter ones where the solver cannot take them; returns the time
-        done [s], 0 where it gives up, the last state being kept."""
-        moving = self._motion
-        while moving is not None and self._part >= SHORTEST:
-            if done := moving.advance(steps, self._part * self.step):
-                self.snapshot = self._dynamic(moving)
-                return done
-            self._part *= SHORTER
-        return 0.0
+        """Take steps of the released body; returns the time done [s], 0 where the solver cannot take them and
+        the last state is kept."""
+        if self._motion is None or not (done := self._motion.advance(steps, self.step)):
+            return 0.0
+        self.snapshot = self._dynamic(self._motion)
+        return done
 
     def catch(self) -> bool:
         """Hold the moving body where it is; False, and still moving, where no static state is found there."""
@@ -284,19 +279,9 @@ class Mechanics:
         """Return what follows from the poses of the bodies, what is along the strips, and the energies."""
         poses, strips = along.bodies[0], self.piece.design.strips
         pose = poses[self.placing.number]
-        area, modulus = (
-            np.array([[each] for each in values])
-            for values in zip(
-                *((s.area, 2.0 * s.second_moment_of_area / s.depth) for s in strips), strict=True
-            )
-        )
+        area = np.array([[strip.area] for strip in strips])
+        modulus = np.array([[2.0 * strip.second_moment_of_area / strip.depth] for strip in strips])
         axial, moment = (np.abs(each[0, :, ::EVERY]) for each in (along.axial_force, along.bending_moment))
         energy = {"strain": strain, "kinetic": kinetic, "potential": self._potential(pose), "dissipated": 0.0}
-        stress = axial / area + moment / modulus
-        return {
-            "pose": pose,
-            "poses": poses,
-            "shape": along.shape[0, :, ::EVERY],
-            "stress": stress,
-            "energy": energy,
-        }
+        shape, stress = along.shape[0, :, ::EVERY], axial / area + moment / modulus
+        return {"pose": pose, "poses": poses, "shape": shape, "stress": stress, "energy": energy}

@@ -21,7 +21,7 @@ from spline_model.solution import Later
 from studies.kinds import Array
 
 #: Least part of an energy-consistent step before the motion is given up: work stays bounded.
-SMALLEST_PART = 2.0**-6
+SMALLEST_PART = 2.0**-10
 #: Part of its stability limit that a step of the published form has, and most of them for one of the frame's.
 STABLE_PART, MOST_PARTS = 0.8, 1000
 #: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and

@@ -23,6 +23,8 @@ from studies.errors import BadInput
 #: Simulated time of one step over the time scale [s]: four of them make a frame of 25 Hz (section 4.1).
 STEP = 0.01
 STEPS_A_FRAME = 4
+#: Of parameters by their names, in SI units; None where there is none.
+Values = Mapping[str, float | None]
 #: In EI/L^2: strips that a hand compresses fold their control points at the smaller default.
 PENALTY_STIFFNESS = 1000.0
 #: Logarithmic sliders reach from a fifth to five times the value of the design.
@@ -87,17 +89,15 @@ class Piece:
     """One design: a case file, and the values of the parameters that the user sees.
 
     Attributes:
-        name: of the preset that it began from; title, note: for the page.
+        name: of the preset that it began from.
         document: the case file, as it is parsed; base: its design.
         values: of the parameters that it has, in SI units.
     """
 
     name: str
-    title: str = ""
-    note: str = ""
     document: Mapping[str, Any]
     base: Design
-    values: Mapping[str, float | None]
+    values: Values
 
     def changed(self, values: Mapping[str, object]) -> "Piece":
         """Return the design with these values, each checked; BadInput for an unknown or a bad one."""
@@ -111,11 +111,8 @@ class Piece:
 
     def like(self, other: "Piece", *but: str) -> bool:
         """Whether a design differs from another in its time scale, and these parameters, alone."""
-        mine, theirs = (
-            {name: value for name, value in each.values.items() if name not in ("time_scale", *but)}
-            for each in (self, other)
-        )
-        return mine == theirs and self.document == other.document
+        same = (self.values[name] == other.values[name] for name in self.values.keys() - {"time_scale", *but})
+        return self.document == other.document and all(same)
 
     @cached_property
     def design(self) -> Design:
@@ -176,10 +173,10 @@ class Piece:
         return as_toml(document_of(self.design), ["a design of the interactive environment"])
 
 
-def _read(document: Mapping[str, Any]) -> Design:
+def _read(document: Mapping[str, Any], where: str = "design.toml") -> Design:
     """Return the design of a case file; BadInput unless bodies on strips, some from the ground, are in it."""
-    design = design_of("design.toml", document)
-    refuse_tapers("design.toml", design.strips, "the interactive environment")
+    design = design_of(where, document)
+    refuse_tapers(where, design.strips, "the interactive environment")
     if left := [name for name in ("support", "spring") if name in design.effects.names]:
         raise BadInput(f"scene: got a {left[0]}, expected strips and bodies alone")
     hinged = [strip.name for strip in design.strips if HINGE in (strip.root_joint, strip.tip_joint)]
@@ -206,18 +203,18 @@ def _of_strips(design: Design) -> dict[str, float | None]:
     return found if section else {n: v for n, v in found.items() if n not in ("width", "thickness")}
 
 
-def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
+def opened(name: str, document: Mapping[str, Any], known: Values, where: str = "design.toml") -> Piece:
     """Return the design of a parsed case file; its time runs so that it swings once a second.
 
     Of its scene the damping of the strips acts here, and the upright part of a force on the body.
 
     Args:
-        known: title, note, and values of parameters that the case leaves open.
+        known: values of parameters that the case leaves open. where: name of the file in errors.
 
     Raises:
         BadInput: the file cannot be used; one line.
     """
-    design = _read(document)
+    design = _read(document, where)
     given = design.effects.parameters()
     values: dict[str, float | None] = {
         "relaxation_time": given.get("strip_damping", {}).get("relaxation_time", 0.0),
@@ -228,9 +225,8 @@ def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
     values |= _of_strips(design)
     if isinstance(design, Problem):
         values |= {n: getattr(design, n) for n in ("length", "inclination", "crossing_ratio")}
-    titles = {"title": known.pop("title", name.replace("_", " ")), "note": known.pop("note", "")}
-    ordered = {n: values[n] for n in PARAMETERS if n in values} | known
-    piece = Piece(name=name, document=document, base=design, values=ordered, **titles)
+    ordered = {n: values[n] for n in PARAMETERS if n in values} | dict(known)
+    piece = Piece(name=name, document=document, base=design, values=ordered)
     if "time_scale" in known:
         return piece.changed({})
     modes = natural_frequencies(piece.modelled(loaded=False), count=1, body=piece.body.name)
@@ -240,25 +236,25 @@ def opened(name: str, document: Mapping[str, Any], **known: Any) -> Piece:
 
 #: Name of the design of one's own, which a command or the page may bring.
 OWN = "own"
+#: The first presets: title, what is said of it as long as it is not changed, case, and what the case leaves
+#: open.
+FIRST: dict[str, tuple[str, str, str, Values]] = {
+    "polymer": (
+        "soft polymer pivot",
+        "swings about once a second, in real time",
+        "polymer_pivot",
+        {"yield_strength": 30e6, "relaxation_time": 2e-3, "time_scale": 1.0},
+    ),
+    "table-1": (
+        "Table 1 of the paper",
+        "swings 76 times a second: shown 200 times slower, with steps shorter in proportion",
+        "cross_axis_pivot",
+        {"yield_strength": 1.2e9, "time_scale": 1.0 / 200.0},
+    ),
+}
 #: Presets that were opened, the first of them the one to begin with; the other cases of the suite by name.
-PRESETS: dict[str, Piece] = {
-    "polymer": opened(
-        "polymer",
-        parsed(FOLDER / "polymer_pivot.toml"),
-        title="soft polymer pivot",
-        note="swings about once a second, in real time",
-        yield_strength=30e6,
-        relaxation_time=2e-3,
-        time_scale=1.0,
-    ),
-    "table-1": opened(
-        "table-1",
-        parsed(FOLDER / "cross_axis_pivot.toml"),
-        title="Table 1 of the paper",
-        note="swings 76 times a second: shown 200 times slower, with steps shorter in proportion",
-        yield_strength=1.2e9,
-        time_scale=1.0 / 200.0,
-    ),
+PRESETS = {
+    name: opened(name, parsed(FOLDER / f"{case}.toml"), known) for name, (*_, case, known) in FIRST.items()
 }
 SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 
@@ -266,38 +262,34 @@ SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 def own(case: str) -> Piece:
     """Return the design of a case file, or of a case of that name; BadInput as of `opened`."""
     path = FOLDER / f"{case}.toml" if case in SHIPPED else Path(case)
-    try:
-        return opened(OWN, parsed(path), title=path.stem.replace("_", " "))
-    except BadInput as error:
-        raise BadInput(str(error).replace("design.toml", str(path))) from None
+    return opened(OWN, parsed(path), {}, str(path))
 
 
 def preset(name: str) -> Piece:
     """Return the preset of that name; BadInput lists the names."""
     if name in SHIPPED and name not in PRESETS:
-        PRESETS[name] = opened(name, parsed(FOLDER / f"{name}.toml"))
-    if name == OWN and OWN not in PRESETS:
-        raise BadInput(f"preset: got {OWN!r}, expected its case file beside the command")
+        PRESETS[name] = opened(name, parsed(FOLDER / f"{name}.toml"), {})
     if name not in PRESETS:
         raise BadInput(f"preset: got {name!r}, expected one of {', '.join((*PRESETS, *SHIPPED))}")
     return PRESETS[name]
 
 
 def chosen(name: str, now: Piece, case: Mapping[str, Any] | None, values: Mapping[str, Any]) -> Piece:
-    """Return the preset of that name with other values, or a design of one's own of a `case` file; without
-    one it is the design `now`, if that is one's own, or the first preset's with all its values."""
+    """Return the preset of that name, or a design of one's own of a `case` file, with other values; without
+    a case it is the design `now`, if that has the name."""
     if name == OWN and case is not None:
         known = {"time_scale": values["time_scale"]} if "time_scale" in values else {}
-        return opened(name, case, **known).changed(values)
-    if name == OWN and values:
-        return replace(now if now.name == OWN else preset("polymer"), name=OWN).changed(values)
-    return preset(name).changed(values)
+        return opened(name, case, known).changed(values)
+    return (now if values and name == now.name else preset(name)).changed(values)
 
 
 def catalogue() -> dict[str, Any]:
     """Return parameters, presets and what each material that yields sets, for whoever shows them."""
-    every: dict[str, dict[str, Any]] = {name: {"title": name.replace("_", " ")} for name in SHIPPED}
-    every = {n: {"title": p.title, "note": p.note, "values": p.values} for n, p in PRESETS.items()} | every
+    every: dict[str, dict[str, Any]] = {
+        name: {"title": title, "note": note, "values": PRESETS[name].values}
+        for name, (title, note, *_) in FIRST.items()
+    }
+    every |= {name: {"title": name.replace("_", " ")} for name in SHIPPED}
     known = {each["title"].partition(",")[0]: each for each in MATERIALS.values() if "yield_strength" in each}
     return {
         "parameters": [asdict(parameter) for parameter in PARAMETERS.values()],

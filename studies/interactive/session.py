@@ -12,7 +12,7 @@ import numpy as np
 
 from studies.interactive import presets
 from studies.interactive.design import PRINTED
-from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, History, Readings, checked
+from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, History, checked
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import SOLVERS, SWEEPS, softness, ways
 from studies.interactive.presets import STEP, Piece
@@ -40,6 +40,8 @@ class Session:
     Attributes:
         mechanics: the design at work. warnings: sentences of what is wrong by their codes.
         critical: load at which the design loses its stability [N], None where it is not known.
+        sd (3,): standard deviation of the pose [m, m, rad]; force_sd (4,): of force, moment and stiffness, to
+            first order; None where no camera holds the body.
     """
 
     def __init__(self, preset: str = "polymer", *, lock_step: bool = True) -> None:
@@ -51,12 +53,14 @@ class Session:
         self._at_rest, self.mechanics = rest, Mechanics(piece, rest)
         self.critical: float | None = None
         self.history = History()
-        self.clock, self.hand, self.readings = Clock(lock_step=lock_step), Hand(), Readings()
+        self.clock, self.hand = Clock(lock_step=lock_step), Hand()
         self.warnings: dict[str, str] = {}
         self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
         self.sweeps, self.paused, self.time = SWEEPS, False, 0.0
         self.sight: dict[str, Any] = {"state": "none"}
         self.spread: Array | None = None
+        self.sd: Array | None = None
+        self.force_sd: Array | None = None
         self.marker: Array | None = None
         self.wanted = np.zeros(3)
 
@@ -71,8 +75,11 @@ class Session:
         getattr(self, f"_{fields['do']}")(fields)
         mechanics, self.time = self.mechanics, fields["t"]
         spread, tangent = self.spread, mechanics.snapshot.tangent
-        known = None if spread is None else ways(tangent, self.drive, self.grip) @ spread
-        self.readings.take(mechanics, known)
+        self.sd = self.force_sd = None
+        if spread is not None and tangent is not None:
+            pose = ways(tangent, self.drive, self.grip) @ spread
+            self.sd, force = np.linalg.norm(pose, axis=1), np.linalg.norm(tangent @ pose, axis=1)
+            self.force_sd = np.append(force, mechanics.stiffness_spread(pose))
         if mechanics.doubt:
             self._warn("coarse", mechanics.doubt)
         if not mechanics.resolved:
@@ -117,9 +124,7 @@ class Session:
             return
         body = placing.body(marker, near=self.wanted[2])
         pose = np.array([*(body[:2] - placing.centre), body[2]])
-        if placing.looks_swapped(marker):
-            self._warn("swapped")
-        elif not self.hand.believes(event["t"], pose):
+        if not self.hand.believes(event["t"], pose):
             self._warn("jump")
         else:
             self.spread = placing.spread(event["sd"], body[2]) if "sd" in event else None
@@ -296,7 +301,6 @@ class Session:
     def _solver(self, event: dict[str, Any]) -> None:
         self.solver, self.sweeps = event["name"], event.get("sweeps", self.sweeps)
         self.mechanics.change_solver(self.solver, self.sweeps)
-        self.clock.forget()
 
     def _rest(self, event: dict[str, Any]) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""

@@ -30,25 +30,19 @@ def quantity(value: float | None, unit: str, least: float = 0.0, spread: float |
     value = 0.0 if abs(value) < least else value
     if spread is None:
         value = float(f"{value:.3g}")
-        scale, prefix = _prefix(abs(value))
-        return f"{value / scale + 0.0:.4g} {prefix}{unit}"
+        power = power_of(abs(value), lowest=-9)
+        return f"{value / 10.0**power + 0.0:.4g} {PREFIXES[power]}{unit}"
     spread = float(f"{max(spread, FINEST * abs(value)):.2g}")
-    scale, prefix = _prefix(max(abs(value), spread))
+    power = power_of(max(abs(value), spread), lowest=-9)
+    scale = 10.0**power
     places = max(0, 1 - math.floor(math.log10(spread / scale))) if spread > 0.0 else 2
-    return f"{fixed(value / scale, places)} ± {spread / scale:.{places}f} {prefix}{unit}"
+    return f"{fixed(value / scale, places)} ± {spread / scale:.{places}f} {PREFIXES[power]}{unit}"
 
 
-def _prefix(size: float) -> tuple[float, str]:
-    """Return the power of ten of the prefix that suits a size, and the prefix."""
-    power = power_of(size, lowest=-9)
-    return 10.0**power, PREFIXES[power]
-
-
-def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
-    """Return the texts of a state's numbers by what they are; `reading` (4,): force, moment and stiffness."""
+def _readout(state: Mapping[str, Any]) -> dict[str, str]:
+    """Return the texts of a state's numbers by what they are."""
     least = {name: ROUND_OFF * scale for name, scale in state["scale"].items()}
-    force, spread = reading.tolist(), state["force_sd"] or (None, None, None, None)
-    stiffness = None if state["stiffness"] is None else force[3]
+    force, spread = state["force"], state["force_sd"] or (None, None, None, None)
     (dx, dy, turn), sd = state["displacement"], state["sd"]
     shifted = state["centre_shift"]
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
@@ -63,7 +57,7 @@ def _readout(state: Mapping[str, Any], reading: Array) -> dict[str, str]:
         "moment": quantity(force[2], "N m", least["moment"], spread[2]),
         "force_x": quantity(force[0], "N", least["force"], spread[0]),
         "force_y": quantity(force[1], "N", least["force"], spread[1]),
-        "stiffness": quantity(stiffness, "N m/rad", least["moment"], spread[3]),
+        "stiffness": quantity(state["stiffness"], "N m/rad", least["moment"], spread[3]),
         "grip": quantity(state["grip"], "N/m"),
         "critical": quantity(state["critical"], "N"),
         "simulated": f"{quantity(state['simulated'], 's')}, {state['steps']} steps",
@@ -141,7 +135,7 @@ def shown(session: Any) -> dict[str, Any]:
         "displacement": [*(now.pose[:2] - placing.centre), now.pose[2]],
         "centre_shift": placing.crossing_shift(now.pose),
         "grip": session.grip if session.drive in ("grip", "pull") and not moving else None,
-        "sd": session.readings.sd,
+        "sd": session.sd,
         "force_sd": _force_sd(session),
         "stress": _stress(now.stress, piece.values.get("yield_strength")),
         "energy": now.energy | {"start": mechanics.begun if moving else None},
@@ -160,7 +154,7 @@ def shown(session: Any) -> dict[str, Any]:
         "warnings": [{"code": code, "text": text} for code, text in session.warnings.items()],
     }
     state = _plain(state)
-    state["texts"] = _readout(state, session.readings.mean(now))
+    state["texts"] = _readout(state)
     state["status"] = _sentence(state)
     return state
 
@@ -190,8 +184,7 @@ def _plain(value: Any) -> Any:
 
 def _force_sd(session: Any) -> list[float | None] | None:
     """Standard deviations of force, moment and stiffness; none of forces that are nought by make."""
-    sd = session.readings.force_sd
-    if sd is None:
+    if session.force_sd is None:
         return None
-    known: list[float | None] = [value if np.isfinite(value) else None for value in sd.tolist()]
+    known = [value if math.isfinite(value) else None for value in session.force_sd.tolist()]
     return [None, None, *known[2:]] if session.drive == "rotation" else known

@@ -45,13 +45,13 @@ def test_interrupt_ends_the_server():
 
 #: Words, and what the one line must say.
 WORDS = {
-    "--film none.mp4": "--film: got none.mp4, expected a film file or demo",
-    "--film pyproject.toml": "--film: got pyproject.toml, expected a film that OpenCV reads",
+    "--film none.mp4": "--film: got none.mp4, expected demo, or a film file that OpenCV reads",
+    "--film pyproject.toml": "--film: got pyproject.toml, expected demo, or a film file that OpenCV reads",
     "--film demo --camera 0": "--camera: got 0 beside --film, expected one of them",
     "--preset rubber": "preset: got 'rubber', expected one of polymer, table-1",
     "polymer_pivot --preset polymer": "--preset: got polymer beside a case, expected one of them",
     "--port 99999": "--port: got 99999, expected 0 (any) to 65535",
-    "--camera 77": "--camera: got no picture from camera 77 of this machine, expected one that is",
+    "--camera 77": "--camera: got 77, expected the number of a camera that is connected",
     "--replay none.jsonl": "--replay: got none.jsonl, expected a session file",
     "--record no/such/folder/x": "--record: got no/such/folder/x, expected a file that can be written",
     "--calibration none.json": "none.json: got no camera",

@@ -54,7 +54,7 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     lines = recorded(presets.OWN)
     monkeypatch.undo()
     assert all(good for _, good in replay(lines))
-    with pytest.raises(BadInput, match="preset: got 'own', expected its case file beside the command"):
+    with pytest.raises(BadInput, match="preset: got 'own', expected one of polymer, table-1"):
         presets.preset(presets.OWN)
 
 

@@ -1,6 +1,5 @@
 """The server on a real port, without a browser."""
 
-import json
 import math
 
 import pytest
@@ -10,7 +9,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.interactive.recording import Recorder, mark, replay
+from studies.interactive.recording import replay
 from studies.interactive.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
@@ -69,58 +68,6 @@ def test_recording_is_sent_and_replays(server):
     assert all(same)
 
 
-def upload(socket, kind, text, size=400):
-    """Send a file in parts."""
-    data = text.encode()
-    for at in range(0, len(data), size):
-        socket.send(protocol.PART.pack(kind, 1, at + size >= len(data)) + data[at : at + size])
-
-
-def test_session_is_replayed_by_itself(server):
-    """Requirement: a session file is replayed from a session of its own: every state is the recorded one,
-    whatever the hand does meanwhile; the page's own design is there again afterwards."""
-    recorder = Recorder(Session(lock_step=False))
-    session = Session(lock_step=False)
-    events = [{"do": "parameter", "name": "width", "value": 0.012}, {"do": "pose", "pose": [0, 0, 0.4]}]
-    for k, event in enumerate([*events, {"do": "release"}, *[{"do": "tick"}] * 8]):
-        stamped = {**event, "t": 0.02 * k}
-        recorder.write(stamped, session.feed(stamped))
-    with opened(server) as socket:
-        own = told(socket, do="pose", pose=[0, 0, 0.1])
-        upload(socket, protocol.REPLAY, "".join(recorder.lines))
-        states = []
-        while (message := json.loads(socket.recv(5)))["kind"] != "replayed":
-            states += [message] if message["kind"] == "state" else []
-            if len(states) < 6:
-                say(socket, do="pose", pose=[0, 0, 0.3])
-        assert message["text"] == "The session file has ended: 12 of 12 states are those recorded."
-        assert [mark(plain_state(state)) for state in states] == [
-            json.loads(line)["mark"] for line in recorder.lines
-        ]
-        assert told(socket, do="tick")["pose"] == own["pose"]
-        upload(socket, protocol.REPLAY, "no session")
-        assert "line 1: got no JSON" in answer(socket, "error")["text"]
-
-
-def plain_state(state):
-    """A state without what the server adds."""
-    return {name: value for name, value in state.items() if name not in ("kind", "seq", "solve_ms", "replay")}
-
-
-def test_replay_ends_when_it_is_told_to(server):
-    """Requirement: a replay that waits is ended, and says how far it came."""
-    recorder, session = Recorder(Session()), Session()
-    late = {"do": "tick", "t": 1000.0}
-    recorder.write(late, session.feed(late))
-    recorder.write(late, session.feed({**late, "t": 2000.0}))
-    with opened(server) as socket:
-        recorder.lines[2] = recorder.lines[2].replace("1000.0", "2000.0")
-        upload(socket, protocol.REPLAY, "".join(recorder.lines))
-        answer(socket)
-        say(socket, do="live")
-        assert answer(socket, "replayed")["text"].startswith("The replay was ended: ")
-
-
 def test_design_is_saved_and_opened(server, tmp_path):
     """Requirement: the design is a case file that the commands read; opened, it is the same design; a text
     that is no case is named in one line."""
@@ -133,13 +80,14 @@ def test_design_is_saved_and_opened(server, tmp_path):
         assert (problem.width, problem.thickness) == pytest.approx((0.01, 7e-4))
         assert problem.effects.parameters()["strip_damping"] == {"relaxation_time": 2e-3}
         told(socket, do="preset", name="table-1")
-        upload(socket, protocol.DESIGN, text)
+        socket.send(protocol.DESIGN + text.encode())
         state = answer(socket)
         same = {**state["values"], "time_scale": values["time_scale"]}
         assert same == pytest.approx(values | {"yield_strength": 30e6})
         assert state["preset"] == "own"
-        upload(socket, protocol.DESIGN, text.replace("length_m", "lenght_m"))
-        assert "design.toml: " in answer(socket, "error")["text"]
+        for wrong in (text.replace("length_m", "lenght_m"), "no = case = file"):
+            socket.send(protocol.DESIGN + wrong.encode())
+            assert "design.toml: " in answer(socket, "error")["text"]
 
 
 def test_curve_of_every_design_is_sent(server):

@@ -73,9 +73,8 @@ def test_film_file_is_played(tmp_path):
         writer.write(picture)
     writer.release()
     shots = [shot for shot, _ in zip(Video(path).shots(), range(5), strict=False)]
-    assert [shot.number for shot in shots] == [0, 1, 2, 3, 4]
-    assert [counter(shot.picture) for shot in shots] == [0, 1, 2, 0, 1]
-    assert shots[4].time == pytest.approx(4 / 25)
+    assert [counter(picture) for picture, _ in shots] == [0, 1, 2, 0, 1]
+    assert Video(path).rate == 25.0
 
 
 @pytest.mark.slow

@@ -78,7 +78,7 @@ def test_every_case_opens(case):
     assert (states[0]["stress"]["of_yield"] is None) == (
         presets.preset(case).values["yield_strength"] is None
     )
-    saved = presets.opened(case, tomllib.loads(made.mechanics.piece.as_case())).values
+    saved = presets.opened(case, tomllib.loads(made.mechanics.piece.as_case()), {}).values
     assert saved == pytest.approx(presets.preset(case).values, nan_ok=True)
 
 
@@ -113,4 +113,4 @@ def test_free_end_is_refused_in_one_line():
     document = parsed(FOLDER / "cantilever_with_body.toml")
     document["strips"][0]["tip"] = "free"
     with pytest.raises(BadInput, match=r"strips: got .* with a free end, expected both ends on a body"):
-        presets.opened("own", document)
+        presets.opened("own", document, {})

@@ -4,7 +4,7 @@ them, a film file, a camera of this machine."""
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from itertools import count
+from itertools import cycle
 from pathlib import Path
 
 import cv2
@@ -12,27 +12,27 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from studies.errors import BadInput
-from studies.interactive.design import SIDE, turned
+from studies.interactive.design import SIDE
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.planar import BITS, cells, project, turn
+from studies.interactive.tracking.planar import BITS, cells, turn
 from studies.interactive.tracking.squares import GAMMA
 from studies.kinds import Array
 
+#: One picture: its grey levels, and the JPEG that the page shows.
+Shot = tuple[Picture, bytes]
 #: Pictures a second of films that do not say.
 RATE = 25.0
-#: Length of the demo film, its turns and the frames in which a finger covers a corner and a hand a marker.
+#: Length of the demo film, its turns.
 FRAMES = 300
 TURN = math.radians(52)
-FINGER = range(150, 168)
-HIDDEN = range(235, 247)
 #: Its camera: size and focal length [px], distance [m] and angles to the plane, and places that it draws in a
-#: pixel, in each direction; light of the table, of ink, paper and skin, over that of white.
+#: pixel, in each direction; light of the table, of ink and paper, over that of white.
 WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.radians(20), math.radians(3), 2
 #: Texels of a bit of a marker: about one for a fine pixel, so that edges between them have no steps.
 TEXELS = 16
-TABLE, BLACK, WHITE, SKIN = 0.31, 0.006, 0.76, 0.14
+TABLE, BLACK, WHITE = 0.31, 0.006, 0.76
 
 
 def _decoded(data: bytes) -> Picture:
@@ -46,16 +46,6 @@ def encoded(picture: Picture, quality: int = 90) -> bytes:
     done, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
     assert done
     return bytes(data.tobytes())
-
-
-@dataclass(frozen=True, kw_only=True)
-class Shot:
-    """One picture: its number in the film, its time [s], its grey levels and the JPEG that the page shows."""
-
-    number: int
-    time: float
-    picture: Picture
-    jpeg: bytes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,13 +71,11 @@ class Film:
         return (self.picture(k) for k in range(self.frames))
 
     def shots(self) -> Iterator[Shot]:
-        """Yield the film again and again; the times run on."""
-        for number in count():
-            k = number % self.frames
+        """Yield the film again and again."""
+        for k in cycle(range(self.frames)):
             if k not in self._kept:
                 self._kept[k] = encoded(self.picture(k))
-            jpeg = self._kept[k]
-            yield Shot(number=number, time=number / self.rate, picture=_decoded(jpeg), jpeg=jpeg)
+            yield _decoded(self._kept[k]), self._kept[k]
 
 
 def demo_film() -> Film:
@@ -98,18 +86,12 @@ def demo_film() -> Film:
     place = np.array([0.0, 0.0, DISTANCE]) - 0.075 * axes[:, 1]
     lens = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0 / FINE]])
     plane = FINE * lens @ np.column_stack((axes[:, :2], place))
-    table = TABLE * (1.0 + 0.05 * np.random.default_rng(1).standard_normal((HEIGHT // 40, WIDTH // 40)))
-    ground = np.asarray(cv2.resize(table, (FINE * WIDTH, FINE * HEIGHT)), dtype=float)
     shade = 1.0 - 0.4 * np.arange(WIDTH) / WIDTH
 
     def draw(k: int) -> Picture:
-        light = ground.copy()
-        for number in (0,) if k in HIDDEN else (0, 1):
-            _lay(light, plane, number, poses[k] if number else np.zeros(3))
-        if k in FINGER:
-            corner = poses[k][:2] + turned(poses[k][2], np.array([0.5, 0.5]) * SIDE)
-            x, y = project(plane, corner).tolist()
-            cv2.circle(light, (round(x), round(y)), round(FINE * FOCAL * 0.012 / DISTANCE), SKIN, -1)
+        light = np.full((FINE * HEIGHT, FINE * WIDTH), TABLE)
+        for number, pose in enumerate((np.zeros(3), poses[k])):
+            _lay(light, plane, number, pose)
         light = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
         seen = 255.0 * (shade * cv2.GaussianBlur(light, (0, 0), 0.8)) ** (1.0 / GAMMA)
         noise = np.random.default_rng(k).standard_normal(seen.shape, dtype=np.float32)
@@ -143,19 +125,15 @@ class Video:
     def __init__(self, place: Path | int) -> None:
         self._place = place
         self.lock_step = isinstance(place, Path)
-        if isinstance(place, Path) and not place.is_file():
-            raise BadInput(f"--film: got {place}, expected a film file or demo")
         video = self._opened()
         good, picture = video.read()
         rate = video.get(cv2.CAP_PROP_FPS)
         video.release()
         if not good or picture is None:
-            if self.lock_step:
-                raise BadInput(f"--film: got {place}, expected a film that OpenCV reads")
-            raise BadInput(
-                f"--camera: got no picture from camera {place} of this machine, expected one that is "
-                "connected and that no other program uses"
-            )
+            film = "--film", "demo, or a film file that OpenCV reads"
+            camera = "--camera", "the number of a camera that is connected and that no other program uses"
+            option, expected = film if self.lock_step else camera
+            raise BadInput(f"{option}: got {place}, expected {expected}")
         self.rate = rate if 1.0 <= rate <= 120.0 else RATE
 
     def _opened(self) -> cv2.VideoCapture:
@@ -176,14 +154,12 @@ class Video:
 
     def shots(self) -> Iterator[Shot]:
         """Yield the pictures; a film starts again at its end, a camera stops when it fails."""
-        number = 0
-        while True:
-            first = number
+        found = True
+        while found:
+            found = False
             for grey in self.once():
-                yield Shot(number=number, time=number / self.rate, picture=grey, jpeg=encoded(grey))
-                number += 1
-            if number == first or not self.lock_step:
-                return
+                yield grey, encoded(grey)
+                found = self.lock_step
 
 
 Source = Film | Video

@@ -18,15 +18,10 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 PATIENCE = 60.0
 OPTIONS = (
     "--headless=new",
-    "--no-first-run",
-    "--no-default-browser-check",
     "--disable-gpu",
-    "--disable-extensions",
     "--disable-background-networking",
     "--disable-dev-shm-usage",
     "--hide-scrollbars",
-    "--force-device-scale-factor=1",
-    "--mute-audio",
     "--remote-debugging-port=0",
     "--use-fake-ui-for-media-stream",
 )
@@ -105,8 +100,6 @@ class Browser:
             self.console.append(str(given["exceptionDetails"].get("exception", given)))
         if answer.get("method") == "Log.entryAdded" and given["entry"]["level"] == "error":
             self.console.append(given["entry"]["text"])
-        if answer.get("method") == "Runtime.consoleAPICalled" and given["type"] == "error":
-            self.console.append(str(given["args"]))
 
     def open(self, address: str) -> None:
         """Load a page."""
@@ -134,15 +127,10 @@ class Browser:
     def key(self, key: str, *, shift: bool = False) -> None:
         """Press and release a key, by the name that events use."""
         text = key if len(key) == 1 else ("\r" if key == "Enter" else "")
-        codes = {"Enter": 13, "Tab": 9, "Escape": 27, " ": 32}
-        more: dict[str, Any] = {"text": text} if text else {}
-        if key in codes:
-            more["windowsVirtualKeyCode"] = codes[key]
-        modifiers = 8 if shift else 0
-        kind = "keyDown" if text else "rawKeyDown"
-        self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers, **more)
-        more.pop("text", None)
-        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, modifiers=modifiers, **more)
+        code = {"Enter": 13, "Tab": 9, "Escape": 27, " ": 32}.get(key, 0)
+        event = {"key": key, "modifiers": 8 * shift, "windowsVirtualKeyCode": code}
+        self.call("Input.dispatchKeyEvent", type="keyDown" if text else "rawKeyDown", text=text, **event)
+        self.call("Input.dispatchKeyEvent", type="keyUp", **event)
 
     def __enter__(self) -> Self:
         return self

@@ -5,6 +5,7 @@ import logging
 import time
 import tomllib
 from collections import deque
+from itertools import count
 from statistics import median
 from typing import Any
 
@@ -16,7 +17,7 @@ from studies.interactive import presets
 from studies.interactive.input import DRIVES, MOST_STEPS, checked
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import SOLVERS
-from studies.interactive.recording import Player, Recorder
+from studies.interactive.recording import Recorder
 from studies.interactive.session import Session
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.films import Shot, Source
@@ -51,16 +52,26 @@ class Connection:
         self._wake, self._room = asyncio.Event(), asyncio.Semaphore(IN_FLIGHT)
         self._last_picture = -1e9
         self._offset: float | None = None
-        self._player, self._file = Player(), b""
         self._curved: Mechanics | None = None
         self._weighed: Mechanics | None = None
         self._costs, self._send_ms = deque[float](maxlen=3), 0.0
 
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
-        await self._say(self._welcome())
+        await self._say(
+            {
+                "kind": "welcome",
+                "version": protocol.VERSION,
+                "camera": self._settings.camera,
+                "shared": self._settings.share is not None,
+                "drives": list(DRIVES),
+                "solvers": SOLVERS,
+                "side": self._tracker.side,
+                **presets.catalogue(),
+            }
+        )
         await self._feed({"do": "tick"}, None)
-        await self._show_curve(self.session)
+        await self._show_curve()
         workers = [asyncio.create_task(work()) for work in (self._ticks, self._news)]
         if self._settings.source is not None:
             workers.append(asyncio.create_task(self._play(self._settings.source)))
@@ -70,23 +81,9 @@ class Connection:
             for task in done:
                 task.result()
         finally:
-            self._player.end()
             for task in (receiver, *workers):
                 task.cancel()
-            await asyncio.gather(receiver, *workers, self._player.over(), return_exceptions=True)
-
-    def _welcome(self) -> dict[str, Any]:
-        """What the page needs to know once."""
-        return {
-            "kind": "welcome",
-            "version": protocol.VERSION,
-            "camera": self._settings.camera,
-            "shared": self._settings.share is not None,
-            "drives": list(DRIVES),
-            "solvers": SOLVERS,
-            "side": self._tracker.side,
-            **presets.catalogue(),
-        }
+            await asyncio.gather(receiver, *workers, return_exceptions=True)
 
     async def _receive(self) -> None:
         """Take messages; a newer picture replaces one that waits."""
@@ -104,8 +101,8 @@ class Connection:
                 continue
             if not meter.passes(time.monotonic()):
                 raise BadInput(f"messages: got too many, expected at most {protocol.RATE:.0f} a second")
-            if data is not None and len(data) >= protocol.PART.size and data[0] in protocol.FILES:
-                await self._part(data)
+            if data is not None and data.startswith(protocol.DESIGN):
+                await self._open(data[len(protocol.DESIGN) :].decode("utf-8", errors="replace"))
             elif data is not None:
                 self._pending = protocol.sent_picture(data)
                 self._wake.set()
@@ -124,10 +121,6 @@ class Connection:
         name = event["do"]
         if name == "shown":
             self._room.release()
-        elif name == "live":
-            self._player.end()
-        elif self._player.on:
-            return  # a hand that moves while a session is replayed moves nothing
         elif name == "save":
             await self._say({"kind": "case", "text": self.session.mechanics.piece.as_case()})
         elif name == "record":
@@ -139,49 +132,30 @@ class Connection:
             raise BadInput("do: got a second hello, expected one")
         else:
             await self._feed(event, seq)
-            await self._show_curve(self.session)
+            await self._show_curve()
 
     async def _say(self, content: dict[str, Any]) -> None:
         begin = time.perf_counter()
         await self._socket.send_text(protocol.text(content))
         self._send_ms = 1e3 * (time.perf_counter() - begin)
 
-    async def _part(self, data: bytes) -> None:
-        """Take a part of a file; the whole of it is replayed, or opened as a design."""
-        kind, version, last = protocol.PART.unpack_from(data)
-        self._file += data[protocol.PART.size :]
-        if version != protocol.VERSION or len(self._file) > Recorder.MOST:
-            raise BadInput(
-                f"file: got version {version}, {len(self._file)} bytes, expected {Recorder.MOST} at most"
-            )
-        if not last:
-            return
-        whole, self._file = self._file.decode("utf-8", errors="replace"), b""
-        try:
-            if kind == protocol.REPLAY:
-                if self.session.mechanics.moving:
-                    await self._feed({"do": "pause"}, None)
-                self._player.play(whole.splitlines(), self._say, self._show_curve)
-            else:
-                await self._open(whole)
-        except BadInput as error:
-            await self._say({"kind": "error", "text": str(error)})
-
     async def _open(self, text: str) -> None:
         """Open the text of a case file as a design."""
         try:
             document = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            raise BadInput(f"design.toml: got no TOML, expected a case file ({error})") from None
-        piece = await asyncio.to_thread(presets.opened, presets.OWN, document)
-        await self._text({"do": "preset", "name": piece.name, "case": document, "values": piece.values})
+            piece = await asyncio.to_thread(presets.opened, presets.OWN, document, {})
+        except (tomllib.TOMLDecodeError, BadInput) as error:
+            said = str(error).removeprefix("design.toml: ")
+            await self._say({"kind": "error", "text": f"design.toml: {said}"})
+        else:
+            await self._text({"do": "preset", "name": piece.name, "case": document, "values": piece.values})
 
-    async def _show_curve(self, session: Session) -> None:
+    async def _show_curve(self) -> None:
         """Send what a moment alone does to a design that is another one than the last."""
-        if self._curved is not session.mechanics:
-            self._curved = session.mechanics
+        if self._curved is not self.session.mechanics:
+            self._curved = self.session.mechanics
             async with self._lock:
-                curve = await asyncio.to_thread(curved, session)
+                curve = await asyncio.to_thread(curved, self.session)
             await self._say({"kind": "curve", **curve})
 
     async def _weigh(self) -> None:
@@ -253,7 +227,6 @@ class Connection:
             due = max(due + TICK, time.monotonic())
             await asyncio.sleep(due - time.monotonic())
             await self._catch_up()
-            await self._player.over()
             await self._weigh()
             still = time.monotonic() - self._last_picture > STILL
             if still and self.session.mechanics.moving and not self.session.paused:
@@ -269,9 +242,6 @@ class Connection:
             if sent is None:
                 continue
             seq, captured, picture = sent
-            if self._player.on:
-                await self._say({"kind": "skipped", "seq": seq})
-                continue
             self._last_picture = time.monotonic()
             event, more = await self._tracked(picture, captured)
             await self._feed(event, seq, **more)
@@ -280,18 +250,18 @@ class Connection:
         """Track the pictures of a source and send each with its state, no faster than they are shown."""
         shots = source.shots()
         due = time.monotonic()
-        while True:
+        for seq in count():
             shot: Shot | None = await asyncio.to_thread(next, shots, None)
             if shot is None:
                 text = "camera: got no picture, expected one: is it unplugged?"
                 await self._say({"kind": "error", "text": text})
                 await asyncio.Event().wait()  # the page stays open until it is closed
-                continue
-            await self._player.over()
+            assert shot is not None
             await self._room.acquire()
             self._last_picture = time.monotonic()
-            event, more = await self._tracked(shot.picture, shot.time)
-            head = {**await self._state_after(event), **more, "seq": shot.number}
-            await self._socket.send_bytes(protocol.with_picture(head, shot.jpeg))
+            picture, jpeg = shot
+            event, more = await self._tracked(picture, seq / source.rate)
+            head = {**await self._state_after(event), **more, "seq": seq}
+            await self._socket.send_bytes(protocol.with_picture(head, jpeg))
             due = max(due + 1.0 / source.rate, time.monotonic() - 0.5)
             await asyncio.sleep(max(0.0, due - time.monotonic()))

@@ -25,11 +25,10 @@ MOST_WIDTH, MOST_HEIGHT = 1920, 1080
 LEAST_SIDE = 64
 #: Picture: kind, version, seq, width, height, time of capture [ms]; its grey levels follow, row after row.
 HEADER = struct.Struct("<BB2xIHHd")
-#: First byte of a binary message: a picture, or a part of a file, of a session to be replayed or of a design;
-#: the second byte, the version of all messages. A part says whether it is the last before its bytes follow.
+#: First byte of a binary message that is a picture; the second byte, the version of all messages. Both bytes
+#: of one that is the text of a case file, which follows.
 PICTURE, VERSION = 1, 1
-FILES = REPLAY, DESIGN = 2, 3
-PART = struct.Struct("<BB?")
+DESIGN = bytes((3, VERSION))
 
 #: Messages a second that a connection may send, and how many at once; so many of them are kept from poses,
 #: of which only the newest counts: they never use up what a key or a button needs.
@@ -42,7 +41,7 @@ PAGE_EVENTS: Events = {
     **EVENTS,
     "record": {"on": TRUTH},
     "size": {"side_mm": number("a printed side from 10 to 300 mm", 10.0, 300.0, closed="low and high")},
-    **{do: {} for do in ("shown", "save", "live")},
+    **{do: {} for do in ("shown", "save")},
 }
 
 
@@ -77,17 +76,18 @@ def sent_picture(data: bytes) -> tuple[int, float, NDArray[np.uint8]]:
     if not HEADER.size < len(data) <= LARGEST_PICTURE:
         raise BadInput(f"picture: got {len(data)} bytes, expected {HEADER.size} to {LARGEST_PICTURE}")
     kind, version, seq, width, height, time = HEADER.unpack_from(data)
-    if (kind, version) != (PICTURE, VERSION):
-        raise BadInput(f"picture: got kind {kind}, version {version}, expected {PICTURE}, {VERSION}")
-    if not (LEAST_SIDE <= width <= MOST_WIDTH and LEAST_SIDE <= height <= MOST_HEIGHT):
-        raise BadInput(f"picture: got {width} x {height}, expected at most {MOST_WIDTH} x {MOST_HEIGHT}")
+    size, sent = f"{width} x {height}", len(data) - HEADER.size
+    fits = LEAST_SIDE <= width <= MOST_WIDTH and LEAST_SIDE <= height <= MOST_HEIGHT
+    for good, got, expected in (
+        ((kind, version) == (PICTURE, VERSION), f"kind {kind}, version {version}", f"{PICTURE}, {VERSION}"),
+        (fits, size, f"at most {MOST_WIDTH} x {MOST_HEIGHT}"),
+        (sent == width * height, f"{sent} grey levels", size),
+        (0.0 <= time < 1e15, f"time {time}", "milliseconds"),
+    ):
+        if not good:
+            raise BadInput(f"picture: got {got}, expected {expected}")
     levels = np.frombuffer(data, dtype=np.uint8, offset=HEADER.size)
-    if levels.size != width * height:
-        raise BadInput(f"picture: got {levels.size} grey levels, expected {width} x {height}")
-    if not 0.0 <= time < 1e15:
-        raise BadInput(f"picture: got time {time}, expected milliseconds")
-    # a copy, for the tracker's kernels are compiled for arrays that may be written to
-    return seq, time / 1e3, levels.reshape(height, width).copy()
+    return seq, time / 1e3, levels.reshape(height, width)
 
 
 def text(content: Mapping[str, Any]) -> str:

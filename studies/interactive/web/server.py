@@ -2,6 +2,7 @@
 shares it, at one address of the own network."""
 
 import asyncio
+import contextlib
 import hmac
 import ipaddress
 import logging
@@ -9,7 +10,6 @@ import mimetypes
 import secrets
 import socket as sockets
 import threading
-import time
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -29,8 +29,6 @@ from spline_model.reduced import many
 from studies.errors import BadInput
 from studies.interactive.motion import SOLVERS
 from studies.interactive.session import Session
-from studies.interactive.tracking.films import demo_film
-from studies.interactive.tracking.tracker import Tracker
 from studies.interactive.web import protocol
 from studies.interactive.web.connection import Connection
 from studies.interactive.web.protocol import Settings
@@ -73,8 +71,8 @@ class Server:
     def _hosts(self) -> list[str]:
         """Names of this machine with the port; who shares the page adds the one by which its network knows
         it."""
-        share = self.settings.share
-        return [f"{name}:{self.port}" for name in (*HOSTS, *(() if share is None else (share,)))]
+        names = filter(None, (*HOSTS, self.settings.share))
+        return [f"{name}:{self.port}" for name in names]
 
     async def _guarded(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or refuse that of a foreign host (DNS rebinding) or page."""
@@ -125,13 +123,7 @@ class Server:
         self.port = listener.getsockname()[1]
 
     def run(self) -> None:
-        """Serve until interrupted."""
-        asyncio.run(self.serve())
-
-    async def serve(self) -> None:
-        """Serve within a running loop, until `stop`."""
-        if not self._listeners:
-            self.bind()
+        """Serve at the bound addresses until interrupted."""
         self._uvicorn = uvicorn.Server(
             uvicorn.Config(
                 self._guarded,
@@ -147,7 +139,7 @@ class Server:
                 headers=list(protocol.headers(self._hosts).items()),
             )
         )
-        await self._uvicorn.serve(sockets=self._listeners)
+        self._uvicorn.run(sockets=self._listeners)
 
     def __enter__(self) -> Self:
         self.bind()
@@ -171,18 +163,16 @@ class Server:
     async def _socket(self, socket: WebSocket) -> None:
         """One socket: hello with the token, then its connection; any fault closes this socket only."""
         await socket.accept()
-        begin, counted = time.monotonic(), False
+        counted = False
         guest = socket.client is None or socket.client.host not in HOSTS
         try:
             async with asyncio.timeout(PATIENCE):
-                hello = protocol.event(await socket.receive_text())
+                hello = protocol.event((await socket.receive()).get("text") or "")
             if hello["do"] != "hello" or hello.get("version") != protocol.VERSION:
                 raise BadInput("do: got no hello of this version, expected one first")
             if not hmac.compare_digest(str(hello.get("token")).encode(), self.token.encode()):
                 await _close(socket, FORBIDDEN, "token: expected the one of the address that was printed")
-            elif (
-                self.open >= MOST_SOCKETS or guest * self.guests >= MOST_SOCKETS - 1
-            ):  # one place is the owner's
+            elif max(self.open, guest * (self.guests + 1)) >= MOST_SOCKETS:  # one place is the owner's
                 await _close(socket, FULL, "too many pages are open")
             else:
                 counted = True
@@ -192,15 +182,10 @@ class Server:
             await _close(socket, BAD, str(error))
         except TimeoutError:
             await _close(socket, FORBIDDEN, "no hello")
-        except KeyError:
-            await _close(socket, BAD, "message: got bytes, expected a hello")
-        except WebSocketDisconnect:
-            pass
-        except RuntimeError as error:
-            LOG.debug("socket closed while it was written to: %s", error)
+        except (WebSocketDisconnect, RuntimeError) as error:
+            LOG.debug("the page has gone: %s", error)
         finally:
             self.open, self.guests = self.open - counted, self.guests - counted * guest
-            LOG.info("a page was open for %.0f s", time.monotonic() - begin)
 
 
 def _is_private(name: str) -> bool:
@@ -214,10 +199,8 @@ def _is_private(name: str) -> bool:
 
 async def _close(socket: WebSocket, code: int, reason: str) -> None:
     """Close with a reason as long as the protocol takes it."""
-    try:
+    with contextlib.suppress(RuntimeError):  # it is closed already
         await socket.close(code, reason.encode()[:120].decode(errors="ignore"))
-    except RuntimeError:
-        LOG.debug("socket was closed already")
 
 
 def warm_up() -> None:
@@ -233,16 +216,12 @@ def warm_up() -> None:
 
 
 def _enter_kernels() -> None:
-    """Enter what a session calls: a pivot is held, turned, released, caught and squeezed; a
-    picture is tracked."""
+    """Enter what a session calls: a pivot is held, squeezed and turned, and released."""
     session = Session()
     for name in SOLVERS:
         events = (
             {"do": "solver", "name": name},
-            {"do": "drive", "by": "rotation"},
-            {"do": "pose", "pose": [0.0, 0.0, 0.1]},
-            {"do": "drive", "by": "pose"},
-            {"do": "pose", "pose": [0.0, -0.002, 0.0]},
+            {"do": "pose", "pose": [0.0, -0.002, 0.1]},
             {"do": "pause"},
             {"do": "release"},
             {"do": "step"},
@@ -250,4 +229,3 @@ def _enter_kernels() -> None:
         )
         for event in events:
             session.feed({**event, "t": 0.0})
-    Tracker().see(demo_film().picture(0), 0.0)

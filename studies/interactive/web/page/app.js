@@ -57,14 +57,8 @@ function received(message, picture) {
     controls.answered(message.seq);
     return wrong(message.text);
   }
-  if (message.kind === "skipped") return camera.skipped(message.seq);
   if (message.kind === "curve") return curve(message);
   if (message.kind === "case") return files.save("pivot.toml", message.text, "application/toml");
-  if (message.kind === "replayed") {
-    replaying(false);
-    say(message.text);
-    return send({ do: "tick" });
-  }
   if (message.kind === "recording") return recorded(message);
   const bitmap = picture ?? camera.picture(message.seq);
   camera.answered(message.seq);
@@ -76,8 +70,7 @@ function received(message, picture) {
   if (message.seq !== null && message.seq === pointer.seq)
     studio.trips = [...studio.trips.slice(-199), performance.now() - message.seq];
   controls.answered(message.seq);
-  if (message.replay) replaying(true);
-  else keep();
+  keep();
   ring.add(message);
   studio.shown += 1;
   if (ring.live) show(message, studio.picture);
@@ -111,16 +104,11 @@ function curve(message) {
   if (ring.live && studio.state) show(studio.state, studio.picture);
 }
 
-function replaying(on) {
-  at("replay").textContent = on ? "End the replay" : "Replay a file";
-  studio.replaying = on;
-}
-
 let soon = 0;
 function keep() {
   soon ||= setTimeout(() => {
     soon = 0;
-    if (!studio.state.replay) files.keep(studio.state);
+    files.keep(studio.state);
   }, 300);
 }
 
@@ -208,7 +196,6 @@ const actions = {
     if (studio.state) show(studio.state, studio.picture);
   },
   help: () => at("shortcuts").showModal(),
-  replay: () => (studio.replaying ? send({ do: "live" }) : at("file").click()),
   back: () => scrub(ring.place - 5),
   forth: () => scrub(ring.place + 5),
   drive: () => {
@@ -278,7 +265,6 @@ for (const id of [
   "open",
   "live",
   "help",
-  "replay",
   "home",
 ]) {
   at(id).addEventListener("click", actions[id]);
@@ -291,16 +277,11 @@ at("side").addEventListener(
   () => at("side").checkValidity() && send({ do: "size", side_mm: Number(at("side").value) }),
 );
 at("camera").addEventListener("change", () => camera.start(noCamera, at("camera").value));
-for (const [id, kind] of [
-  ["file", files.REPLAY],
-  ["case", files.DESIGN],
-]) {
-  at(id).addEventListener("change", async () => {
-    const file = at(id).files[0];
-    if (file) await files.upload(file, kind, send);
-    at(id).value = "";
-  });
-}
+at("case").addEventListener("change", async () => {
+  const file = at("case").files[0];
+  if (file) await files.upload(file, send);
+  at("case").value = "";
+});
 bindKeys(actions, at("keys"), at("shortcuts"));
 window.addEventListener("error", (event) => studio.errors.push(String(event.message)));
 window.addEventListener("unhandledrejection", (event) => studio.errors.push(String(event.reason)));

@@ -89,10 +89,6 @@ export class Camera {
     return picture ?? null;
   }
 
-  skipped(seq) {
-    this.waiting.delete(seq);
-  }
-
   answered(seq) {
     for (const number of this.waiting.keys()) if (number < seq) this.waiting.delete(number);
   }

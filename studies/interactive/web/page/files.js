@@ -82,17 +82,7 @@ export function kept() {
   }
 }
 
-// A file goes up in parts, so that no message is too long: 2 is a session to be replayed, 3 a design.
-export const REPLAY = 2,
-  DESIGN = 3;
-const PART = 500000;
-export async function upload(file, kind, send) {
-  const data = new Uint8Array(await file.arrayBuffer());
-  for (let start = 0; start === 0 || start < data.length; start += PART) {
-    const piece = data.subarray(start, start + PART),
-      message = new Uint8Array(3 + piece.length);
-    message.set([kind, 1, start + PART >= data.length ? 1 : 0]);
-    message.set(piece, 3);
-    send(message);
-  }
+// A case file goes up as one message, whose first bytes are its kind and version.
+export async function upload(file, send) {
+  send(new Uint8Array([3, 1, ...new Uint8Array(await file.arrayBuffer())]));
 }
