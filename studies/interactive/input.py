@@ -12,7 +12,7 @@ from spline_model.errors import FORMER
 from studies.cases.rules import TRUTH, Rule, choice, number, text, whole
 from studies.errors import BadInput
 from studies.interactive.motion import SOLVERS
-from studies.interactive.presets import STEP, STEPS_A_FRAME, Piece
+from studies.interactive.presets import STEP, STEPS_A_FRAME
 from studies.kinds import Array
 
 #: Grips of the hand: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
@@ -205,27 +205,3 @@ class Hand:
 def _close(pose: Array, other: Array, frames: float) -> bool:
     shift, turn = math.hypot(*(pose[:2] - other[:2])), abs(pose[2] - other[2])
     return shift <= frames * JUMP_SHIFT and turn <= frames * JUMP_TURN
-
-
-class History:
-    """Designs that can be undone, and done again."""
-
-    MOST = 100
-
-    def __init__(self) -> None:
-        self._past, self._future = list[Piece](), list[Piece]()
-
-    def add(self, before: Piece, *, part: bool) -> None:
-        """Keep the design before a change, but for a `part` of a longer one."""
-        if not part:
-            self._past = [*self._past[1 - self.MOST :], before]
-        self._future = []
-
-    def swap(self, now: Piece, *, back: bool) -> Piece | None:
-        """Return the design before, or the one that was undone, in place of the present one; None if there is
-        none."""
-        source, target = (self._past, self._future) if back else (self._future, self._past)
-        if not source:
-            return None
-        target.append(now)
-        return source.pop()

@@ -5,6 +5,7 @@ what `view.shown` makes of the session: plain numbers in SI units and sentences.
 """
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from studies.interactive import presets
 from studies.interactive.design import PRINTED
-from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, History, checked
+from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, checked
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.motion import SOLVERS, SWEEPS, softness, ways
 from studies.interactive.presets import STEP, Piece
@@ -26,6 +27,8 @@ FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
+#: Designs that can be undone.
+MOST_UNDONE = 100
 #: Pace of a motion below which it is said to be slowed down.
 SLOWED = 0.9
 
@@ -52,7 +55,7 @@ class Session:
         """Everything as at the start, with this design and marker 1 at `rest`."""
         self._at_rest, self.mechanics = rest, Mechanics(piece, rest)
         self.critical: float | None = None
-        self.history = History()
+        self._past, self._future = deque[Piece](maxlen=MOST_UNDONE), deque[Piece](maxlen=MOST_UNDONE)
         self.clock, self.hand = Clock(lock_step=lock_step), Hand()
         self.warnings: dict[str, str] = {}
         self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
@@ -257,12 +260,19 @@ class Session:
     def _change(self, piece: Piece, event: dict[str, Any]) -> None:
         known = self.mechanics.piece
         self._rebuild(piece, event["t"])
-        self.history.add(known, part=event.get("part", False))
+        self._future.clear()
+        if not event.get("part", False):  # of a longer change
+            self._past.append(known)
 
     def _undo(self, event: dict[str, Any]) -> None:
         """Back to the design before, or forth to the one that was undone."""
-        piece = self.history.swap(self.mechanics.piece, back=event["do"] == "undo")
-        self._rebuild(piece, event["t"]) if piece else self._warn("empty", f"to {event['do']}")
+        source, target = self._past, self._future
+        if event["do"] == "redo":
+            source, target = target, source
+        if not source:
+            return self._warn("empty", f"to {event['do']}")
+        target.append(self.mechanics.piece)
+        self._rebuild(source.pop(), event["t"])
 
     _redo = _undo
 

@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
 from studies.errors import BadInput
 from studies.interactive.design import PRINTED, SIDE, Placing
@@ -68,21 +67,17 @@ def _marker(axes: Axes, number: int, centre: np.ndarray, words: str, side: int) 
     # a hair wider than the bit, so that no viewer draws a gap between neighbours
     axes.pcolormesh(across, up[::-1], dark, cmap="gray", edgecolors="face", linewidth=0.05)
     half = size / 2 + MARGIN * bit
-    cut = Rectangle((centre[0] - half, centre[1] - half), 2 * half, 2 * half, fill=False, edgecolor="#888888")
-    cut.set(linewidth=0.6, linestyle=(0, (2, 2)))
-    axes.add_patch(cut)
+    corners = centre + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
+    axes.plot(*corners.T, color="#888888", linewidth=0.6, linestyle=(0, (2, 2)))
     axes.text(centre[0] + half + 4, centre[1], words, rotation=90, ha="center", va="center", fontsize=8)
-    axes.plot(
-        [centre[0]] * 2,
-        [centre[1] + side * half, centre[1] + side * (half - 3)],
-        color="black",
-        linewidth=0.8,
+    axes.vlines(
+        centre[0], centre[1] + side * (half - 3), centre[1] + side * half, color="black", linewidth=0.8
     )
 
 
 def _ruler(axes: Axes, x: float, y: float) -> None:
     """A ruler of RULER millimetres."""
-    axes.plot([x, x + RULER], [y, y], color="black", linewidth=0.8)
+    axes.hlines(y, x, x + RULER, color="black", linewidth=0.8)
     marks = np.arange(RULER + 1)
     high = np.select([marks % 10 == 0, marks % 5 == 0], [5.0, 3.5], 2.0)
     axes.vlines(x + marks, y, y + high, color="black", linewidth=0.4)

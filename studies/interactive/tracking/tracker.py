@@ -40,6 +40,8 @@ WHITEST, CLIPPED = 254, 0.1
 #: Distance of the pixels by which a picture is told from others [px], and how many pictures are known: of a
 #: film that is repeated, noise would look like a systematic error.
 COARSE, PICTURES = 7, 5000
+#: Least window of the detector's thresholds [px]: smaller ones find no more markers in three times as long.
+LEAST_WINDOW = 13
 #: Pictures wider than this are found on a quarter of their size, others on half of it.
 WIDE = 1000
 
@@ -68,7 +70,9 @@ class Tracker:
         self.side, self.camera = side, camera
         cv2.setNumThreads(1)
         family = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
-        self._detector = cv2.aruco.ArucoDetector(family)
+        how = cv2.aruco.DetectorParameters()
+        how.adaptiveThreshWinSizeMin = LEAST_WINDOW
+        self._detector = cv2.aruco.ArucoDetector(family, how)
         self._last: _Last | None = None
         self._shrinkage, self._causes = Shrinkage(), Causes()
         self._mirrored, self._tries = False, 0

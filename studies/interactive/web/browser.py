@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import tempfile
 import time
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any, Self
@@ -114,15 +114,13 @@ class Browser:
 
     def wait(self, script: str, patience: float = PATIENCE) -> Any:
         """Return the script's value once it is true; TimeoutError after `patience` seconds."""
-        end, said = time.monotonic() + patience, self.console
+        end = time.monotonic() + patience
         while time.monotonic() < end:
-            try:
+            with suppress(RuntimeError):  # a page that is being loaded lacks objects of the script
                 if value := self.ask(script):
                     return value
-            except RuntimeError as error:  # a page that is being loaded lacks objects of the script
-                said = [str(error)]
             time.sleep(0.03)
-        raise TimeoutError(f"page: {script} did not come true in {patience:g} s; it said {said[:3]}")
+        raise TimeoutError(f"page: {script} did not come true in {patience:g} s; it said {self.console[:3]}")
 
     def key(self, key: str, *, shift: bool = False) -> None:
         """Press and release a key, by the name that events use."""
@@ -140,9 +138,5 @@ class Browser:
 
     def _end(self) -> None:
         """End the process."""
-        self._process.terminate()
-        try:
-            self._process.wait(10.0)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        self._process.kill()
+        self._process.wait()

@@ -129,7 +129,6 @@ class Server:
                 self._guarded,
                 interface="asgi3",
                 log_level="warning",
-                access_log=False,
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=protocol.LARGEST_PICTURE,
