@@ -252,6 +252,7 @@ class ErrorEstimate:
 
     Attributes:
         accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
+        stopped: elements of a finer mesh that round-off stopped early; 0 for none.
         errors: by quantity, the largest over the states in parts of its largest value [1]; of a motion the
             largest over the instants, of the rotations [rad] and of the places in strip lengths [1].
     """
@@ -259,6 +260,7 @@ class ErrorEstimate:
     accuracy: float
     meshes: tuple[int, ...]
     errors: Mapping[str, float]
+    stopped: int = 0
 
     @property
     def elements(self) -> int:

@@ -113,10 +113,10 @@ class System:
         """Rows of the drives that are no props."""
         return np.flatnonzero(self.drives.prop == 0)
 
-    def require_dead(self, what: str) -> None:
-        """Refuse followers."""
+    def require_dead(self, what: str, remedy: str = "`solve` or `release`, which follow it") -> None:
+        """Refuse followers; the message ends with the remedy."""
         if self.followers.place.size:
-            expected = "dead ones, but in statics and the motion by default"
+            expected = f"a fixed direction (follower = false), or {remedy}"
             raise InvalidParameter(what, "a load that follows its body", expected)
 
     def spring_energy(self, poses: Array) -> Array:

@@ -202,7 +202,7 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
     )
     swing = answer.swing
     if len(answer.time):
-        rate = f"{swing.value:.4f} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
+        rate = f"{_frequency(swing.value)} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
         moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * scale
         yield f"frequency {rate}" + (f"; energy balanced to {answer.energy_error:.1e}" if moved else "")
     if math.isfinite(answer.rotation_error):
@@ -220,3 +220,8 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
     if answer.converged and answer.message:
         yield answer.message
     yield tell.ending(answer)
+
+
+def _frequency(value: float) -> str:
+    """Return a frequency [Hz] with four decimals, or with as many digits where these are none."""
+    return f"{value:.4f}" if value >= 1.0 else f"{value:.5g}"
