@@ -84,9 +84,11 @@ def at_limit(path: StaticSolution) -> bool:
     return path.status is not Status.CONVERGED and bool(points) and points[-1].inertia > path.inertia[-1]
 
 
-def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
-    """Return the answer of a discretisation; critical points and early ends only if a finer one has them
-    too."""
+def confirmed(outcome: Outcome, grid: Grid, *, searched: bool = False) -> StaticSolution:
+    """Return the answer of a discretisation; critical points and early ends only if a finer one has them too.
+
+    searched: whether it is the last one of a search, so that to leave the number open is no remedy.
+    """
     answer = outcome(grid)
     if answer.status is Status.CONVERGED and not answer.critical_points:
         return answer
@@ -96,11 +98,12 @@ def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
-    return _cut(answer, better, grid, more)
+    return _cut(answer, better, grid, remedy(grid, searched))
 
 
-def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid) -> StaticSolution:
-    """The part of a path that is resolved, and what is not."""
+def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str) -> StaticSolution:
+    """The part of a path that is resolved, and what is not, with an advice."""
+    more = finer(*grid)
     kept = _agreeing(answer, better)
     known = 0
     while spread(answer.critical_points[: known + 1], better.critical_points[: known + 1]) <= SAME_PLACE:
@@ -116,7 +119,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
         here = _end(answer) if at_limit(answer) else answer.message
         what = f"{here}; with {more[1]} {_end(better)}"
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
-    message = f"not resolved with {named(*grid)}: {what}; {remedy(grid)}"
+    message = f"not resolved with {named(*grid)}: {what}; {advice}"
     return replace(
         answer,
         **answer.rows(slice(kept)),
@@ -126,9 +129,9 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
     )
 
 
-def remedy(grid: Grid) -> str:
+def remedy(grid: Grid, searched: bool = False) -> str:
     """Return the advice for a discretisation and a finer one with different critical points or ends."""
-    return f"leave the number open, or take segments = {2 * grid[0]}"
+    return ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
 
 
 def _place(load_factor: float, rotation: float) -> str:
