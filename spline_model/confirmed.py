@@ -201,12 +201,14 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
+    least = np.finfo(float).eps * max(strip.axial_rigidity / strip.length for strip in design.strips)
+    least = least * np.array([1.0, 1.0, length**2])
     pushed, turned_by = (partial(_exerted, turns=turns) for turns in (False, True))
     return {
         "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
         "stiffness": error(lambda path: path.stiffness, moment),
-        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows]),
+        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows], least),
         "energy": error(lambda path: path.energies.sum(axis=1), moment),
         "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
         "stress": error(lambda path: _stress(design, path), stress),
@@ -221,12 +223,13 @@ def _exerted(path: StaticSolution, *, turns: bool) -> Array:
     return np.asarray(path.reactions[:, kind])
 
 
-def _by_state(stiffness: Array, better: Array) -> float:
+def _by_state(stiffness: Array, better: Array, least: Array) -> float:
     """Largest error of entries of a body's stiffness (S, 3, 3) over the root of the product of their diagonal
-    entries in that state: they fall by powers of ten along a path. nan where there is none."""
+    entries in that state: they fall by powers of ten along a path. nan where none is above its round-off
+    ``least`` (3,)."""
     size = np.abs(np.diagonal(better, axis1=1, axis2=2))
     size = np.sqrt(np.fmax(size, NO_STIFFNESS * np.fmax.reduce(size, axis=0)))
-    size[size == 0.0] = math.nan  # a body that turns freely on a hinge
+    size[size <= np.sqrt(least)] = math.nan  # a body that turns freely on a hinge, or that nothing holds
     shares = np.abs(stiffness - better) / (size[:, :, None] * size[:, None, :])
     return float(np.fmax.reduce(shares, axis=None))
 
