@@ -65,8 +65,8 @@ ROUGH = 4.0
 PATIENCE = 3
 """Trials in a row with a larger error than the best that end a search."""
 FARTHER = 0.1
-"""Part of its way by which a path has to come farther with twice the segments, where it does not reach its
-end with these: strips that roll up come twice as far. Otherwise they will not make it."""
+"""Part of its way by which a path has to come farther with twice the segments to be cut again, unless the
+doublings that are left would reach its end at that pace: strips that roll up come twice as far with each."""
 
 
 @dataclass(kw_only=True)
@@ -267,7 +267,8 @@ def _solve_accurately(
 
 
 def _stuck(solved: Outcome, way: float, trials: tuple[Grid, ...]) -> bool:
-    """Whether the last doubling of the segments brought no path much farther, nor half of what was left."""
+    """Whether the last doubling of the segments brought no path much farther, and those that are left would
+    not bring one to its end at that pace."""
     segments, reached = trials[-1][0], dict.fromkeys((segments for segments, _ in trials), 0.0)
     for trial in trials:
         for grid in (trial, finer(*trial)):
@@ -275,16 +276,15 @@ def _stuck(solved: Outcome, way: float, trials: tuple[Grid, ...]) -> bool:
     if segments // 2 not in reached:
         return False
     before, here = reached[segments // 2], reached[segments]
-    return here - before < min(FARTHER * before, way - here)
+    doublings = math.log2(MOST_SEGMENTS / segments)
+    return here - before < min(FARTHER * before, (way - here) / doublings)
 
 
 def _reach(path: StaticSolution) -> float:
-    """How far a path came: the changes of its load factor [1] and of a driven rotation [rad]; 0 for one that
-    its weight lets not begin."""
-    if not path.settled:
-        return 0.0
+    """How far a path came: the share of its weight that acts, then changes of its load factor [1] and of a
+    driven rotation [rad]."""
     rotation = path.rotation if path.driven else np.zeros(1)
-    return float(np.abs(np.diff(path.load_factor)).sum() + np.abs(np.diff(rotation)).sum())
+    return path.grown + float(np.abs(np.diff(path.load_factor)).sum() + np.abs(np.diff(rotation)).sum())
 
 
 def _with_roots(
