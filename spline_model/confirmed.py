@@ -201,8 +201,8 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
-    least = np.finfo(float).eps * max(strip.axial_rigidity / strip.length for strip in design.strips)
-    least = least * np.array([1.0, 1.0, length**2])
+    stiffest = max(strip.axial_rigidity / strip.length for strip in design.strips)
+    least = np.finfo(float).eps * stiffest * np.array([1.0, 1.0, length**2])
     pushed, turned_by = (partial(_exerted, turns=turns) for turns in (False, True))
     return {
         "trajectory": largest((error(moved, length), error(turned, 1.0))),
