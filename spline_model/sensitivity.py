@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
-from spline_model.discretisation import require_uncut
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -91,7 +90,7 @@ def sensitivities(
     require_mechanism(asked)
     if asked.design.discretisation.control_points is None:
         asked = asked.on(solution.segments, solution.control_points)
-    require_uncut(asked.design.discretisation, "sensitivities")
+    asked.design.require_uncut("sensitivities")
     given = _stepped(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)

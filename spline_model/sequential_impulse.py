@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.content import STEPS_PER_PERIOD
-from spline_model.discretisation import require_uncut
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import (
@@ -83,7 +82,7 @@ class ImpulseSolver:
             require_count("sweeps", sweeps, 1)
             if form == "stable":
                 raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
-        require_uncut(mechanism.design.discretisation, "sequential impulses")
+        mechanism.design.require_uncut("sequential impulses")
         self.motion, soft = set_in_motion(system), form == "stable"
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:

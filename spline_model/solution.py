@@ -118,9 +118,9 @@ class Path:
         Relative deviation of the strips' moments from balance (``continuation.resolution``).
     critical_points : tuple of CriticalPoint
         In the order of the path.
-    settled : bool
-        Whether the path begins under all of its weight and pre-strain; if not, its one state is the shape at
-        rest without them.
+    grown : float, 1
+        Share of weight and pre-strain that finds an equilibrium. Below 1, the only state of the path is the
+        shape at rest without them.
     """
 
     status: Status
@@ -137,7 +137,12 @@ class Path:
     critical_points: tuple[CriticalPoint, ...]
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
-    settled: bool = True
+    grown: float = 1.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether the path begins under all of its weight and pre-strain."""
+        return self.grown == 1.0
 
     @property
     def states(self) -> Array:

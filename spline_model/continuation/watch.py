@@ -38,7 +38,8 @@ class Watch:
 
     by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
     whether the path is to leave its branch at the next bifurcation; place: what a load factor is
-    called; before: what is to be said of what came before the path, and settled: its critical points.
+    called; before: what is to be said of what came before the path, and settled: its critical points;
+    grown: share of weight and pre-strain that the path begins under.
     """
 
     def __init__(self, work: Followed, *, leaves: bool, by_load: bool) -> None:
@@ -46,7 +47,7 @@ class Watch:
         self.place, self.before = Place(system=None if work.grows else work.system), ""
         self.critical: list[CriticalPoint] = []
         self.settled: tuple[CriticalPoint, ...] = ()
-        self.note = ""
+        self.note, self.grown = "", 1.0
         self._finer: Followed | None = None
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
@@ -140,6 +141,7 @@ class Watch:
             critical_points=(*self.settled, *self.critical),
             counters=dict(vars(self.work.counters)),
             history=tuple(history),
+            grown=self.grown,
             **rows,
         )
 

@@ -136,6 +136,9 @@ WORDS |= {
     f"size {FINDS / 'two_bodies_in_series.toml'} --objective stress --free section.thickness_m": (
         "--free: got section.thickness_m, expected one that the design depends on: all strips have"
     ),
+    f"size {FINDS / 'half_circle.toml'} --objective stress --free section.area_m2=4e-3:6e-3": (
+        "arc of strip beam [deg]: got 180.0, expected at most 100 deg for sensitivities: two strips, a body"
+    ),
     f"{LINKAGE} --free section.width_m --travel-mm 1": "--travel-mm: got it for four_bar",
     f"{LINKAGE} --free section.width_m --width-mm 9": "--width-mm: got it for four_bar",
     "size CASE --objective stress": "--objective: got stress, expected centre-shift or",
