@@ -20,7 +20,7 @@ LIMIT, TURN, BIFURCATION = "limit point", "turning point", "bifurcation"
 FINE = 1e-7
 """A critical point is known to this part of the step between the two states, or of the value
 there: closer to it the tangent is singular to no purpose."""
-JUMP = 1e-3
+JUMP = 1e-5
 """Part of the value at the ends of a step that is no zero: a sign that changes in a jump, from one
 path to another one."""
 NO_PART = 1e-6
