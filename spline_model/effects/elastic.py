@@ -86,7 +86,7 @@ class Curl:
         degree can follow it: coefficients (P, TERMS) of f, f^2, ...; zeros where f is 1."""
         if not self.flattening:
             return np.zeros((len(u), TERMS))
-        return curl_terms(self.clamped, self.poisson_ratio, degree, u, self.reach)
+        return curl_terms(self.clamped, self.poisson_ratio, degree, u.tobytes(), self.reach)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -153,7 +153,7 @@ class Bending(StrainEnergy):
     def rigidity_at(self, degree: int, u: Array) -> Array:
         """Rigidity at u (P,) of a strip of that degree [N m^2]."""
         curl = Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0) if self.curl is None else self.curl
-        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u, curl.reach, self.roots)
+        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u.tobytes(), curl.reach, self.roots)
         if self.taper is not None:
             stiffer = stiffer * self.taper.second_moment(u)
         return self.flexural_rigidity * stiffer

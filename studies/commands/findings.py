@@ -232,37 +232,18 @@ def _time(seconds: float) -> str:
     return f"{1e3 * seconds:.2g} ms" if seconds < 0.0995 else f"{seconds:.2g} s"
 
 
-#: Rotations of the table of solids [deg].
-SOLID_AT = (9.0, 45.0, 90.0)
-
-
 def _solids(store: Store) -> Iterator[str]:
-    """Yield the deviations of beam models from solids of the benchmark pivot."""
+    """Yield the deviations of the torque of beam models from that of solids, at the first and the last
+    compared rotation of each design."""
     rows = stored_table(store, "model_form/solid_pivot", "deviations")
-    degrees = np.degrees(rows["rotation_rad"]).round(3)
-    yield markdown_head("model", *(f"torque at {angle:g}°" for angle in SOLID_AT), "trajectory at 90°")
-    for name in dict.fromkeys(rows["model"]):
-        own = rows[rows["model"] == name].set_index(degrees[rows["model"] == name])
-        torques = " | ".join(f"{100.0 * own['error_torque'][angle]:+.2f} %" for angle in SOLID_AT)
-        yield f"| {name} | {torques} | {percent(own['error_trajectory'][SOLID_AT[-1]])} |"
-    sure = rows[rows["model"] == rows["model"].iloc[0]]["uncertainty"].to_numpy()
-    known = dict(zip(degrees.unique(), sure, strict=True))
-    yield "| *uncertainty of the solids* | " + " | ".join(percent(known[a]) for a in SOLID_AT) + " |  |"
-
-
-def _solid_designs(store: Store) -> Iterator[str]:
-    """Yield the deviations of beam models from solids of other designs at the first and last rotation."""
-    rows = stored_table(store, "model_form/solid_designs", "states")
-    designs = list(rows["design"].unique())
+    designs = rows["design"].unique()
     yield markdown_head("model, torque", *designs)
-    for model, own in rows[rows["model"] != "solid"].groupby("model"):
-        cells = [own.loc[own["design"] == each, "error_torque"].to_numpy() for each in designs]
-        ends = (
-            f"{100.0 * each[0]:+.2f} to {100.0 * each[-1]:+.2f} %" if len(each) else "–" for each in cells
-        )
-        yield f"| {model} | " + " | ".join(ends) + " |"
-    unsure = rows.groupby("design")["uncertainty"].max()
-    yield "| *uncertainty of the solids* | " + " | ".join(percent(unsure[each]) for each in designs) + " |"
+    for model, own in rows.groupby("model", sort=False):
+        ends = own.groupby("design")["error_torque"].agg(["first", "last"]).reindex(designs).to_numpy()
+        cells = (f"{100.0 * a:+.2f} to {100.0 * b:+.2f} %" if np.isfinite(a) else "–" for a, b in ends)
+        yield f"| {model} | " + " | ".join(cells) + " |"
+    unsure = rows.groupby("design")["uncertainty"].max()[designs]
+    yield "| *uncertainty of the solids* | " + " | ".join(map(percent, unsure)) + " |"
 
 
 #: Block of README.md or docs/findings.md -> the lines that stand between its marks.
@@ -275,6 +256,5 @@ TABLES: dict[str, Callable[[Store], Iterator[str]]] = {
     "hard cases": _hard_cases,
     "sized": _sized,
     "solids": _solids,
-    "solid designs": _solid_designs,
     "published": _published,
 }

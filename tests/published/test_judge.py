@@ -3,12 +3,14 @@
 import tomllib
 from functools import partial
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import design_of, document_of
 from studies.cases.problem import named_case
 from studies.commands.findings import stored_table
 from studies.published import benchmark
@@ -62,7 +64,12 @@ def test_package_has_inputs_and_every_theory():
     assert inputs["quantities"] == benchmark.QUANTITIES and set(inputs["references"]) == set(
         benchmark.THEORIES
     )
-    assert inputs["pivot"]["strip_length_m"] == pytest.approx(CASE.length, rel=1e-12)
+    assert np.array(inputs["places_at_rest"]["body_clamps_m"]) == pytest.approx(
+        np.array([strip.end for strip in CASE.strips]), rel=1e-12
+    )
+    case = {name: table for name, table in inputs.items() if name in document_of(CASE)}
+    found, sides = design_of("inputs", case), ("length", "width", "thickness", "body_mass", "rotation")
+    assert [getattr(found, name) for name in sides] == pytest.approx([getattr(CASE, n) for n in sides])
     found = {name.removesuffix(".csv"): set(read_csv(content)["quantity"]) for name, content in files.items()}
     assert found == {
         name: set(benchmark.QUANTITIES)
