@@ -127,66 +127,27 @@ def _reactions(answer: Answer) -> pd.DataFrame:
 
 
 Contents = dict[str, bytes]
-#: Size of the drawing of a path or a motion [inch].
-SIZE = 4.6
 
 
-def contents(answer: Answer, formats: tuple[str, ...], drawn: list[int]) -> Contents:
-    """Return the files of the formats by name.
-
-    Args:
-        answer: what is written.
-        formats: names of `FORMATS`.
-        drawn: numbers of the states that a drawing shows.
-    """
-    found: Contents = {}
-    for name in formats:
-        found |= FORMATS[name](answer, drawn)
-    return found
-
-
-def _vtk(answer: Answer, drawn: list[int]) -> Contents:
+def _vtk(answer: Answer) -> Contents:
     from studies.exchange.vtk import vtk  # imported by who asks for it, as all libraries here
 
     return vtk(answer)
 
 
-def _svg(answer: Answer, drawn: list[int]) -> Contents:
-    """Return `<analysis>.svg`, to scale in millimetres: the same bytes for the same answer.
-
-    A path or a motion is one drawing of the chosen states over the shape at rest; modes are a drawing each,
-    over the state that they are about.
-    """
-    from studies.pictures import shapes
-    from studies.record import style
-
-    with style.applied():
-        if isinstance(answer, Spectrum):
-            figure = shapes.modes([(answer, None)], drawn)
-        else:
-            figure = style.page(SIZE, SIZE + 0.9)
-            panel = figure.subplots()
-            handles = shapes.states_over_rest(panel, answer, drawn)
-            shapes.to_scale(panel)
-            what = {"static": "static path", "release": "motion after the release"}[answer.analysis]
-            panel.set_title(f"{shapes.NAMES[answer.model]}: {what}")
-            figure.legend(handles=handles, loc="outside lower center", ncols=3)
-        return {f"{answer.analysis}.svg": style.rendered(figure, "svg")}
-
-
-def _csv(answer: Answer, drawn: list[int]) -> Contents:
+def _csv(answer: Answer) -> Contents:
     return {
         f"{answer.analysis}_{name}.csv": table.to_csv(index=False, lineterminator="\n").encode()
         for name, table in tables(answer).items()
     }
 
 
-def _parquet(answer: Answer, drawn: list[int]) -> Contents:
+def _parquet(answer: Answer) -> Contents:
     made = {name: table.to_parquet(None, index=False) for name, table in tables(answer).items()}
     return {f"{answer.analysis}_{name}.parquet": bytes(content) for name, content in made.items()}
 
 
-def _json(answer: Answer, drawn: list[int]) -> Contents:
+def _json(answer: Answer) -> Contents:
     made = tables(answer)
     plain = {name: table.astype(object).where(table.notna(), None) for name, table in made.items()}
     columns = COLUMNS | {each.key: f"{each.meaning} [{each.unit}]" for each in named(answer.design)}
@@ -204,9 +165,8 @@ def _summary(answer: Answer) -> dict[str, Any]:
 
 
 #: Format -> what writes it.
-FORMATS: dict[str, Callable[[Answer, list[int]], Contents]] = {
+FORMATS: dict[str, Callable[[Answer], Contents]] = {
     "vtk": _vtk,
-    "svg": _svg,
     "csv": _csv,
     "parquet": _parquet,
     "json": _json,

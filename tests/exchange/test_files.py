@@ -17,7 +17,7 @@ from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
-from studies.exchange.formats import COLUMNS, contents, tables
+from studies.exchange.formats import COLUMNS, FORMATS, tables
 from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
 
 SMALL = ["--increments", "2"]
@@ -49,7 +49,7 @@ KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes"
 def test_vtk_reads_back(kind, tmp_path):
     """Every .vtu holds its state, and the .pvd names them in order with their times."""
     found = solved(kind)
-    files = contents(found, ("vtk",), [])
+    files = FORMATS["vtk"](found)
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
     series = ElementTree.parse(tmp_path / f"{found.analysis}.pvd").getroot().findall("Collection/DataSet")
@@ -102,7 +102,7 @@ def test_mesh_holds_what_was_solved(kind):
 def test_tables_agree_in_every_format(kind):
     """CSV, Parquet and JSON hold the same tables, whose columns are all described."""
     found = solved(kind)
-    files, name = contents(found, ("csv", "parquet", "json"), []), found.analysis
+    files, name = FORMATS["csv"](found) | FORMATS["parquet"](found) | FORMATS["json"](found), found.analysis
     document = json.loads(files[f"{name}.json"])
     assert document["model"] == found.model
     for table, frame in tables(found).items():
@@ -119,25 +119,16 @@ def test_tables_agree_in_every_format(kind):
     assert rows["axial_force_N"].to_numpy() == pytest.approx(found.along.axial_force.ravel())
 
 
-@KINDS
-def test_drawing_shows_every_strip_of_every_state(kind):
-    """An SVG has a line in the model's colour for every strip of every state that is drawn."""
-    found, drawn = solved(kind), [0, 1]
-    picture = contents(found, ("svg",), drawn)[f"{found.analysis}.svg"]
-    colour = {"spline": b"#0072b2", "fe": b"#000000"}[found.model]
-    assert picture.count(b"stroke: " + colour) >= len(drawn) * len(found.design.strips)
-
-
 def export(folder: Path, *options: str) -> int:
     return main(["export", "cross_axis_pivot", "--model", "spline", "--out", str(folder), *SMALL, *options])
 
 
 def test_command_writes_what_is_asked_for(tmp_path, capsys):
     """The command writes the formats it is asked for, and names the files in a manifest."""
-    assert export(tmp_path / "new" / "out", "--formats", "vtk,svg,json", "--draw-deg", "0,90") == 0
+    assert export(tmp_path / "new" / "out", "--formats", "vtk,json") == 0
     written = {path.name for path in (tmp_path / "new" / "out").iterdir()}
     expected = {"static.pvd", "static_0000.vtu", "static_0001.vtu", "static_0002.vtu"}
-    assert written == expected | {"static.svg", "static.json", "export.json"}
+    assert written == expected | {"static.json", "export.json"}
     manifest = json.loads((tmp_path / "new" / "out" / "export.json").read_text())
     assert set(manifest["files"]) == written - {"export.json"}
     assert "3 states" in capsys.readouterr().out

@@ -103,7 +103,6 @@ WORDS = {
     "sweep mine.toml --out out --workers 2 --scheduler tcp://127.0.0.1:1": "--workers: got it with",
     "export CASE --out out --duration 0.1": "--duration: got it with --analysis static, expected release",
     "export CASE --out out --analysis modes --increments 2": "--increments: got it with --analysis modes",
-    "export CASE --out out --formats vtk --draw-deg 0": "--draw-deg: got it without",
     "export CASE --out there/out": "cannot be written",
     "export CASE --out there": "expected a folder",
     "export CASE --out .": "expected a folder below",
