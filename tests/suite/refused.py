@@ -3,7 +3,6 @@
 from pathlib import Path
 
 FINDS = Path(__file__).with_name("finds")
-GRAVITY = '[scene]\neffects = ["+gravity"]\n[effects.gravity]\n'
 
 #: Command with its case -> a text of its file, what is written over it, and what the one line must say.
 CHANGED = {
@@ -21,7 +20,6 @@ CHANGED = {
         ("width_m", "area_m2 = 1\nwidth_m", "strip.width_m: got it beside area_m2, expected width_m"),
         ("width_m = 0.01", "# ", "strip.width_m: got no such key, expected a positive number [m]"),
         ("poisson_ratio = 0.29", "", "material.poisson_ratio: got no such key, expected a number abo"),
-        ("[drive]", f"{GRAVITY}acceleration_m_per_s2 = [0, 1]\ndirection_deg = 0\n[drive]", "got it beside"),
         ("[drive]", '[scene]\neffects = ["+strip_drag"]\n[drive]', "strip_drag.rate_per_s: got no such key"),
         ("[drive]", "[effects.gravity]\n[drive]", 'expected [scene] with effects = ["+gravity"] as well'),
     ],
