@@ -5,11 +5,10 @@
     python -m studies export my_pivot.toml --analysis release --duration 0.01 --out swing
 
 vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; csv, parquet: tables
-NAME_states, NAME_strips, NAME_bodies, NAME_reactions; json: the same tables in one file. NAME is the
-analysis: static, release or modes. docs/data.md describes the files; the names of columns and arrays contain
-the units. The folder must be new or empty, or hold a
-former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done; 2: bad
-input; 3: not converged, and then the converged part of a path or a motion is written.
+NAME_states, NAME_strips, NAME_bodies, NAME_reactions. NAME is the analysis: static, release or modes.
+docs/data.md describes the files; the names of columns and arrays contain the units. The folder must be new or
+empty, or hold a former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done;
+2: bad input; 3: not converged, and then the converged part of a path or a motion is written.
 """
 
 import argparse
