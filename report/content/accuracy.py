@@ -130,7 +130,7 @@ def _agreement(results: Results) -> Table:
     """Return the errors of the static path and of the swing, a row a formulation."""
     shown = {"n = 4, as the paper": PAPER, "n = 4, locking-free": free(4)}
     shown |= {f"n = {n}": free(n) for n in COUNTS[1:]} | {"FE, 20 elements": TWENTY}
-    yield ["largest error", *QUANTITIES, "swing frequency", "swing rotation"]
+    yield ["largest error; spline with n control points", *QUANTITIES, "swing frequency", "swing rotation"]
     for label, errors in shown.items():
         own = [percent(errors.value(results, f"error_{name}")) for name in QUANTITIES]
         yield [label, *own, *_swing(results, label)]

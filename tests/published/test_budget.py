@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.commands.findings import stored_table
 from studies.published import solid_pivot
 from studies.published.solids import COMPARED, STIFF, Design
 from studies.record.store import Store
@@ -63,7 +62,7 @@ def test_limits_have_the_uncertainty_of_mesh_and_order():
 def test_stored_solids_are_certain():
     """The committed torque of the benchmark pivot is certain from 9 degrees on, of both laws, from at least
     three meshes and both elements."""
-    meshes, limits = (stored_table(Store(), "model_form/solid_pivot", name) for name in ("meshes", "limits"))
+    meshes, limits = (Store().load_tables("model_form/solid_pivot", name) for name in ("meshes")["limits")]
     count = meshes[meshes["design"] == "benchmark"].groupby(["law", "element"])["fineness"].nunique()
     assert (count.xs("serendipity", level="element") >= 3).all() and count[STIFF, "lagrange"] >= 2
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from studies.commands.findings import stored_table
 from studies.errors import Unanswered
 from studies.published import calculix
 from studies.published.solids import PIVOT, STIFF, Design
@@ -40,9 +39,9 @@ def test_stored_torque_is_that_of_the_stored_solids():
 
     def error(law=STIFF):
         key = ["fineness", "rotation_rad"]
-        solids = stored_table(Store(), "model_form/solid_pivot", "meshes")
+        solids = Store().load_tables("model_form/solid_pivot")["meshes"]
         own = solids.query(f"design == '{PIVOT}' and element == 'serendipity' and law == '{law}'")
-        both = stored_table(Store(), "model_form/calculix", "states").merge(own, on=key)
+        both = Store().load_tables("model_form/calculix")["states").merge(own, on=key]
         assert len(both) == 13 * len(calculix.MESHES)
         return (both["torque_Nm_x"] / both["torque_Nm_y"] - 1.0).abs().max()
 
