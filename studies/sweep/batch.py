@@ -114,11 +114,7 @@ def takes(task: Task) -> bool:
 def _together(
     task: Task, columns: Mapping[str, list[Any]], count: int
 ) -> Iterator[tuple[NDArray[np.int64], Columns, str]]:
-    """Yield rows of designs whose compiled paths are sure, their quantities and the reason of them all.
-
-    Both sides of a plain pivot are mirror images (its strips are alike and only the couple acts, wherever the
-    body's centre lies), so that one is enough.
-    """
+    """Yield rows of designs whose compiled paths are sure, their quantities and the reason of them all."""
     given = _attributes(task, columns, count)
     stout = given["second_moment_of_area"] >= LEAST_COMPLIANCE * given["area"] * given["length"] ** 2
     keys = [key for key in columns if key == INCREMENTS or plan.is_setting(key)]
@@ -194,7 +190,6 @@ def _paths(
         **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
     )
     paths = Paths(
-        rest=0,
         along={
             "rotation": batch.rotation,
             "shift": shift,
@@ -205,7 +200,7 @@ def _paths(
         },
         strips=(strip,),
         effects=tuple(PLAIN),
-        iterations=(1 + task.options["both_sides"]) * batch.iterations,
+        iterations=batch.iterations,
         control_points=batch.control_points.astype(float),
         error=error,
     )
