@@ -167,7 +167,9 @@ FACTS |= {
         formulation="n = 4, consistent stretch",
     ),
     "estimate.largest": ESTIMATES.largest("effectivity", significant),
-    "estimate.cost": Stored("convergence/error_estimate", "timings").largest("time_ratio", significant),
+    "estimate.cost": Stored("cost/codes", "path_ratios", group="spline, by itself").largest(
+        "ratio", significant
+    ),
 }
 HOLDS |= {
     "elements.second-order": Stored("convergence/elements", "findings").found("The torque of the finite"),
