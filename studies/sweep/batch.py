@@ -2,8 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -30,6 +29,8 @@ from studies.sweep.points import CONVERGED, Paths
 LEAST_COMPLIANCE = 1.01e-9
 PLAIN = {"bending", "stretching"}
 INCREMENTS = "drive.increments"
+#: Quantities of a path that the kernel knows, by their keys in an answer.
+KNOWN = ("torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa")
 
 Columns = dict[str, Array]
 _KEYS = {name: key for name, key in plan.PIVOT_KEYS.items() if key is not case_keys.NAMED}
@@ -69,23 +70,6 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
-class _Known(NamedTuple):
-    """What the kernel knows of paths, as an answer has it."""
-
-    torque: Any = 0.0
-    stiffness: Any = 0.0
-    strain_energy: Any = 0.0
-    max_stress: Any = 0.0
-
-    def quantities(self) -> Columns:
-        """Return the quantities that follow from it, by their key."""
-        found: dict[str, Any] = {}
-        for each in QUANTITIES:
-            with suppress(AttributeError):  # of something else
-                found[each.key] = each.of(self)
-        return {key: values for key, values in found.items() if values is not None}
-
-
 def takes(task: Task) -> bool:
     """Whether the kernel may take the designs of a sweep: plain pivots on a static path, by splines.
 
@@ -93,7 +77,7 @@ def takes(task: Task) -> bool:
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS} - plan.TAPER
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
-    if not asked <= set(_Known().quantities()):
+    if not asked <= set(KNOWN):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
@@ -196,7 +180,7 @@ def _paths(
             "defect": batch.moment_defect,
             "inertia": batch.inertia.astype(float),
             "strain": strain[..., None],
-            **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
+            **dict(zip(KNOWN, (batch.torque, batch.stiffness, batch.energy, stress), strict=True)),
         },
         strips=(strip,),
         effects=tuple(PLAIN),
