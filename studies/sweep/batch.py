@@ -23,14 +23,12 @@ from studies.cases.section import of_sides
 from studies.kinds import Array
 from studies.sweep import plan, points
 from studies.sweep.plan import Task
-from studies.sweep.points import CONVERGED, Paths
+from studies.sweep.points import CONVERGED, KNOWN, Paths
 
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
 LEAST_COMPLIANCE = 1.01e-9
 PLAIN = {"bending", "stretching"}
 INCREMENTS = "drive.increments"
-#: Quantities of a path that the kernel knows, by their keys in an answer.
-KNOWN = ("torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa")
 
 Columns = dict[str, Array]
 _KEYS = {name: key for name, key in plan.PIVOT_KEYS.items() if key is not case_keys.NAMED}

@@ -32,6 +32,8 @@ REFUSED, FAILED = "refused", "failed"
 POINT, STATUS, REASON = "point", "status", "reason"
 #: Reason of a static row whose error nothing estimates: of elements, and of a given number of control points.
 NOT_ESTIMATED = "error not estimated"
+#: Quantities of a path that the kernel of many paths knows, by their keys in an answer.
+KNOWN = ("torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa")
 
 
 class _Column(NamedTuple):
