@@ -148,7 +148,8 @@ def _shift(p: Array, ground: float, body: float, inclination: float) -> Array:
     """Return the displacement of the body's point at the crossing, as x + iy [m]."""
     size = _apart(p, ground, body)[0]
     height = np.sqrt((ground + body) ** 2 / size**2 - math.cos(inclination) ** 2)
-    return 1j * (ground + body * np.exp(1j * p)) * (height - math.sin(inclination))
+    shift: Array = 1j * (ground + body * np.exp(1j * p)) * (height - math.sin(inclination))
+    return shift
 
 
 def _linkage_law(problem: Problem, p: Array) -> State:
