@@ -24,7 +24,7 @@ KEYS = {each.key for each in QUANTITIES}
 #: A case with every kind of named part.
 LISTS = ROOT / "tests" / "exchange" / "lists.toml"
 #: Tables that are the same in all studies.
-COMMON = ("findings", "findings_of_time", "counts")
+COMMON = ("findings", "counts")
 #: What a name that ends so says of its unit.
 UNITS = {
     "Nm_per_rad": "N m/rad", "per_s": "1/s", "rad": "rad", "deg": "deg", "Nm": "N m", "Pa": "Pa", "Hz": "Hz",

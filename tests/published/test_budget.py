@@ -62,7 +62,8 @@ def test_limits_have_the_uncertainty_of_mesh_and_order():
 def test_stored_solids_are_certain():
     """The committed torque of the benchmark pivot is certain from 9 degrees on, of both laws, from at least
     three meshes and both elements."""
-    meshes, limits = (Store().load_tables("model_form/solid_pivot", name) for name in ("meshes")["limits")]
+    tables = Store().load_tables("model_form/solid_pivot")
+    meshes, limits = tables["meshes"], tables["limits"]
     count = meshes[meshes["design"] == "benchmark"].groupby(["law", "element"])["fineness"].nunique()
     assert (count.xs("serendipity", level="element") >= 3).all() and count[STIFF, "lagrange"] >= 2
 

@@ -41,7 +41,7 @@ def test_stored_torque_is_that_of_the_stored_solids():
         key = ["fineness", "rotation_rad"]
         solids = Store().load_tables("model_form/solid_pivot")["meshes"]
         own = solids.query(f"design == '{PIVOT}' and element == 'serendipity' and law == '{law}'")
-        both = Store().load_tables("model_form/calculix")["states").merge(own, on=key]
+        both = Store().load_tables("model_form/calculix")["states"].merge(own, on=key)
         assert len(both) == 13 * len(calculix.MESHES)
         return (both["torque_Nm_x"] / both["torque_Nm_y"] - 1.0).abs().max()
 
