@@ -170,6 +170,9 @@ class Discretisation:
 
 
 def require_uncut(grid: Discretisation, name: str) -> None:
-    """Refuse strips in segments where an answer does not know them."""
+    """Check that strips are not cut into segments, for answers that do not support them.
+
+    Raises InvalidParameter, which names the answer, if they are.
+    """
     if grid.segments != 1:
         raise InvalidParameter("segments", grid.segments, f"1 for {name}")
