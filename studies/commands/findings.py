@@ -84,7 +84,7 @@ def _short(store: Store) -> Iterator[str]:
     """Yield the table of the README: a row per formulation, errors in percent."""
     paths = _path_rows(store)
     swings = _rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
-    names = ("path", "torque", "stiffness", "swing frequency")
+    names = ("trajectory", "torque", "stiffness", "vibration frequency")
     static = _uncertainties(store, "convergence/control_points")
     moving = _uncertainties(store, "paper/fig06_release")
     limits = [*(static[each] for each in QUANTITIES), moving["frequency"]]
@@ -112,7 +112,7 @@ def _swings(store: Store) -> Iterator[str]:
     """Yield the table of the swing after the release: shift of the frequency and error of the rotation."""
     rows = _rows_by(stored_table(store, "paper/fig06_release", "summary"), "formulation")
     limits = _uncertainties(store, "paper/fig06_release")
-    yield markdown_head("swing of 0.05 s from 90°", "frequency", "rotation")
+    yield markdown_head("free vibration of 0.05 s from 90°", "frequency", "rotation")
     for name, label in SWINGS.items():
         row = rows[name]
         yield f"| {label} | {row['frequency_shift']:+.1e} | {row['error_rotation_rad']:.1e} rad |"
@@ -188,7 +188,7 @@ GROUPS = ("spline, by itself", "finite elements", "Exudyn", "Exudyn as delivered
 #: Tables of the comparison: their first column, and how an error is written in it.
 TASKS = {
     "path_ratios": ("error of path and torque, 0 to 90°", "{:.0e}"),
-    "swing_ratios": ("error of the rotation, 0.05 s of swing", "{:g} rad"),
+    "swing_ratios": ("error of the rotation, free vibration of 0.05 s", "{:g} rad"),
 }
 
 
