@@ -241,7 +241,16 @@ def integrate(
     inertia_rate: Array,
     torque: Array,
 ) -> None:
-    """Fill states (T, 2), rotation [rad] and its rate [rad/s], from rest at `start` in steps of h [s]."""
+    """Fill states from rest in steps of the classical Runge-Kutta scheme.
+
+    Args:
+        start: rotation of the release [rad].
+        h: step [s].
+        states: (T, 2), rotation [rad] and its rate [rad/s], overwritten.
+        reach: rotation of the end of the fits [rad].
+        inertia, inertia_rate, torque: Chebyshev coefficients (K,) of the moment of inertia [kg m^2], its
+            derivative by the rotation and the torque [N m].
+    """
     p, v = start, 0.0
     states[0, 0], states[0, 1] = p, v
     for row in range(1, states.shape[0]):
