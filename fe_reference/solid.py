@@ -197,7 +197,11 @@ class SolidStrip(Checked):
         return force, np.asarray(band.reshape(shape), dtype=np.float64), product
 
     def strained(self, u: Array) -> tuple[Array, Array]:
-        """Return displacement gradient and Green's strain (E, Q, 3, 3) at the points of elements."""
+        """Return displacement gradient and Green's strain (E, Q, 3, 3) [1] at the points of elements.
+
+        Args:
+            u: displacements of all nodes [m].
+        """
         gradient, own = self.gradients[0], u.reshape(-1)[self.elements]
         slope = np.einsum("eqnj,eni->eqij", gradient, own.reshape(len(own), -1, 3), optimize=True)
         return slope, 0.5 * (slope + slope.swapaxes(2, 3) + slope.swapaxes(2, 3) @ slope)

@@ -114,9 +114,10 @@ class Search(Generic[Found]):
         return tuple(segments * (points - 1) + 1 for segments, points in self.trials)
 
     def judge(self, error: float | None, found: Found | None = None) -> bool:
-        """Take the estimated error of a trial, None of one without an answer; whether it is the best so far.
+        """Take the estimated error of a trial and set the next trial, if there is one.
 
-        Sets the next trial, unless the accuracy is reached or there are no more.
+        error: estimated error [1]; None for a trial without an answer. found: answer of the trial.
+        Returns whether the trial is the best so far. There is no next one if the accuracy is reached.
         """
         self.trials, better = (*self.trials, self.at), False
         if error is not None:
@@ -186,7 +187,7 @@ def search(
 
     attempt: solves with two discretisations and returns the estimated error [1] of the first, and its answer,
     or None if one of them has no answer; most_segments: largest number of segments of a strip; more: of a
-    ``Search``.
+    ``Search``. Returns the finished search, whose ``found`` is the answer with the least estimated error.
     """
     most = MOST_SEGMENTS if most_segments is None else most_segments
     outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most, **more)

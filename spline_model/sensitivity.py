@@ -275,8 +275,10 @@ class Sensitivities:
     counters: dict[str, int]
 
     def largest_stress(self) -> Quantity:
-        """Largest magnitude of the fibre stress (S,) [Pa]; its derivative is that of the point where it
-        is, exact as long as there is one such point."""
+        """Return the largest magnitude of the fibre stress (S,) [Pa].
+
+        Its derivative is that of the point where it is, exact as long as there is one such point.
+        """
         flat = self.fibre_stress.value.reshape(len(self.torque.value), -1)
         by = self.fibre_stress.derivative.reshape(*flat.shape, len(self.parameters))
         rows, where = np.arange(len(flat)), np.abs(flat).argmax(axis=1)

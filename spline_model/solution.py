@@ -146,11 +146,11 @@ class Path:
 
     @property
     def states(self) -> Array:
-        """The unknowns z of all states (S, N)."""
+        """Unknowns z of all states (S, N) [m, rad, N]."""
         return self.unknowns.array
 
     def rows(self, kept: slice) -> dict[str, Any]:
-        """What it has by state, of some of them."""
+        """Return the arrays that it has by state, of some of them."""
         unknowns = self.unknowns
         return {name: getattr(self, name)[kept] for name in BY_STATE} | {
             "unknowns": Later(partial(_some, unknowns, kept))
@@ -190,7 +190,7 @@ class Tabulated:
         read_only(vars(self))
 
     def columns(self) -> dict[str, Array]:
-        """What is one number in every row, by names with units."""
+        """Return the columns of a table: arrays (S,) of one number in every row, by names with units."""
         raise NotImplementedError
 
     def to_frame(self) -> pd.DataFrame:
@@ -265,7 +265,7 @@ class ErrorEstimate:
 
     @property
     def largest(self) -> float:
-        """The largest of the errors, which ``accuracy`` is about."""
+        """Largest of the estimated relative errors [1], which ``accuracy`` is about."""
         return largest(float(getattr(self, name)) for name in ERRORS)
 
     @property

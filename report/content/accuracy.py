@@ -131,7 +131,12 @@ def _agreement(results: Results) -> Table:
     """Return the errors of the static path and of the swing, a row a formulation."""
     shown = {"n = 4, as the paper": PAPER, "n = 4, locking-free": free(4)}
     shown |= {f"n = {n}": free(n) for n in COUNTS[1:]} | {"FE, 20 elements": TWENTY}
-    yield ["largest error; spline with n control points", *QUANTITIES, "swing frequency", "swing rotation"]
+    yield [
+        "largest error; spline with n control points",
+        *QUANTITIES,
+        "vibration frequency",
+        "vibration rotation",
+    ]
     for label, errors in shown.items():
         own = [percent(errors.value(results, f"error_{name}")) for name in QUANTITIES]
         yield [label, *own, *_swing(results, label)]
@@ -188,9 +193,9 @@ CRITERIA = {
     "slenderness": PATHS,
     "geometry": PATHS,
     "buckling": "load or deflection within 5 % of a refined spline, finite elements and publication",
-    "step_size": "rotation within 5 % of the amplitude over 1200 steps or the first swing",
+    "step_size": "rotation within 5 % of the amplitude over 1200 steps or the first period",
     "long_run": "energy within 10⁻⁶ over 100\u202f000 steps",
-    "ratios": "rotation within 5 % of the amplitude over the first swing",
+    "ratios": "rotation within 5 % of the amplitude over the first period",
     "axial_modes": "torque within 5 % of a refined spline",
     "fuzz": "path within 5 % of the same spline with 17 points; energy balance to 10⁻⁸",
     "events": "rotation and energy within 5 %; energy balance",

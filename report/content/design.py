@@ -18,6 +18,8 @@ TASKS = {
     "path": (Stored(CODES, "path_ratios"), forms.decade),
     "swing": (Stored(CODES, "swing_ratios"), unit("rad", 1)),
 }
+#: Task -> its name in the table.
+NAMES = {"path": "path", "swing": "vibration"}
 SIMPLE = ("linear pivot", "pin joint", "four-bar", "beam constraint model")
 SPLINES = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 QUANTITIES = ("trajectory", "torque", "stiffness")
@@ -33,7 +35,7 @@ def _cost(results: Results) -> Table:
             groups: Any = rows.set_index("group")
             spline = rows.iloc[0]
             own = f"{seconds(spline['spline_s'])} ({seconds(spline['spline_solve_s'])})"
-            yield [f"{task}, {form(level)}", own, *(_peer(groups, group) for group in GROUPS)]
+            yield [f"{NAMES[task]}, {form(level)}", own, *(_peer(groups, group) for group in GROUPS)]
 
 
 def _peer(groups: Any, group: str) -> str:

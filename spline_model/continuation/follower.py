@@ -78,7 +78,10 @@ class Follower:
         return known[-1:] if far else known
 
     def try_to(self, aim: float) -> tuple[Newton, str]:
-        """One step to ``aim``, and why it failed; else the follower stands there, or on another branch."""
+        """Make one step to the load factor or arc length ``aim`` [1].
+
+        Returns the last iteration and why it failed; else the follower stands there, or on another branch.
+        """
         predicted, load_factor = self._predict(aim)
         found = self._correct(predicted, load_factor)
         self.history.append(found.norms)
@@ -105,7 +108,10 @@ class Follower:
         return found, reason
 
     def advance(self, target: float) -> str:
-        """Go on to ``target`` and keep its state; returns why it failed, or nothing."""
+        """Go on to the load factor or arc length ``target`` [1] and keep its state.
+
+        Returns why it failed, or nothing.
+        """
         begin = self.at
         step = whole = target - begin
         if len(self.known) > 1 and whole * (begin - self.known[-2][0]) < 0:
@@ -196,7 +202,7 @@ class ArcFollower(Follower):
         self.step = self.first = change / abs(self.here.slope)
 
     def go_on(self) -> str:
-        """One step, in halves where it has to be; returns why it failed, or nothing."""
+        """Make one step, in halves where it has to be; return why it failed, or nothing."""
         while True:
             found, reason = self.try_to(self.at + self.step)
             if not reason:

@@ -131,7 +131,7 @@ class Clock:
 
     @property
     def pace(self) -> float:
-        """Simulated time of the last frames over what they asked for, 1 before there are any."""
+        """Simulated time of the last frames over what they asked for [1], 1 before there are any."""
         asked, done = (sum(each) for each in zip(*self._paces, strict=True)) if self._paces else (0.0, 0.0)
         return done / asked if asked > 0.0 else 1.0
 
@@ -179,7 +179,7 @@ class Hand:
         self._odd: Array | None = None
 
     def add(self, time: float, pose: Array) -> None:
-        """The hand is at `pose`."""
+        """Add the pose (3,) [m, m, rad] of the hand at an instant [s]."""
         self._poses.append((time, pose))
 
     def forget(self) -> None:
@@ -188,7 +188,10 @@ class Hand:
         self._odd = None
 
     def believes(self, time: float, pose: Array) -> bool:
-        """Whether a pose may be taken: as near the last one as a hand moves in that time, or seen twice."""
+        """Return whether a pose (3,) [m, m, rad] at an instant [s] may be taken.
+
+        It may if it is as near the last one as a hand moves in that time, or seen twice.
+        """
         known, self._odd = self._odd, None
         if not self._poses or (known is not None and _close(pose, known, 1.0)):
             return True
@@ -253,8 +256,10 @@ class Readings:
         self._last: deque[Array] = deque(maxlen=MOST)
 
     def take(self, mechanics: Mechanics, pose: Array | None) -> None:
-        """Take the reading of this instant, and its spread to first order, the sum of the independent columns
-        of `pose` (3, k); None where nothing is said of it."""
+        """Take the reading of this instant, and its spread to first order.
+
+        pose: independent columns (3, k) [m, m, rad] whose sum is the spread; None where it is unknown.
+        """
         now = mechanics.snapshot
         if pose is None or now.tangent is None:
             self.sd = self.force_sd = None
@@ -266,7 +271,10 @@ class Readings:
         self._last.append(_reading(now))
 
     def mean(self, now: Snapshot) -> Array:
-        """Return the reading, the mean of those up to this one that agree with it."""
+        """Return the mean force [N], moment [N m] and stiffness [N m/rad] (4,) of readings.
+
+        They are those up to this one that agree with it.
+        """
         if self.force_sd is None:
             return _reading(now)
         last = np.array(self._last)

@@ -94,7 +94,10 @@ def states_of(path: Any, **labels: Any) -> pd.DataFrame:
 
 
 def limit(rows: pd.DataFrame, order: float, *, finest: bool = True) -> Array:
-    """Return what the two finest meshes, or the two before the finest, tend to for an order (S, 3)."""
+    """Return the limits (S, 3) [N m, m, m] of the two finest meshes, or of the two before the finest.
+
+    rows: one per mesh and state; order: of convergence.
+    """
     meshes = list(rows.sort_values("rotation_rad").groupby("fineness"))
     (coarse, before), (fine, after) = meshes[-2:] if finest else meshes[-3:-1]
     ratio = float(str(fine)) / float(str(coarse))

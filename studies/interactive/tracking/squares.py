@@ -117,7 +117,7 @@ class Shrinkage:
         self._since = 0
 
     def taken_out(self, picture: Picture, corners: Array, cells: dict[int, Cells]) -> Array:
-        """Return corners (Q, 4, 2) of dark squares with the offset taken out; cells by the place in Q."""
+        """Return corners (Q, 4, 2) [px] of dark squares without their offset; cells by the place in Q."""
         self._since += bool(cells)
         settled = self._pictures == PICTURES
         looked = {} if settled and self._since < EVERY else cells
