@@ -72,7 +72,12 @@ class Actions:
         self.coupled = np.zeros((0, 7))
 
     def resist(self, y: Array, v: Array, time: float) -> Instant:
-        """Return what resists at coordinates y, velocities v and an instant [s]."""
+        """Return the state of the motion with its resisting forces at an instant.
+
+        Args:
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
+            time: instant [s], which gives the factors of the loads.
+        """
         s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(y, v))
         strain, gravity, power, loss = _act(self.acting, state, time)
         couple(self.coupled, *state, self.written[0])
@@ -166,9 +171,18 @@ def advance(
 ) -> None:
     """Make `steps` steps of the central difference scheme in place: v is half a step behind u.
 
-    v += h a(u, v), u += h v with the `compliance` (rows, 3): 1/mass of free nodes and bodies, else 0; dampers
-    act at the velocities before the step. `led`: where in rows the coordinates are that drives lead. `totals`
-    gathers the work of loads and drives, exactly that of the scheme, and the energy that dampers dissipate.
+        v += h a(u, v), u += h v
+
+    Args:
+        acting: tables of all that acts, and the arrays that are written to.
+        coupled: bodies that are led one way (K, 7), as of `mass.couplings`.
+        led: places in the flattened rows of the coordinates that drives lead (H,).
+        compliance: inverse mass (rows, 3) [1/kg, 1/(kg m^2)] of free nodes and bodies, else 0.
+        state: displacements u (rows, 3) [m, rad] and velocities v (rows, 3) [m/s, rad/s], both changed.
+        totals: work of loads and drives, exactly that of the scheme, and energy that dampers dissipate [J],
+            added to. Dampers act at the velocities before the step.
+        time, step: instant and step h [s].
+        steps: number of steps.
     """
     (_, carried, _, _), dissipative, loads, _, (force, _, _, _), _ = acting
     u, v = state

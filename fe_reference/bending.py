@@ -126,7 +126,9 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
     """Return energy [J], end moments [N m] and their slopes 11, 12, 22 [N m] of an element with two points.
 
     Args:
-        curl: as of `section`. row: of the element, as in `law`. rate: 1 / l0 [1/m].
+        curl: CURL, as of `section`.
+        row: row of the element (10 + 2 TERMS,), as in `law`.
+        rate: 1 / l0 [1/m].
         first, second: turns of its end sections from the chord [rad].
     """
     even, odd = (second - first) * rate, ROOT_3 * (first + second) * rate
@@ -140,7 +142,14 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
 
 @kernel()
 def curve(curl: Array, rigidity: Array, left: Array, reach: Array, moments: Array) -> None:
-    """Write the curvatures [1/m] of the sections of N nodes (N,) in place of their moments (S, N) [N m]."""
+    """Write the curvatures [1/m] of the sections of N nodes (N,) in place of their moments (S, N) [N m].
+
+    Args:
+        curl: CURL, as of `section`.
+        rigidity: of the sections held flat (N,), D [N m^2].
+        left, reach: coefficients of P (N, TERMS) [1] and reach c (N,) of the sections, as of `section`.
+        moments: bending moments (S, N) [N m], overwritten by curvatures [1/m].
+    """
     for n in range(len(rigidity)):
         for k in range(len(moments)):
             moment, last = moments[k, n], math.inf

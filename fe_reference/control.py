@@ -116,7 +116,7 @@ class Control:
 
     @cached_property
     def slope(self) -> Array:
-        """Rate of the held coordinates in p, (H,)."""
+        """Rate of the held coordinates in p, (H,) [m, rad]."""
         rate: Array = (self.values[1] - self.values[0]) / (self.span[1] - self.span[0])
         return rate
 
@@ -126,13 +126,13 @@ class Control:
         return self.watched in self.held[self.slope != 0.0]
 
     def prescribed(self, parameter: float) -> Array:
-        """Return the values of the held coordinates at p, exact at both ends of the span."""
+        """Return the values of the held coordinates at p, (H,) [m, rad], exact at both ends of the span."""
         part = (parameter - self.span[0]) / (self.span[1] - self.span[0])
         value: Array = (1.0 - part) * self.values[0] + part * self.values[1]
         return value
 
     def balance(self, y: Array, parameter: float) -> State:
-        """Return the forces at y and p, by one compiled call."""
+        """Return the forces at coordinates y (size,) [m, rad] and parameter p [1], by one compiled call."""
         share, acts = parameter if self.settling else 1.0, self.share(parameter)
         at = self.structure.evaluate(y, share, load=self.load, acts=acts)
         potential = sum(at.strain) + at.spring + share * at.gravity - acts * at.work
@@ -151,11 +151,15 @@ class Control:
         return -self.growth * force, -self.growth * dead, -self.growth * work, 0.0
 
     def factors(self, balance: State, grain: float = 0.0) -> Factors:
-        """Return the factors of the tangent on the free coordinates; raises `matrix.Singular`."""
+        """Return the factors of the tangent (size, size) [N/m, N, N m] on the free coordinates.
+
+        Raises:
+            Singular: the tangent is singular to round-off. `grain` [1] is as of `Symmetric.factors`.
+        """
         return balance.at.tangent.factors(self.is_held, grain)
 
     def describe(self, parameter: float) -> str:
-        """Return what the parameter stands for, with its value."""
+        """Return the name of the quantity that the parameter stands for, with its value and unit."""
         if self.settling:
             return f"{100.0 * parameter:.6g} % of {self.structure.constant_words}"
         if self.turning and (self.load is None or self.growth == 0.0):

@@ -72,7 +72,14 @@ class DrivenRotation(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """Equal steps [s] of a motion from an instant on [s]; `kept`: a sample is at their end."""
+    """Equal steps of a motion.
+
+    Attributes:
+        time: instant at which they begin [s].
+        step: length of one step [s].
+        steps: their number.
+        kept: whether a sample is at their end.
+    """
 
     time: float
     step: float
@@ -107,6 +114,11 @@ class Span:
         """Return velocities (size,) with the rates of the drives, all others as impulses of these leave them.
 
         The mass of a body is off the point that is led: an impulse there turns it.
+
+        Args:
+            structure: reduced model in whose coordinates the motion is.
+            bodies: lumped masses of its bodies.
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s] before the impulse.
         """
         after = v.copy()
         for at, rate in self.rates.items():

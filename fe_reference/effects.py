@@ -39,7 +39,11 @@ class Gravity(Effect):
 
 @dataclass(frozen=True, kw_only=True)
 class StripDamping(Effect):
-    """Kelvin-Voigt material: stress E (strain + b d strain/dt) with relaxation time b [s] in every strain."""
+    """Kelvin-Voigt material: stress E (strain + b d strain/dt) in every strain.
+
+    Attributes:
+        relaxation_time: b, at least 0 [s].
+    """
 
     relaxation_time: Annotated[float, not_negative, "s"]
 
@@ -155,7 +159,11 @@ class Effects:
         return name in self.named
 
     def require_inertia(self) -> None:
-        """Refuse a scene whose motion is asked for though nothing in it has inertia."""
+        """Check that the effects give a motion inertia.
+
+        Raises:
+            InvalidParameter: a motion is asked for, but nothing in the model has inertia.
+        """
         if not {"strip_inertia", "body_inertia"} & set(self.names):
             raise InvalidParameter("effects", self.names, "strip_inertia or body_inertia for a motion [name]")
 
@@ -174,7 +182,14 @@ class Effects:
     def prescribed(self, bodies: Sequence[str], body: int | None) -> dict[int, tuple[float, History | None]]:
         """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
 
-        Coordinate k of body b stands under 3 b + k. body: where the effects name none; None: the only one.
+        Coordinate k of body b stands under 3 b + k.
+
+        Args:
+            bodies: names of all bodies.
+            body: number of the body where the effects name none; None: the only one.
+
+        Raises:
+            InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
         """
         found: dict[int, tuple[float, History | None]] = {}
         for effect in self.every(Prescribed):
@@ -188,7 +203,11 @@ class Effects:
 
 
 def index_of(bodies: Sequence[str], name: str | None) -> int:
-    """Return the place of a body among the names of all; None means the only one there is."""
+    """Return the place of a body among the names of all; None means the only one there is.
+
+    Raises:
+        InvalidParameter: the name is unknown, or None with several bodies.
+    """
     known = ", ".join(bodies) or "no bodies"
     if len(bodies) != 1 if name is None else name not in bodies:
         raise InvalidParameter("body", name, f"one of {known} [name]")

@@ -107,7 +107,11 @@ def count(name: str, value: Any, minimum: int = 1) -> int:
 
 
 def require_kind(name: str, value: Any, kind: type, expected: str) -> None:
-    """Refuse anything but an object of this kind; one that fills pages is named by its own."""
+    """Check that a value is of a kind; a value whose text is too long is named by its own kind.
+
+    Raises:
+        InvalidParameter: it is of another kind.
+    """
     if not isinstance(value, kind):
         told = value if value is None or isinstance(value, int | float | str | dict) else type(value).__name__
         raise InvalidParameter(name, told, expected)

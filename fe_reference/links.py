@@ -57,7 +57,13 @@ def links_of(model: Model, points: Array, soft: Sequence[tuple[int, int, float]]
 
 @kernel()
 def link_forces(links: Links, u: Array, v: Array, force: Array, curvature: Array) -> Parts:
-    """Add what the links resist with to forces and curvature (rows, 2) at displacements and velocities.
+    """Add the forces of links to forces and curvature at displacements and velocities.
+
+    Args:
+        links: rows, offsets, stiffness and damping of K links.
+        u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
+        force: generalised forces (rows, 3) [N, N m], added to.
+        curvature: second derivatives of the energy by turns (rows, 2) [N m], added to.
 
     Returns:
         Energy of the roots and of all other links [J], and the power that is lost [W].
@@ -103,7 +109,14 @@ def _slopes(links: Links, u: Array) -> Array:
 
 
 def add_links(links: Links, u: Array, constants: Array, whole: Symmetric) -> None:
-    """Add what stiffness or damping (K, 3) of links makes at displacements of all rows to a matrix."""
+    """Add the matrix of stiffness [N/m, N m] or damping [N s/m, N m s] of links to a matrix.
+
+    Args:
+        links: rows, offsets, stiffness and damping of K links.
+        u: displacements of all rows (rows, 3) [m, rad].
+        constants: stiffness or damping (K, 3) in x, y and the turn.
+        whole: matrix (size, size) that is added to.
+    """
     for at, slope, own in zip(whole.pattern.links, _slopes(links, u), constants, strict=True):
         np.add.at(whole.data, at[at >= 0], (slope.T * own @ slope)[at >= 0])
 

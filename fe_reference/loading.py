@@ -54,7 +54,12 @@ class Load(Several):
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedForce(Load):
-    """Force on a body."""
+    """Force on a body.
+
+    Attributes:
+        force: (F_x, F_y) [N].
+        moment: none; the inherited point `at` [m] of the body may be off its centre.
+    """
 
     force: Annotated[Pair, pair, "N"] = field()
     moment: float = field(init=False, default=0.0)
@@ -62,7 +67,12 @@ class AppliedForce(Load):
 
 @dataclass(frozen=True, kw_only=True)
 class AppliedMoment(Load):
-    """Moment on a body."""
+    """Moment on a body.
+
+    Attributes:
+        moment: positive counter-clockwise [N m].
+        force, at, follower: none, for a moment has no point and turns with nothing.
+    """
 
     moment: Annotated[float, finite, "N m"] = field()
     force: Pair = field(init=False, default=(0.0, 0.0))
@@ -93,34 +103,39 @@ class Prescribed(Several):
 
     @property
     def ends(self) -> tuple[float | None, ...]:
-        """Displacement x, y [m] and turn [rad] that the body is led to, None where it is free."""
+        """Displacement x, y [m] and turn [rad] that the body is led to (3,), None where it is free."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)
 class DrivenDisplacement(Prescribed):
-    """Displacement (d_x, d_y) [m] that the centre of a body is led to.
+    """Displacement that the centre of a body is led to.
 
-    None in place of one of them leaves the body free that way.
+    Attributes:
+        displacement: (d_x, d_y) [m]. None in place of one of them leaves the body free that way.
     """
 
     displacement: Annotated[tuple[float | None, float | None], partly, "m"]
 
     @property
     def ends(self) -> tuple[float | None, ...]:
-        """Both displacements."""
+        """Both displacements [m], and None for the free turn."""
         return (*self.displacement, None)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedRotation(Prescribed):
-    """Angle [rad] that a body is turned to, besides the one whose rotation is driven."""
+    """Rotation that a body is led to, besides the body whose rotation is driven.
+
+    Attributes:
+        angle: positive counter-clockwise [rad].
+    """
 
     angle: Annotated[float, finite, "rad"]
 
     @property
     def ends(self) -> tuple[float | None, ...]:
-        """The angle alone."""
+        """None for both free displacements, and the angle [rad]."""
         return None, None, self.angle
 
 
@@ -140,17 +155,20 @@ class Support(Prescribed):
 
     @property
     def ends(self) -> tuple[float | None, ...]:
-        """Zeros where it is fixed."""
+        """Zeros [m, rad] where the body is fixed, None where it is free."""
         return tuple(0.0 if way in self.fixed else None for way in WAYS)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spring(Several):
-    """Spring and damper between the centre of a body, None: the only one, and that of another or, None, the
-    ground.
+    """Spring and damper between the centre of a body and that of another, or the ground.
 
-    In axes of the ground: stiffness (k_x, k_y) [N/m] and damping (c_x, c_y) [N s/m] of the displacements
-    since rest, and those of the turns [N m/rad, N m s/rad]. In full at any load factor.
+    In axes of the ground, of displacements and turns since rest. In full at any load factor.
+
+    Attributes:
+        other: name of the other body; None: the ground.
+        stiffness, damping: of the displacements, (k_x, k_y) [N/m] and (c_x, c_y) [N s/m].
+        rotational_stiffness, rotational_damping: of the turns [N m/rad, N m s/rad].
     """
 
     body: str | None = None

@@ -23,14 +23,25 @@ Histories = tuple[Indices, Array, Array]
 
 
 def pulls_of(rows: Array | Indices, table: Array) -> Pulls:
-    """Return loads on rows (K,) with a table (K, 6), in full."""
+    """Return loads on rows, in full.
+
+    Args:
+        rows: rows (K,) that the loads act on.
+        table: forces [N], moment [N m], offset of the point [m] and whether the force turns with it (K, 6).
+    """
     many = len(rows)
     return np.asarray(rows, dtype=np.int64), np.reshape(table, (many, 6)), np.ones(many), np.zeros((many, 3))
 
 
 @kernel()
 def put_factors(histories: Histories, time: float, out: Array) -> None:
-    """Write the factors of piecewise linear histories at an instant; constant before and after them."""
+    """Write the factors of piecewise linear histories at an instant; constant before and after them.
+
+    Args:
+        histories: begins (K + 1,), instants (H,) [s] and factors (H,) [1].
+        time: instant [s].
+        out: factors of the loads (K,) [1], overwritten.
+    """
     begins, instants, factors = histories
     for i in range(len(out)):
         out[i] = factors[begins[i]]
@@ -41,9 +52,17 @@ def put_factors(histories: Histories, time: float, out: Array) -> None:
 
 @kernel()
 def pull(pulls: Pulls, share: float, u: Array, force: Array, curvature: Array) -> float:
-    """Take a share of the loads from the forces that resist; return the work of all since rest [J].
+    """Subtract a share of the loads from the resisting forces.
 
-    The work is that of loads with a potential. Their stiffness at turns [N m] is added to the curvature.
+    Args:
+        pulls: rows, table, factors and generalised forces of K loads; the last are overwritten.
+        share: part of the loads that acts [1].
+        u: displacements of all rows (rows, 3) [m, rad].
+        force: resisting forces (rows, 3) [N, N m], changed.
+        curvature: second derivatives of the potential by turns (rows, 2) [N m], added to.
+
+    Returns:
+        Work of all loads with a potential since rest [J]: followers have none.
     """
     (rows, table, factors, out), work = pulls, 0.0
     for k in range(len(rows)):
@@ -69,7 +88,12 @@ def pull(pulls: Pulls, share: float, u: Array, force: Array, curvature: Array) -
 
 @kernel()
 def load_power(pulls: Pulls, v: Array) -> float:
-    """Return the power of loads in full, whose forces are known, at the velocities of all rows [W]."""
+    """Return the power of loads in full at the velocities of all rows [W].
+
+    Args:
+        pulls: K loads whose generalised forces (K, 3) [N, N m] are known, by `pull`.
+        v: velocities of all rows (rows, 3) [m/s, rad/s].
+    """
     (rows, _, _, out), power = pulls, 0.0
     for k in range(len(rows)):
         i = rows[k]

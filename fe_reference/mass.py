@@ -50,7 +50,7 @@ class RigidBodies:
     moment_of_inertia: Array
 
     def rows(self, structure: Structure) -> tuple[Array, Array]:
-        """Return mass and moment of inertia of the rows of bodies (rows,), of all others without end."""
+        """Return mass [kg] and moment of inertia [kg m^2] of the rows (rows,): infinite beside bodies."""
         found = np.full((2, len(structure.numbers)), np.inf)
         found[:, structure.nodes : -1] = self.mass, self.moment_of_inertia
         return found[0], found[1]
@@ -61,7 +61,7 @@ class RigidBodies:
         return _block(self.mass[body], arm, self.moment_of_inertia[body])
 
     def diagonal(self, structure: Structure) -> Array:
-        """Return the lumped masses (size,) of a structure that is reduced about these centres."""
+        """Return the lumped masses (size,) [kg, kg m^2] of a structure reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
         return structure.gathered(np.vstack([lumped_nodes(structure), carried, np.zeros(3)]))
 
@@ -151,6 +151,11 @@ def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
 
     With the first moment (X, Y) in place and y free, m y'' + X t'' - Y t'^2 = -f and X y'' + J t'' = -g. With
     x free, -Y stands for X and X for Y.
+
+    Args:
+        coupled: bodies that are led one way (K, 7), as of `couplings`.
+        u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
+        out: resisting forces (rows, 3) [N, N m], changed.
     """
     for k in range(len(coupled)):
         b, free, mass, inertia = int(coupled[k, 0]), int(coupled[k, 1]), coupled[k, 2], coupled[k, 3]

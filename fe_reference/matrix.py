@@ -164,10 +164,14 @@ def _pairs(numbers: Indices) -> tuple[Indices, Indices]:
 
 @dataclass(eq=False)
 class Symmetric:
-    """A symmetric matrix (size, size) on a pattern.
+    """A symmetric matrix (size, size) on a pattern, in the units of its use: stiffness, damping or mass.
 
-    Under loads that follow there are products left (x) right of vectors (R, size) added, which are not
-    symmetric.
+    Under loads that follow there are products left (x) right of vectors added, which are not symmetric.
+
+    Attributes:
+        pattern: where its entries lie.
+        data: entries in the order of the pattern (entries,).
+        left, right: vectors of the added products (R, size).
     """
 
     pattern: Envelope
@@ -181,20 +185,25 @@ class Symmetric:
         return csc_matrix((self.data, p.rows, p.starts), (p.size, p.size))
 
     def times(self, x: Array) -> Array:
-        """Return the product with vectors (..., size)."""
+        """Return the product with vectors (..., size), in the units of matrix times vector."""
         p, out = self.pattern, np.empty(np.shape(x))
         _times(p.starts, p.rows, self.data, np.atleast_2d(x), out.reshape(-1, p.size))
         return out + (x @ self.right.T) @ self.left if len(self.left) else out
 
     def apart(self, one: Array, other: Array) -> float:
-        """Return one.K other less that of the symmetric part."""
+        """Return one.K other less that of the symmetric part, of two vectors (size,): a number."""
         return float((self.left @ one) @ (self.right @ other)) if len(self.left) else 0.0
 
     def factors(self, held: Flags, grain: float = 0.0) -> "Factors":
-        """Return the factors of its rows and columns that are not held (size,); raises Singular.
+        """Return the factors of its rows and columns that are not held.
 
-        Grain: part of its diagonal entry up to which a pivot is taken for zero; 0 on a path, where a
-        stiffness that vanishes at a critical point passes through round-off.
+        Args:
+            held: which coordinates are held (size,).
+            grain: part of its diagonal entry up to which a pivot is taken for zero [1]; 0 on a path, where a
+                stiffness that vanishes at a critical point passes through round-off.
+
+        Raises:
+            Singular: a pivot is zero to round-off.
         """
         p = self.pattern
         low, d = np.empty(int(np.sum(np.arange(p.size) - p.first))), np.empty(p.size)
@@ -207,10 +216,14 @@ class Symmetric:
 
 @dataclass(eq=False)
 class Factors:
-    """Factors of a matrix; negative: the number of its negative eigenvalues, without the held rows.
+    """Factors L D L^T of a matrix without the held rows.
 
-    border: of products left (x) right of vectors (R, size) that are added, right, the solutions for left
-    (R, size) and the inverse of 1 + right.solutions (R, R).
+    Attributes:
+        pattern, held: where the entries of the matrix lie, and which coordinates are held (size,).
+        low, d: entries of L below the diagonal, row by row (entries,), and of D (size,).
+        negative: number of negative eigenvalues.
+        border: of products left (x) right of vectors (R, size) that are added: right, the solutions for left
+            (R, size) and the inverse of 1 + right.solutions (R, R).
     """
 
     pattern: Envelope
@@ -221,7 +234,7 @@ class Factors:
     border: tuple[Array, Array, Array] | None = None
 
     def solve(self, b: Array) -> Array:
-        """Return the solution (..., size) for right sides (..., size), zero at what is held."""
+        """Return the solution (..., size) for right sides (..., size), zero at what is held [1/stiffness]."""
         x = np.where(self.held, 0.0, b)
         _solve(self.pattern.begin, self.pattern.first, self.low, self.d, x.reshape(-1, self.pattern.size))
         if self.border is None:
@@ -230,10 +243,13 @@ class Factors:
         return np.asarray(x - (x @ right.T) @ core.T @ solved)
 
     def bordered(self, left: Array, right: Array) -> "Factors":
-        """Return the factors of the matrix with products of vectors (R, size) added; raises Singular.
+        """Return the factors of the matrix with products of vectors (R, size) added.
 
         The inverse is that of M. A. Woodbury. The determinant is that of this matrix times one of size R;
         `negative` is 1 where it is below zero, for there is no inertia to count.
+
+        Raises:
+            Singular: the matrix with the products is singular to round-off.
         """
         solved = self.solve(left)
         core = np.eye(len(left)) + right @ solved.T

@@ -63,7 +63,7 @@ class Elements:
         )
 
     def table(self, natural: PreStrain) -> Array:
-        """Return the rows of `law`, (E, 10 + 2 TERMS)."""
+        """Return the rows of `law` (E, 10 + 2 TERMS), in SI units."""
         own = [np.full_like(self.length, part) for part in (natural.strain, natural.curvature)]
         rigidities = [self.axial_rigidity, self.flexural_rigidity, self.shear_rigidity]
         known = np.transpose([*self.chord, self.length, *rigidities, *own])

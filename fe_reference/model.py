@@ -178,7 +178,7 @@ class Model:
         return index_of(self.body_names, name)
 
     def prescribed(self, body: int | None) -> dict[int, tuple[float, History | None]]:
-        """Return what drives and supports prescribe, as `Effects.prescribed`."""
+        """Return what drives and supports prescribe [m, rad], as `Effects.prescribed`."""
         return self.effects.prescribed(self.body_names, body)
 
     def strip_index(self, name: str) -> int:

@@ -125,7 +125,8 @@ def natural_frequencies(
     kind = choice("mass", mass, MASSES)
     pivot.effects.require_inertia()
     if structure_of(pivot).loads.follows:
-        raise InvalidParameter("follower", True, "dead loads for modes: flutter is not modelled [1]")
+        expected = "a fixed direction for modes, as flutter is not modelled; `release` follows it [1]"
+        raise InvalidParameter("follower", True, expected)
     if rotation is None and held:
         raise InvalidParameter("held", held, "a driven rotation to hold [1]")
 

@@ -45,7 +45,13 @@ class Scheme:
         self.off = np.flatnonzero((bodies.centre != structure.points).any(axis=1)).tolist()
 
     def start(self, time: float, y: Array, v: Array, held: Flags) -> Instant:
-        """Return an instant with its consistent acceleration, from which what is `held` is led at its v."""
+        """Return an instant with its consistent acceleration.
+
+        Args:
+            time: instant [s].
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
+            held: which coordinates are led at their velocities (size,).
+        """
         self.held, inert = held, (self.mass > 0.0) & ~held
         self.actions.coupled = couplings(self.structure, self.bodies, held)
         self.inverse = np.where(inert, 1.0 / np.where(inert, self.mass, 1.0), 0.0)
@@ -66,7 +72,11 @@ class Scheme:
         return total
 
     def kinetic(self, y: Array, v: Array) -> float:
-        """Return the kinetic energy at coordinates y and velocities v [J]."""
+        """Return the kinetic energy [J].
+
+        Args:
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
+        """
         return 0.5 * float(self.mass @ v**2) + self.swing(y, v, np.ones(len(v), dtype=bool))
 
     def beside(self, at: Instant) -> float:
@@ -91,10 +101,12 @@ class Samples:
     Attributes:
         home: the scheme where no centre of a body is led, in whose coordinates the motion starts.
         time [s], y (size,), v (size,), energy (5,): instants, coordinates, velocities, `ENERGIES`.
+        counters: counted steps and iterations by name. history: residual norms of implicit steps.
         unstable: whether the motion was stopped because its energy blew up.
         message: why and when the motion stopped early ("" if it did not).
         books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
             v.M v over implicit steps.
+        still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
     """
 
     home: Scheme
@@ -117,10 +129,18 @@ class Samples:
         return FLOOR * self.home.structure.moment_unit
 
     def take(self, scheme: Scheme, at: Instant, begun: float) -> bool:
-        """Keep an instant if its energy is sound; otherwise note when it was lost and return False.
+        """Keep an instant if its energy is sound; otherwise note when it was lost.
 
         The gain is measured against the largest energy at stake before this sample. At constant rates drives
-        do the work of what is beside the scheme's energy as well, which was `begun` as the span began.
+        do the work of what is beside the scheme's energy as well.
+
+        Args:
+            scheme: scheme in whose coordinates the instant is.
+            at: the instant.
+            begun: energy beside the scheme's as the span began [J].
+
+        Returns:
+            Whether it was kept.
         """
         work, kinetic = float(self.books[0]) + scheme.beside(at) - begun, scheme.kinetic(at.y, at.v)
         energy = np.array([kinetic, at.strain, at.gravity, work, float(self.books[1])])
@@ -143,7 +163,7 @@ class Samples:
         return True
 
     def gained(self) -> Array:
-        """Return what the samples have gained in the balance of energies, over the energy at stake (T,)."""
+        """Return the gain in the balance of energies over the energy at stake (T,) [1]."""
         balance, at_stake = np.array(self.energy) @ SIGNS, max(self.stake, self.floor)
         gain: Array = (balance - balance[0]) / (at_stake or np.inf)
         return gain
@@ -264,7 +284,7 @@ class Trajectory(Answer):
         return float(np.abs(balance - balance[0]).max()) / scale if scale > 0.0 else 0.0
 
     def columns(self) -> dict[str, Array]:
-        """Return what is one number at every instant, by names with units: the columns of a frame."""
+        """Return the columns of a frame: arrays (T,) of one number at every instant, by names with units."""
         return {
             "time_s": self.time,
             **self.body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),

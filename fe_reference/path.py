@@ -73,8 +73,13 @@ class Path:
     """The states of one path, its critical points and the counted iterations.
 
     Attributes:
+        control: held coordinates and load of the span that is followed.
+        states: states of equilibrium, at their load factors [1].
+        counters: counted increments and iterations by name.
+        failures: residual norms of the iterations of each increment that failed.
         last: the last good state of a path that stopped, at its load factor [1].
         critical: the critical points that were passed.
+        message: why the path stopped ("" if it did not).
     """
 
     control: Control
@@ -86,9 +91,14 @@ class Path:
     last: State = field(init=False)
 
     def begin(self, control: Control, y: Array | None = None) -> None:
-        """Put down the state of equilibrium in which a span begins, in place of the last one.
+        """Store the state of equilibrium in which a span begins, in place of the last one.
 
-        Its coordinates (size,) are those of the last state, or rest, if they are not given.
+        Args:
+            control: held coordinates and load of the span.
+            y: coordinates (size,) [m, rad]; None: those of the last state, or rest.
+
+        Raises:
+            InvalidParameter: the model can move freely.
         """
         last = self.states.pop() if self.states else None
         if y is None:
@@ -121,9 +131,12 @@ class Path:
         self.begin(control, y)
 
     def advance(self, target: float) -> bool:
-        """Go from the last state to `target` in one increment or in halved ones, and keep its end.
+        """Go from the last state to `target` [1] in one increment or in halved ones, and keep its end.
 
         If that is not reached, keep the limit point that is in the way.
+
+        Returns:
+            Whether it was reached.
         """
         reached = self._reach(self.states[-1], target, 0)
         if reached is None:

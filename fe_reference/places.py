@@ -25,21 +25,36 @@ Carried = tuple[Indices, Indices, Array, Flags]
 
 @kernel()
 def turned(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return R (x, y) with the matrix R of a turn."""
+    """Return R (x, y) with the matrix R of a turn.
+
+    Args:
+        angle: turn [rad].
+        x, y: components, of any unit.
+    """
     c, s = math.cos(angle), math.sin(angle)
     return c * x - s * y, s * x + c * y
 
 
 @kernel()
 def swept(angle: float, x: float, y: float) -> tuple[float, float]:
-    """Return (R - 1) (x, y), written with sines: no cancellation at small turns."""
+    """Return (R - 1) (x, y), written with sines: no cancellation at small turns.
+
+    Args:
+        angle: turn of the matrix R [rad].
+        x, y: components, of any unit.
+    """
     sine, less = math.sin(angle), 2.0 * math.sin(0.5 * angle) ** 2
     return -less * x - sine * y, sine * x - less * y
 
 
 @kernel()
 def carry(carried: Carried, u: Array) -> None:
-    """Move the attached nodes with their bodies: exact rigid motion."""
+    """Move the attached nodes with their bodies: exact rigid motion.
+
+    Args:
+        carried: K attached nodes, their carriers and offsets.
+        u: displacements of all rows (rows, 3) [m, rad]; those of attached nodes are overwritten.
+    """
     attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
@@ -51,7 +66,13 @@ def carry(carried: Carried, u: Array) -> None:
 
 @kernel()
 def carry_velocity(carried: Carried, u: Array, v: Array) -> None:
-    """Write the velocities of the attached nodes."""
+    """Write the velocities of the attached nodes.
+
+    Args:
+        carried: K attached nodes, their carriers and offsets.
+        u: displacements of all rows (rows, 3) [m, rad].
+        v: velocities of all rows (rows, 3) [m/s, rad/s]; those of attached nodes are overwritten.
+    """
     attached, carrier, offsets, rigid = carried
     for k in range(len(attached)):
         i, b = attached[k], carrier[k]
@@ -66,7 +87,12 @@ def carry_velocity(carried: Carried, u: Array, v: Array) -> None:
 def gather(carried: Carried, u: Array, force: Array, curvature: Array) -> None:
     """Add the forces on attached nodes to their bodies, about the points of these.
 
-    What the carrying adds to the stiffness of turns [N m] is written beside a zero for what else adds to it.
+    Args:
+        carried: K attached nodes, their carriers and offsets.
+        u: displacements of all rows (rows, 3) [m, rad].
+        force: generalised forces (rows, 3) [N, N m]; those of bodies are added to.
+        curvature: overwritten (rows, 2) [N m]: what the carrying adds to the stiffness of turns, and a zero
+            for what else adds to it.
     """
     attached, carrier, offsets, rigid = carried
     for i in range(len(curvature)):

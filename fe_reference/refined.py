@@ -28,6 +28,8 @@ MOST = 640
 #: Part of its unit below which a quantity is none but round-off, and difference of parameters of the same
 #: increment.
 NOTHING = 1e-9
+#: Estimated error of whole answers up to which a finer mesh that is not complete is stopped by round-off.
+AGREED = 1e-2
 
 
 def finer(model: Model) -> Model:
@@ -53,7 +55,8 @@ def refine(
 
     Returns:
         The answer of the best mesh, the limits (S, ...) of all quantities by name, and the estimate of their
-        errors. If the answer of a mesh is not complete, this answer without limits and estimate.
+        errors. If the answer of a mesh is not complete, this answer without limits and estimate; but if
+        coarser ones are and agree, round-off stopped it, and the best of these is returned.
     """
     positive("accuracy", accuracy, "1")
     known: list[list[Array]] = []
@@ -76,6 +79,8 @@ def refine(
                 return best
         model = finer(model)
         answer = solve(model)
+    if best is not None and best[2].largest <= AGREED:
+        return best[0], best[1], replace(best[2], stopped=model.elements)
     return answer, {}, None
 
 
@@ -83,9 +88,10 @@ def missed(estimate: ErrorEstimate) -> str:
     """Return that an accuracy was not reached, or ""."""
     if estimate.largest <= estimate.accuracy:
         return ""
+    stopped = f"round-off stops {estimate.stopped} elements; " if estimate.stopped else ""
     return (
         f"accuracy {estimate.accuracy:.3g} is not reached with up to {estimate.elements} elements: the "
-        f"estimated error is {estimate.largest:.2g}; ask for no less"
+        f"estimated error is {estimate.largest:.2g}; {stopped}ask for no less"
     )
 
 

@@ -17,10 +17,13 @@ Rates = tuple[float, float, float, float]
 
 
 def respond(control: Control, found: State) -> State:
-    """Return an equilibrium with its response: one solve for each drive and for the load; raises Singular.
+    """Return an equilibrium with its response: one solve for each drive and for the load.
 
     What is left of the residual is carried to the drives by the same solve: to first order what they exert
     is that of exact equilibrium, free of the round-off in the last elements' forces.
+
+    Raises:
+        Singular: the tangent is singular to round-off.
     """
     factors, tangent, held = found.factors, found.at.tangent, control.held
     if factors is None:

@@ -72,7 +72,17 @@ def _motions(structure: Structure, part: int, point: Array) -> Array:
 
 
 def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
-    """Refuse a state in which coordinates that are held for want of anything else bear something."""
+    """Check that coordinates that are held for want of anything else bear no force.
+
+    Args:
+        structure: reduced model.
+        props: these coordinates (P,).
+        residual: forces of the state (size,) [N, N m].
+        load: factors of the loads (K,) [1], or None.
+
+    Raises:
+        NothingHolds: such a coordinate bears a force.
+    """
     rest = np.zeros(structure.size)
     largest = 0.0 if load is None else float(np.abs(structure.load_force(rest, load)[0]).max())
     for k in props:

@@ -92,7 +92,17 @@ class Run(Checked):
         return [every] * whole + ([rest] if rest else [])
 
     def require_affordable(self, model: Model, step: float, steps: int, size: int) -> None:
-        """Refuse too many steps, or too many numbers to keep of so many coordinates."""
+        """Check the cost of a motion.
+
+        Args:
+            model: the model that moves.
+            step: time step [s].
+            steps: number of steps.
+            size: number of coordinates.
+
+        Raises:
+            InvalidParameter: too many steps, or too many numbers to keep of so many coordinates.
+        """
         if steps > self.most_steps:
             raise InvalidParameter(
                 "duration",

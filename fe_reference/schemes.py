@@ -178,6 +178,11 @@ class Implicit(Scheme):
         """Return an instant as any scheme does, without the factors of what was held before.
 
         Round-off of forces does not accelerate: light nodes of a short strip would be strip lengths away.
+
+        Args:
+            time: instant [s].
+            y, v: coordinates (size,) [m, rad] and velocities (size,) [m/s, rad/s].
+            held: which coordinates are led at their velocities (size,).
         """
         self._factor = None
         now = super().start(time, y, v, held)

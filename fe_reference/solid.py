@@ -27,15 +27,14 @@ from skfem.quadrature import get_quadrature
 from .arrays import Array, Indices
 from .errors import Checked, choice, count, not_negative, positive, within
 
-#: Elements with 20 and 27 nodes, and the order of the quadrature that each of them needs.
-ELEMENTS = {"serendipity": (ElementHexS2, 3), "lagrange": (ElementHex2, 5)}
+#: Elements with 20 and 27 nodes, the order of the quadrature that each of them needs, and how many times more
+#: elements a strip has along its length than over its thickness. With full integration it needs more of them.
+ELEMENTS = {"serendipity": (ElementHexS2, 3, 8), "lagrange": (ElementHex2, 5, 16)}
 LAWS = ("st-venant-kirchhoff", "neo-hookean")
 #: Pairs of axes of the six strains, shear strains twice.
 FIRST, SECOND = np.array([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]).T
 #: Clustering of nodes towards clamps and edges: lengths differ by a factor of about 6.
 CLUSTERED = 0.76
-#: Elements that are assembled at once.
-CHUNK = 400
 
 
 def _lines(cells: int, low: float, high: float) -> Array:
@@ -43,12 +42,6 @@ def _lines(cells: int, low: float, high: float) -> Array:
     s = np.linspace(0.0, 1.0, cells + 1)
     curved = 0.5 * (1.0 - np.cos(np.pi * s))
     return np.asarray(low + (high - low) * ((1.0 - CLUSTERED) * s + CLUSTERED * curved))
-
-
-def _cells(name: str, value: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return the elements in three directions, or refuse a direction without one."""
-    along, thick, wide = value
-    return count(name, along), count(name, thick), count(name, wide)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,8 +59,9 @@ class SolidStrip(Checked):
         One of `LAWS`.
     element : str
         "serendipity" (20 nodes, 2 x 2 x 2 points) or "lagrange" (27 nodes, 3 x 3 x 3 points).
-    mesh : tuple of int
-        Elements along the length, the thickness and half of the width.
+    fineness : int, default 4
+        Elements over the thickness and over half of the width. The length has 8 times as many, of 27 nodes 16
+        times.
     support : float, m, default 0
         Side of the blocks of the same material that carry the ends, as in a pivot cut from one block. The
         far faces of the blocks are rigid. 0: the ends of the strip are rigid faces.
@@ -75,7 +69,7 @@ class SolidStrip(Checked):
     Raises
     ------
     InvalidParameter
-        An unknown law or element, sides that are not positive, or an empty mesh.
+        An unknown law or element, sides that are not positive, or a fineness below 1.
 
     References
     ----------
@@ -83,10 +77,11 @@ class SolidStrip(Checked):
 
     Examples
     --------
-    >>> SolidStrip(
-    ...     length=0.03, width=8e-3, thickness=1e-3, youngs_modulus=114e9, poisson_ratio=0.34, mesh=(6, 1, 1)
-    ... ).mesh
-    (6, 1, 1)
+    >>> strip = SolidStrip(
+    ...     length=0.03, width=8e-3, thickness=1e-3, youngs_modulus=114e9, poisson_ratio=0.34, fineness=1
+    ... )
+    >>> strip.elements.shape
+    (8, 60)
     """
 
     length: Annotated[float, positive, "m"]
@@ -96,16 +91,17 @@ class SolidStrip(Checked):
     poisson_ratio: Annotated[float, within, -1.0, 0.5, "1"]
     law: Annotated[str, choice, LAWS] = LAWS[0]
     element: Annotated[str, choice, tuple(ELEMENTS)] = "serendipity"
-    mesh: Annotated[tuple[int, int, int], _cells] = (32, 4, 3)
+    fineness: Annotated[int, count] = 4
     support: Annotated[float, not_negative, "m"] = 0.0
 
     @cached_property
     def _basis(self) -> Basis:
-        kind, order = ELEMENTS[self.element]
+        kind, order, longer = ELEMENTS[self.element]
         element, half = kind(), 0.5 * self.thickness
-        x, y = self._supported(_lines(self.mesh[0], 0.0, self.length)), _lines(self.mesh[1], -half, half)
-        z = _lines(2 * self.mesh[2], -0.5 * self.width, 0.5 * self.width)[self.mesh[2] :]
-        mesh = MeshHex.init_tensor(x, self._supported(y), z)
+        x = self._supported(_lines(longer * self.fineness, 0.0, self.length))
+        y = self._supported(_lines(self.fineness, -half, half))
+        z = _lines(2 * self.fineness, -0.5 * self.width, 0.5 * self.width)[self.fineness :]
+        mesh = MeshHex.init_tensor(x, y, z)
         along, across, _ = mesh.p[:, mesh.t].mean(axis=1)
         empty = (along > 0.0) & (along < self.length) & (np.abs(across) > half)
         mesh = mesh.remove_elements(np.flatnonzero(empty))
@@ -113,7 +109,7 @@ class SolidStrip(Checked):
 
     def _supported(self, lines: Array) -> Array:
         """Return mesh lines with those of the blocks on both sides, which are clustered towards the strip."""
-        cells = self.mesh[1] + 1 if self.support else 0
+        cells = self.fineness + 1 if self.support else 0
         beyond = self.support * (np.arange(1, cells + 1) / max(cells, 1)) ** 2
         return np.concatenate([lines[0] - beyond[::-1], lines, lines[-1] + beyond])
 
@@ -193,29 +189,28 @@ class SolidStrip(Checked):
         """
         entries, used, height = self._band
         force, product = np.zeros(u.size), np.zeros_like(moves)
-        matrices = np.empty((len(self.elements), self.elements.shape[1] ** 2))
-        for begin in range(0, len(self.elements), CHUNK):
-            chunk = slice(begin, begin + CHUNK)
-            own = self.elements[chunk]
-            local, stiffness = self._chunk(chunk, u)
-            np.add.at(force, own, local)
-            np.add.at(product, own, stiffness @ moves[own])
-            matrices[chunk] = stiffness.reshape(len(own), -1)
+        forces, stiffness = self._of_elements(u)
+        np.add.at(force, self.elements, forces)
+        np.add.at(product, self.elements, stiffness @ moves[self.elements])
         shape = height, len(self.free)
-        band = np.bincount(entries, matrices.reshape(-1)[used], minlength=shape[0] * shape[1])
+        band = np.bincount(entries, stiffness.reshape(-1)[used], minlength=shape[0] * shape[1])
         return force, np.asarray(band.reshape(shape), dtype=np.float64), product
 
-    def strained(self, u: Array, chunk: slice = slice(None)) -> tuple[Array, Array]:
-        """Return displacement gradient and Green's strain (E, Q, 3, 3) at the points of elements."""
-        gradient, own = self.gradients[0][chunk], u.reshape(-1)[self.elements[chunk]]
+    def strained(self, u: Array) -> tuple[Array, Array]:
+        """Return displacement gradient and Green's strain (E, Q, 3, 3) [1] at the points of elements.
+
+        Args:
+            u: displacements of all nodes [m].
+        """
+        gradient, own = self.gradients[0], u.reshape(-1)[self.elements]
         slope = np.einsum("eqnj,eni->eqij", gradient, own.reshape(len(own), -1, 3), optimize=True)
         return slope, 0.5 * (slope + slope.swapaxes(2, 3) + slope.swapaxes(2, 3) @ slope)
 
-    def _chunk(self, chunk: slice, u: Array) -> tuple[Array, Array]:
-        """Return forces (E, 3 n) and stiffness (E, 3 n, 3 n) of elements."""
-        gradient, volume = (each[chunk] for each in self.gradients)
+    def _of_elements(self, u: Array) -> tuple[Array, Array]:
+        """Return forces (E, 3 n) and stiffness (E, 3 n, 3 n) of the elements."""
+        gradient, volume = self.gradients
         elements, points, nodes, _ = gradient.shape
-        slope, strain = self.strained(u, chunk)
+        slope, strain = self.strained(u)
         stress, moduli = self._stress(strain)
         deformed = np.eye(3) + slope
         rates: Array = np.empty((elements, points, 6, nodes, 3))

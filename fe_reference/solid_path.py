@@ -84,7 +84,7 @@ def solve_solids(
     Examples
     --------
     >>> strip = SolidStrip(
-    ...     length=0.03, width=8e-3, thickness=1e-3, youngs_modulus=114e9, poisson_ratio=0.34, mesh=(6, 1, 1)
+    ...     length=0.03, width=8e-3, thickness=1e-3, youngs_modulus=114e9, poisson_ratio=0.34, fineness=1
     ... )
     >>> path = solve_solids(strip, [((0.0, 0.0), (0.03, 0.0))], [0.01], centre=(0.03, 0.0))
     >>> bool(path.torque[0] > 0.0)
@@ -105,13 +105,9 @@ def solve_solids(
         states.append((moment, *state[:2], max(strains)))
         if min(abs(rotation - other) for other in at) > APART:
             at, known = [*at, rotation][-4:], [*known, state][-4:]
-    torque, x, y, strain = np.array(states).T
-    return SolidPath(
-        rotation=np.array(turns),
-        torque=torque,
-        centre=np.stack([x, y], axis=1) + np.asarray(centre),
-        largest_strain=strain,
-    )
+    torque, *moved, strain = np.array(states).T
+    places = np.transpose(moved) + np.asarray(centre)
+    return SolidPath(rotation=np.array(turns), torque=torque, centre=places, largest_strain=strain)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +130,7 @@ class _Body:
     def equilibrium(self, state: Array, rotation: float) -> tuple[Array, float]:
         """Return state and torque at a rotation, from a guess."""
         strip, coordinates = self.strip, 3 * self.strip.tip
-        why, axes = f"no equilibrium in {ITERATIONS} iterations", self.axes[:, None]
+        axes = self.axes[:, None]
         for _ in range(ITERATIONS):
             turned = np.exp(1j * state[2]) * self.arms / axes
             rates = np.stack(np.broadcast_arrays(1.0 / axes, 1j / axes, 1j * turned), axis=2)
@@ -142,8 +138,7 @@ class _Body:
             moves[:, coordinates], moves[:, coordinates + 1] = rates.real, rates.imag
             try:
                 parts = list(map(self._condensed, self.strips(state), moves, -turned))
-            except LinAlgError:
-                why = "the stiffness is not positive"
+            except LinAlgError:  # the stiffness is not positive
                 break
             force, stiffness = (np.sum([each[k] for each in parts], axis=0) for k in range(2))
             change = np.array([0.0, 0.0, rotation - state[2]])
@@ -156,7 +151,7 @@ class _Body:
                 u[strip.tip, 0], u[strip.tip, 1] = each.real, each.imag
             if np.abs(state[3:] - before[3:]).max() < CORRECTION * strip.thickness:
                 return state, torque
-        raise ConvergenceError(f"solids at {math.degrees(rotation):.4g} deg: {why}; use smaller steps")
+        raise ConvergenceError(f"solids at {math.degrees(rotation):.4g} deg: not stable; use smaller steps")
 
     def _condensed(self, u: Array, moves: Array, bend: Any) -> tuple[Array, Array, Array]:
         """Return force (3,) and stiffness (3, 3) of a strip on the pose, and the answers of the interior

@@ -73,8 +73,15 @@ class Stopwatch:
 
 
 class Answer:
-    """Common part of solutions and trajectories: status, places of bodies (S, 3) [m, m, rad], columns of a
-    table."""
+    """Common part of solutions and trajectories.
+
+    Attributes:
+        status: whether the whole of it was reached.
+        message: why it ended early ("" if it did not).
+        bodies: places x, y and turn of each body by its name (S, 3) [m, m, rad].
+        history: residual norms of iterations.
+        estimate: estimated error, if it was asked for.
+    """
 
     status: Status
     message: str
@@ -112,12 +119,12 @@ class Answer:
         return _only(self.bodies)[:, :2]
 
     def columns(self) -> dict[str, Array]:
-        """Return what is one number in every state, by names with units."""
+        """Return the columns of a table: arrays (S,) of one number in every state, by names with units."""
         raise NotImplementedError
 
     @staticmethod
     def body_columns(bodies: Mapping[str, Array], names: tuple[str, ...]) -> dict[str, Array]:
-        """Return the columns of arrays (S, 3) of bodies, named after them if there are many."""
+        """Return the columns (S,) [m, rad] of arrays (S, 3) of bodies, named after them if there are many."""
         many = len(bodies) > 1
         return {
             f"{body}_{name}" if many else name: values[:, k]
@@ -223,15 +230,19 @@ class StaticSolution(Answer):
         return replace(self, **{name: first(getattr(self, name)) for name in arrays | {"bodies", "tips"}})
 
     def body_stiffness(self, body: str | None = None) -> Array:
-        """Return the stiffness (S, 3, 3) of a body's x, y and turn, on the finest mesh: `body_stiffness`.
+        """Return the stiffness (S, 3, 3) [N/m, N, N m] of a body's x, y and turn, on the finest mesh.
 
-        body: its name; None: the driven one, or the only one.
+        Args:
+            body: its name; None: the driven one, or the only one.
+
+        Raises:
+            InvalidParameter: there is no such body.
         """
         led = self.driven if self.led else None
         return body_stiffness(self.model, self.states, self.load_factor, body or self.driven, driven=led)
 
     def columns(self) -> dict[str, Array]:
-        """Return what is one number in every state, by names with units: the columns of a frame."""
+        """Return the columns of a frame: arrays (S,) of one number in every state, by names with units."""
         return {
             "load_factor": self.load_factor,
             **self.body_columns(self.bodies, ("x_m", "y_m", "rotation_rad")),
@@ -252,6 +263,7 @@ class ErrorEstimate:
 
     Attributes:
         accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
+        stopped: elements of a finer mesh that round-off stopped early; 0 for none.
         errors: by quantity, the largest over the states in parts of its largest value [1]; of a motion the
             largest over the instants, of the rotations [rad] and of the places in strip lengths [1].
     """
@@ -259,6 +271,7 @@ class ErrorEstimate:
     accuracy: float
     meshes: tuple[int, ...]
     errors: Mapping[str, float]
+    stopped: int = 0
 
     @property
     def elements(self) -> int:
@@ -267,7 +280,7 @@ class ErrorEstimate:
 
     @property
     def largest(self) -> float:
-        """The largest of the errors."""
+        """The largest of the estimated relative errors [1]."""
         return max(self.errors.values())
 
 

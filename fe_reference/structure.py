@@ -136,7 +136,7 @@ class Structure:
         return Envelope(self.element_numbers, bodies, links, self.size)
 
     def bodies(self, y: Array) -> Array:
-        """Return what coordinates or velocities (..., size) have of the bodies (..., B, 3)."""
+        """Return the part of the bodies (..., B, 3) of coordinates [m, rad] or velocities (..., size)."""
         return y[..., self.first_body :].reshape(*y.shape[:-1], -1, 3)
 
     def _weight(self) -> Pulls:
@@ -178,7 +178,7 @@ class Structure:
         return slice(self.first_body + 3 * body, self.first_body + 3 * body + 3)
 
     def extent(self, change: Array) -> float:
-        """Return the largest component of a change of the coordinates, in strip lengths and rad."""
+        """Return the largest component of a change of the coordinates (size,), in strip lengths and rad."""
         return float(np.abs(self.measure * change).max(initial=0.0))
 
     def flags(self, chosen: Sequence[int] | Indices) -> Flags:
@@ -186,11 +186,11 @@ class Structure:
         return np.isin(np.arange(self.size), chosen)
 
     def gathered(self, rows: Array) -> Array:
-        """Return in the order of the coordinates (size,) what rows (rows, 3) have."""
+        """Return the values of rows (rows, 3), of any unit, in the order of the coordinates (size,)."""
         return rows.ravel()[self.coordinates]
 
     def spread(self, y: Array) -> Array:
-        """Return what coordinates or velocities (size,) have in rows (rows, 3), 0 where they follow."""
+        """Return coordinates [m, rad] or velocities (size,) in rows (rows, 3), 0 where they follow."""
         full = np.zeros(3 * len(self.numbers))
         full[self.coordinates] = y
         return full.reshape(-1, 3)
@@ -257,7 +257,12 @@ class Structure:
         )
 
     def reduced_matrix(self, matrices: Array, u: Array) -> Symmetric:
-        """Assemble element matrices (E, 8, 8) at displacements of all rows as P^T K P: see `assemble`."""
+        """Return element matrices (E, 8, 8) [N/m, N, N m] assembled as P^T K P (size, size).
+
+        Args:
+            matrices: element matrices, of stiffness or damping. See `assemble`.
+            u: displacements of all rows (rows, 3) [m, rad].
+        """
         whole = self.pattern.zero()
         assemble(matrices, self.ends, self.carried, u, self.pattern.places, whole.data)
         return whole
@@ -286,9 +291,19 @@ class Structure:
 def potential(
     tables: Tables, share: float, asked: int, u: Array, still: Array, written: Written, curvature: Array
 ) -> tuple[Energies, float, float]:
-    """Write forces and curvature; return energies of the strips, of springs and of the full weight.
+    """Write forces and curvature at displacements.
 
-    still (rows, 3): velocities of zero.
+    Args:
+        tables: rows of the elements, attached nodes, weights and links.
+        share: part of the weight and of natural strains that acts [1].
+        asked: FORCES, MATERIAL or TANGENT, as of `law.elements`.
+        u: displacements of all rows (rows, 3) [m, rad].
+        still: velocities of zero (rows, 3).
+        written: arrays that `law.elements` writes.
+        curvature: second derivatives by turns (rows, 2) [N m], overwritten.
+
+    Returns:
+        Energies of the strips, of springs and of the full weight [J].
     """
     given, carried, weights, links = tables
     bending, axial, shear = elements(given, share, asked, u, written)

@@ -2,7 +2,8 @@
 
     python -m report.build [--allow-stale] [-o FILE]
 
-No number is typed in the text: all come from results/, tests/gates.toml, the case files and the versions.
+No number is typed in the text: all come from results/, tests/gates.toml, tests/claims.toml, the case files
+and the versions.
 The file is the same byte by byte as long as these are. Exit code 0: done; 2: a result is missing or stale, or
 no longer supports a sentence, which one line names; the PDF that was there before then stays.
 """

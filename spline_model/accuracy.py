@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,9 @@ ROUGH = 4.0
 """Growth of the error with more control points of a segment that is round-off."""
 PATIENCE = 3
 """Trials in a row with a larger error than the best that end a search."""
+FARTHER = 0.1
+"""Part of its way by which a path has to come farther with twice the segments to be cut again, unless the
+doublings that are left would reach its end at that pace: strips that roll up come twice as far with each."""
 
 
 @dataclass(kw_only=True)
@@ -74,12 +77,14 @@ class Search(Generic[Found]):
     is the first trial; most_segments: into how many a strip may be cut. at: the next trial, or the last one
     when it has ``ended``; trials: those that were made. error: the least estimated one [1], inf where no
     trial had an answer, of the one that was ``best``; found: its answer; worse: trials with a larger error
-    since then.
+    since then. stuck: whether more segments than those of the trials will not help either, where none had an
+    answer.
     """
 
     accuracy: float
     grid: Discretisation
     most_segments: int
+    stuck: Callable[[tuple[Grid, ...]], bool] = lambda trials: False
     error: float = math.inf
     found: Found | None = None
     ended: bool = False
@@ -109,9 +114,10 @@ class Search(Generic[Found]):
         return tuple(segments * (points - 1) + 1 for segments, points in self.trials)
 
     def judge(self, error: float | None, found: Found | None = None) -> bool:
-        """Take the estimated error of a trial, None of one without an answer; whether it is the best so far.
+        """Take the estimated error of a trial and set the next trial, if there is one.
 
-        Sets the next trial, unless the accuracy is reached or there are no more.
+        error: estimated error [1]; None for a trial without an answer. found: answer of the trial.
+        Returns whether the trial is the best so far. There is no next one if the accuracy is reached.
         """
         self.trials, better = (*self.trials, self.at), False
         if error is not None:
@@ -131,7 +137,7 @@ class Search(Generic[Found]):
             most = points
         if points < most and not (far and may_cut):
             self.at = segments, min(expected, most)
-        elif may_cut:
+        elif may_cut and (self.levels or not self.stuck(self.trials)):
             self.at, self.levels = (2 * segments, FIRST), []
         return self.at != self.trials[-1]
 
@@ -175,14 +181,16 @@ def search(
     accuracy: float,
     attempt: Callable[[Grid, Grid], tuple[float, Found] | None],
     most_segments: int | None = None,
+    **more: Any,
 ) -> Search[Found]:
     """Raise the control points, from those of ``grid`` on, until the estimate is below ``accuracy`` [1].
 
     attempt: solves with two discretisations and returns the estimated error [1] of the first, and its answer,
-    or None if one of them has no answer; most_segments: largest number of segments of a strip.
+    or None if one of them has no answer; most_segments: largest number of segments of a strip; more: of a
+    ``Search``. Returns the finished search, whose ``found`` is the answer with the least estimated error.
     """
     most = MOST_SEGMENTS if most_segments is None else most_segments
-    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most)
+    outcome: Search[Found] = Search(accuracy=accuracy, grid=grid, most_segments=most, **more)
     while not outcome.ended:
         tried = attempt(outcome.at, finer(*outcome.at))
         outcome.judge(*((None,) if tried is None else tried))
@@ -195,12 +203,14 @@ def answered(
     solve: Callable[[Grid, Progress | None, bool], StaticSolution],
     progress: Progress | None,
     increments: int,
+    way: float,
     check: bool = True,
 ) -> StaticSolution:
     """Return the path with the control points that an accuracy [1] needs; without one, those of the design.
 
     solve: returns the answer of a discretisation, given the progress of its increments, and whether section
-    forces are by balance (as if paths with several numbers are compared). check: whether critical points and
+    forces are by balance (as if paths with several numbers are compared). way: length of the path that is
+    asked for, as of ``_reach``. check: whether critical points and
     early ends of the design's own control points are compared with those of more.
     """
     chosen, grid = wanted(accuracy, design), design.discretisation
@@ -214,14 +224,14 @@ def answered(
 
     if chosen is None:
         return confirmed(outcome, own)
-    solution = _solve_accurately(design, chosen, outcome, DOUBTFUL if accuracy is None else None)
+    solution = _solve_accurately(design, chosen, outcome, way, DOUBTFUL if accuracy is None else None)
     if progress is not None:
         progress(increments, increments)
     return solution
 
 
 def _solve_accurately(
-    design: Design, accuracy: float, solved: Outcome, least: float | None
+    design: Design, accuracy: float, solved: Outcome, way: float, least: float | None
 ) -> StaticSolution:
     """The path with as many control points as the accuracy takes.
 
@@ -230,9 +240,10 @@ def _solve_accurately(
     tells it else. A path that stops at the same thing with any number is compared up to there and returned
     with its reason. Where no two numbers lead to the same end, it is not resolved.
     """
-    outcome = search(design.discretisation, accuracy, partial(_attempt, design, solved))
+    attempt, stuck = partial(_attempt, design, solved), partial(_stuck, solved, way)
+    outcome = search(design.discretisation, accuracy, attempt, stuck=stuck)
     if outcome.found is None:
-        return confirmed(solved, outcome.trials[-1])
+        return confirmed(solved, outcome.trials[-1], searched=True)
     answer, errors = outcome.found
     if not answer.settled:
         return answer
@@ -254,6 +265,27 @@ def _solve_accurately(
     if failed and answer.status is Status.CONVERGED:
         answer = replace(answer, status=Status.NOT_CONVERGED, message=message)
     return replace(answer, estimate=estimate)
+
+
+def _stuck(solved: Outcome, way: float, trials: tuple[Grid, ...]) -> bool:
+    """Whether the last doubling of the segments brought no path much farther, and those that are left would
+    not bring one to its end at that pace."""
+    segments, reached = trials[-1][0], dict.fromkeys((segments for segments, _ in trials), 0.0)
+    for trial in trials:
+        for grid in (trial, finer(*trial)):
+            reached[grid[0]] = max(reached[grid[0]], _reach(solved(grid)))
+    if segments // 2 not in reached:
+        return False
+    before, here = reached[segments // 2], reached[segments]
+    doublings = math.log2(MOST_SEGMENTS / segments)
+    return here - before < min(FARTHER * before, (way - here) / doublings)
+
+
+def _reach(path: StaticSolution) -> float:
+    """How far a path came: the share of its weight that acts, then changes of its load factor [1] and of a
+    driven rotation [rad]."""
+    rotation = path.rotation if path.driven else np.zeros(1)
+    return path.grown + float(np.abs(np.diff(path.load_factor)).sum() + np.abs(np.diff(rotation)).sum())
 
 
 def _with_roots(

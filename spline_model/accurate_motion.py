@@ -7,6 +7,9 @@ control points are worth. Free motions take the leapfrog, whose steps resolve th
 a release excites. With damping, loads, drives or massless strips the energy-consistent scheme converges
 with its order only where its steps are longer than these waves, and again where they resolve them; in
 between the error stays where it is. The differences of runs show that, where a local error does not.
+
+A drive that changes its speed at once sends waves through the strips that few control points do not carry:
+errors fall slowly with their number, and two more often err alike. The companion has half as many more there.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from numpy.typing import NDArray
 from spline_model.compile import compile_scene
 from spline_model.discretisation import motion_penalty_stiffness
 from spline_model.effects import DrivenRotation
+from spline_model.effects.boundary import Driven
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.modes import linear_modes
@@ -38,6 +42,12 @@ MORE = 2
 """Control points more, for the estimate and from one trial to the next."""
 MOST = 14
 """Control points at which the search ends: each two more halve the explicit step and double its work."""
+MOST_DRIVEN, HIGHEST = 18, 24
+"""The same where a drive changes its speed: such motions have no explicit steps, and need more of them; and
+the most of a companion there, as round-off stops motions from 27 on."""
+JUMP = 2.0
+"""What half as many control points more count there: 3 for errors that fall with their number, 1 for those
+that fall fast."""
 INSTANTS = 32
 """Instants a period of the swing at rest at which runs are compared: a step of the coarsest lies between."""
 FINE = 4
@@ -74,6 +84,16 @@ class Task:
     def length(self) -> float:
         """Length of the longest strip [m], in which displacements count."""
         return max(strip.length for strip in self.mechanism.design.strips)
+
+    @cached_property
+    def jumps(self) -> bool:
+        """Whether velocities jump in the motion, as a drive changes its speed or catches a body."""
+        drives = [*self.mechanism.released().of(Driven), *([] if self.drive is None else [self.drive])]
+        return any(_changes_speed(each) for each in drives)
+
+    def finer(self, n: int) -> int:
+        """Control points of the companion of a motion with n of them."""
+        return max(n + MORE, min(math.ceil(1.5 * n), HIGHEST)) if self.jumps else n + MORE
 
     @cached_property
     def frequency(self) -> float:
@@ -120,17 +140,18 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
     strip.
 
     Control points are raised from those of the mechanism on, and the penalty stiffness with them. The
-    estimate is the correction that the order of the scheme and two control points more suggest, and how far
+    estimate is the correction that the order of the scheme and more control points suggest, and how far
     the runs depart from that order. An accuracy that is not reached is the status NOT_CONVERGED of the best
     motion.
     """
     instants, every = _comparison(task, records)
     n = task.mechanism.design.discretisation.points
     runs = _Runs(task, instants, explicit=task.critical(n) > 0.0)
+    most, part = (MOST_DRIVEN, JUMP) if task.jumps else (MOST, 1.0)
     while True:
         fineness = runs.resolve(n, accuracy)
         fine, correction, doubt = runs.solved(n, fineness)
-        by_points = runs.coarser(n + MORE, fineness) - runs.coarser(n, fineness)
+        by_points = part * (runs.coarser(task.finer(n), fineness) - runs.coarser(n, fineness))
         estimate = MotionEstimate(
             accuracy=accuracy,
             rotation=_largest(correction + by_points) + doubt,
@@ -141,9 +162,15 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
         )
         # a motion that stops may go on with more control points; one whose steps do not converge does not
         stuck = SHARE * accuracy < estimate.time < math.inf
-        if estimate.rotation <= accuracy or stuck or n + MORE > MOST:
+        if estimate.rotation <= accuracy or stuck or n + MORE > most:
             return _answer(fine, estimate, every)
         n += MORE
+
+
+def _changes_speed(drive: Driven) -> bool:
+    """Return whether a drive moves a body by a history, which is linear between its times, or catches it."""
+    factors = {factor for _, factor in drive.history or ()}
+    return drive.held[0] > 0.0 or (drive.moves and len(factors) > 1)
 
 
 def _comparison(task: Task, records: int | None) -> tuple[int, int]:

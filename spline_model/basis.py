@@ -46,15 +46,18 @@ class Bezier:
         return self.control_points - 1
 
     def evaluate(self, u: Array, derivative: int = 0) -> Array:
-        """Values of the derivative of each polynomial, shape (len(u), control_points)."""
+        """Return the derivative of each polynomial at u (P,) [1], shape (P, control_points)."""
         return _bernstein(self.control_points, derivative, np.asarray(u, dtype=float).tobytes())
 
     def areas(self, u: Array, power: int = 0) -> Array:
-        """Integrals of u^power times the polynomials from 0 to u, (len(u), control_points)."""
+        """Return the integrals [1] of u^power times the polynomials from 0 to u (P,), (P, control_points)."""
         return _areas(self.control_points, power, np.asarray(u, dtype=float).tobytes())
 
     def gauss_rule(self, points: int) -> tuple[Array, Array]:
-        """Points and weights of Gauss and Legendre, exact for polynomials of degree 2 * points - 1."""
+        """Return points (points,) in 0 to 1 and weights (points,) [1] of Gauss and Legendre.
+
+        The rule is exact for polynomials of degree 2 * points - 1.
+        """
         nodes, weights = gauss_legendre(points)
         return (nodes + 1.0) / 2.0, weights / 2.0
 

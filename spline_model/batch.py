@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from spline_model.accuracy import Search, wanted
 from spline_model.batch_paths import Batch, Many
 from spline_model.confirmed import finer, relative
-from spline_model.discretisation import Described, Discretisation, require_uncut
+from spline_model.discretisation import Described, Discretisation
 from spline_model.errors import InvalidParameter, require_choice, require_count
 from spline_model.legs import LOADS_FIRST, ORDERS
 from spline_model.mechanism import Mechanism
@@ -94,7 +94,7 @@ def solve_many(
     require_count("increments", increments, 1)
     require_choice("order", order, ORDERS)
     base, given = _given(designs, values, Discretisation(**described), np.size(rotation))
-    require_uncut(base.design.discretisation, "batches")
+    base.design.require_uncut("batches")
     count = len(given.ends)
     turned = np.broadcast_to(one_each("rotation", rotation, count), (count,))
     many = Many(

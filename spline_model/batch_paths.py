@@ -88,7 +88,7 @@ class Batch:
 
     @property
     def converged(self) -> NDArray[np.bool_]:
-        """Designs whose path reached its end, (D,)."""
+        """Whether the path of each design reached its end, (D,) of bool [1]."""
         return np.asarray(self.states == self.rotation.shape[-1])
 
     @property
@@ -99,7 +99,11 @@ class Batch:
         return np.asarray(np.fmax.reduce(list(self.errors.values())) <= self.accuracy)
 
     def take(self, other: Batch, rows: NDArray[np.int64], errors: Mapping[str, Array]) -> None:
-        """Take over the answers of some designs from another batch, with their errors (R,)."""
+        """Take over the answers of some designs from another batch.
+
+        other: batch of these R designs, in their order; rows: their numbers in this batch (R,); errors: their
+        estimated relative errors by quantity (R,) [1].
+        """
         for name in (*SOLVED, "control_points"):
             getattr(self, name)[rows] = getattr(other, name)[rows]
         for name, each in errors.items():
@@ -133,7 +137,7 @@ class Many:
     workers: int
 
     def solve(self, batch: Batch, rows: NDArray[np.int64]) -> None:
-        """Solve some of the designs with the control points of a batch, and write them into it."""
+        """Solve the designs of the numbers ``rows`` (R,) and write them into a batch in SI units."""
         base = self.base.on(1, int(batch.control_points[0]))
         model, place = _model(base, self.body, self.first), self._place
         split, small = model.strips.split, (self.given.compliance[rows] < LEAST_COMPLIANCE).any(axis=1)
@@ -169,7 +173,7 @@ class Many:
         )
 
     def empty(self, control_points: int, accuracy: float | None) -> Batch:
-        """A batch of which nothing is solved yet."""
+        """Return a batch of D designs of which none is solved yet; accuracy: what it is asked for [1]."""
         designs = len(self.turned)
         paths = np.linspace(0.0, self.turned, self.increments + 1, axis=1)
         by_state = ("torque", "stiffness", "energy", "strain", "moment_defect")

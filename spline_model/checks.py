@@ -46,5 +46,6 @@ def left_the_branch(unit: Array, previous: Array, predicted: Array, corrected: A
     step = float(np.linalg.norm((predicted[q] - previous[q]) / unit))
     correction = float(np.linalg.norm((corrected[q] - predicted[q]) / unit))
     if correction > max(LARGEST_CORRECTION * step, SMALLEST_CORRECTION):
-        return f"the solution lies {correction / step:.2g} steps from the predicted one"
+        apart = f"{correction / step:.2g} steps" if step > 0.0 else "away"
+        return f"the solution lies {apart} from the predicted one"
     return ""

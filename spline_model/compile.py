@@ -110,17 +110,17 @@ class System:
 
     @property
     def prescribed(self) -> NDArray[np.int64]:
-        """Rows of the drives that are no props."""
+        """Rows (K,) of the drives that are no props, by their number among the constraints."""
         return np.flatnonzero(self.drives.prop == 0)
 
-    def require_dead(self, what: str) -> None:
-        """Refuse followers."""
+    def require_dead(self, what: str, remedy: str = "`solve` or `release`, which follow it") -> None:
+        """Refuse followers; the message ends with the remedy."""
         if self.followers.place.size:
-            expected = "dead ones, but in statics and the motion by default"
+            expected = f"a fixed direction (follower = false), or {remedy}"
             raise InvalidParameter(what, "a load that follows its body", expected)
 
     def spring_energy(self, poses: Array) -> Array:
-        """Energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
+        """Return the energy of the springs (...) at poses (..., 3 B) of all bodies [J]."""
         moved = poses - self.rest[self.layout.poses]
         force = moved @ self.springs if self.springs.size else 0.0 * moved
         return np.asarray(0.5 * (force * moved).sum(axis=-1))
@@ -137,7 +137,7 @@ class System:
         )
 
     def once(self, name: str, make: Callable[[System], Any]) -> Any:
-        """What ``make`` makes of the system, kept with it under a name."""
+        """Return what ``make`` makes of the system, kept with it under a name."""
         if name not in self._made:
             self._made[name] = make(self)
         return self._made[name]
@@ -199,7 +199,7 @@ class System:
 
     @cached_property
     def rest(self) -> Array:
-        """z at rest, shape (layout.size,)."""
+        """Unknowns z at rest [m, rad, N], shape (layout.size,)."""
         rest = np.zeros(self.layout.size)
         for strip in self.scene.strips:
             rest[self.layout.strip(strip.name)] = strip.control_points.ravel()

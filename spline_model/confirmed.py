@@ -84,9 +84,11 @@ def at_limit(path: StaticSolution) -> bool:
     return path.status is not Status.CONVERGED and bool(points) and points[-1].inertia > path.inertia[-1]
 
 
-def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
-    """Return the answer of a discretisation; critical points and early ends only if a finer one has them
-    too."""
+def confirmed(outcome: Outcome, grid: Grid, *, searched: bool = False) -> StaticSolution:
+    """Return the answer of a discretisation; critical points and early ends only if a finer one has them too.
+
+    searched: whether it is the last one of a search, so that to leave the number open is no remedy.
+    """
     answer = outcome(grid)
     if answer.status is Status.CONVERGED and not answer.critical_points:
         return answer
@@ -96,11 +98,12 @@ def confirmed(outcome: Outcome, grid: Grid) -> StaticSolution:
         apart = spread(answer.critical_points, better.critical_points)
         told = f"{named(*more)} have it within {max(apart, LEAST):.0e}"
         return replace(answer, message=f"{answer.message} ({told})" if answer.message else "")
-    return _cut(answer, better, grid, more)
+    return _cut(answer, better, grid, remedy(grid, searched))
 
 
-def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid) -> StaticSolution:
-    """The part of a path that is resolved, and what is not."""
+def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, advice: str) -> StaticSolution:
+    """The part of a path that is resolved, and what is not, with an advice."""
+    more = finer(*grid)
     kept = _agreeing(answer, better)
     known = 0
     while spread(answer.critical_points[: known + 1], better.critical_points[: known + 1]) <= SAME_PLACE:
@@ -116,7 +119,7 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
         here = _end(answer) if at_limit(answer) else answer.message
         what = f"{here}; with {more[1]} {_end(better)}"
     whole = kept == len(answer.work) and answer.status is Status.CONVERGED
-    message = f"not resolved with {named(*grid)}: {what}; {remedy(grid)}"
+    message = f"not resolved with {named(*grid)}: {what}; {advice}"
     return replace(
         answer,
         **answer.rows(slice(kept)),
@@ -126,9 +129,9 @@ def _cut(answer: StaticSolution, better: StaticSolution, grid: Grid, more: Grid)
     )
 
 
-def remedy(grid: Grid) -> str:
+def remedy(grid: Grid, searched: bool = False) -> str:
     """Return the advice for a discretisation and a finer one with different critical points or ends."""
-    return f"leave the number open, or take segments = {2 * grid[0]}"
+    return ("" if searched else "leave the number open, or ") + f"take segments = {2 * grid[0]}"
 
 
 def _place(load_factor: float, rotation: float) -> str:
@@ -198,12 +201,14 @@ def distances(design: Design, answer: StaticSolution, better: StaticSolution) ->
         return float(relative((mine - right)[None], right[None], np.array([unit]))[0])
 
     forces = error(lambda path: np.stack((path.axial_force, path.shear_force), axis=1), moment / length)
+    stiffest = max(strip.axial_rigidity / strip.length for strip in design.strips)
+    least = np.finfo(float).eps * stiffest * np.array([1.0, 1.0, length**2])
     pushed, turned_by = (partial(_exerted, turns=turns) for turns in (False, True))
     return {
         "trajectory": largest((error(moved, length), error(turned, 1.0))),
         "torque": error(lambda path: path.torque, moment),
         "stiffness": error(lambda path: path.stiffness, moment),
-        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows]),
+        "body_stiffness": _by_state(answer.own_stiffness[rows], better.own_stiffness[rows], least),
         "energy": error(lambda path: path.energies.sum(axis=1), moment),
         "section_forces": largest((error(lambda path: path.bending_moment, moment), forces)),
         "stress": error(lambda path: _stress(design, path), stress),
@@ -218,12 +223,13 @@ def _exerted(path: StaticSolution, *, turns: bool) -> Array:
     return np.asarray(path.reactions[:, kind])
 
 
-def _by_state(stiffness: Array, better: Array) -> float:
+def _by_state(stiffness: Array, better: Array, least: Array) -> float:
     """Largest error of entries of a body's stiffness (S, 3, 3) over the root of the product of their diagonal
-    entries in that state: they fall by powers of ten along a path. nan where there is none."""
+    entries in that state: they fall by powers of ten along a path. nan where none is above its round-off
+    ``least`` (3,)."""
     size = np.abs(np.diagonal(better, axis1=1, axis2=2))
     size = np.sqrt(np.fmax(size, NO_STIFFNESS * np.fmax.reduce(size, axis=0)))
-    size[size == 0.0] = math.nan  # a body that turns freely on a hinge
+    size[size <= np.sqrt(least)] = math.nan  # a body that turns freely on a hinge, or that nothing holds
     shares = np.abs(stiffness - better) / (size[:, :, None] * size[:, None, :])
     return float(np.fmax.reduce(shares, axis=None))
 

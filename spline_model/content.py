@@ -4,7 +4,8 @@ Of the modes that carry energy at the start each wants steps enough. A companion
 where the scene is undamped and free and the steps are not much longer than explicit ones it is the leapfrog,
 whose steps resolve all, so that the difference is the error of time steps and control points together. Else
 it has the motion's own integrator and step, and shows the error of the control points; a second one of a
-quarter of the step shows the error of the steps, and the estimate is the sum.
+quarter of the step shows the error of the steps, and the estimate is the sum. Where a drive changes its speed
+the companion has half as many control points more.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import MORE, Task
+from spline_model.accurate_motion import JUMP, MORE, Task
 from spline_model.basis import SlideModes
 from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
@@ -221,7 +222,8 @@ def _companions(task: Task, motion: Trajectory, spacing: float) -> Iterator[list
         yield [(points + MORE, leapfrog.NAME, spacing / math.ceil(spacing / longest), 1.0)]
     if own != leapfrog.NAME:
         part = SHARED * FINER**ORDER / (FINER**ORDER - 1.0)
-        parts = ((points + MORE, steps, SHARED), (points, FINER * steps, part))
+        count = JUMP if task.jumps else SHARED
+        parts = ((task.finer(points), steps, count), (points, FINER * steps, part))
         yield [(n, "energy", spacing / many, part) for n, many, part in parts]
 
 

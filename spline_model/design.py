@@ -26,6 +26,8 @@ from spline_model.errors import (
 
 Array = NDArray[np.float64]
 
+LARGEST_OPENING = math.radians(100.0)
+"""Angle of an arc at rest above which it is cut into segments."""
 NOT_GIVEN = math.nan
 """Area and second moment of a strip that has them from its width and thickness."""
 CLAMP, HINGE = JOINTS = ("clamp", "hinge")
@@ -324,6 +326,16 @@ class Design:
         """The frames between pieces: bodies without mass."""
         inner = (piece.strip for piece in self.pieces if piece.reach[1] < 1.0)
         return tuple(BodyDesign(name=str(strip.tip), centre=strip.end) for strip in inner)
+
+    def require_uncut(self, name: str) -> None:
+        """Refuse strips in segments where an answer, of that name, does not know them."""
+        for strip in self.strips:
+            arc = 2.0 * abs(strip.opening)
+            if arc > LARGEST_OPENING:
+                most = f"at most {math.degrees(LARGEST_OPENING):g} deg for {name}: two strips, a body between"
+                raise InvalidParameter(f"arc of strip {strip.name} [deg]", round(math.degrees(arc), 4), most)
+        if (segments := self.discretisation.segments) != 1:
+            raise InvalidParameter("segments", segments, f"1 for {name}")
 
     def body_named(self, name: str | None) -> str:
         """Return that name, or the name of the only body; InvalidParameter for an unknown name or several

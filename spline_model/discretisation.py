@@ -167,9 +167,3 @@ class Discretisation:
     def quadrature(self) -> int:
         """Number of Gauss points of each segment."""
         return self.spline.degree + 3 if self.gauss_points is None else self.gauss_points
-
-
-def require_uncut(grid: Discretisation, name: str) -> None:
-    """Refuse strips in segments where an answer does not know them."""
-    if grid.segments != 1:
-        raise InvalidParameter("segments", grid.segments, f"1 for {name}")

@@ -28,7 +28,7 @@ class Followers(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, loads: LoadTable) -> Self:
-        """Those of all loads of a scene that grow, and its steady ones, among its unknowns [N]."""
+        """Return those of all loads of a scene that grow, and its steady ones, among its unknowns [N]."""
         own = loads.rows(loads.turns == FOLLOWER)
         full = [each for each in scene.of(AppliedForce) if each.follower and each.steady]
         places = [*own.coordinate[::2], *(scene.layout.bodies[each.body] for each in full)]
@@ -37,13 +37,16 @@ class Followers(NamedTuple):
         return cls(np.array(places, dtype=np.int64), force * grows, force * ~grows)
 
     def turned(self, z: Array, load_factor: float) -> Array:
-        """Forces (P, 2) at unknowns z and a load factor."""
+        """Return the forces (P, 2) [N] at unknowns z (N,) and a load factor [1]."""
         (x, y), turn = (load_factor * self.growing + self.steady).T, z[self.place + 2]
         cos, sin = np.cos(turn), np.sin(turn)
         return np.stack((cos * x - sin * y, sin * x + cos * y), axis=-1)
 
     def subtract(self, z: Array, load_factor: float, gradient: Array, hessian: Array) -> None:
-        """Subtract the forces from the gradient, and their derivatives from its."""
+        """Subtract the forces [N] from the gradient (N,), and their derivatives from its hessian (N, N).
+
+        z (N,): unknowns [m, rad, N]; load_factor [1].
+        """
         if not self.place.size:
             return
         force, at = self.turned(z, load_factor), self.place
@@ -52,14 +55,14 @@ class Followers(NamedTuple):
             np.subtract.at(hessian, (at + k, at + 2), across)
 
     def push(self, z: Array) -> Array:
-        """Derivative (N,) of the forces in the load factor."""
+        """Return the derivative (N,) [N] of the forces in the load factor at z (N,)."""
         found = np.zeros(len(z))
         for k, part in enumerate(self._replace(steady=0.0 * self.steady).turned(z, 1.0).T):
             np.add.at(found, self.place + k, part)
         return found
 
     def among(self, begin: int, force: float) -> Followers:
-        """The same over a force, among coordinates that begin with the poses at ``begin``."""
+        """Return the same divided by ``force`` [N], among coordinates whose poses begin at ``begin``."""
         if not self.place.size:
             return self
         return Followers(self.place - begin, self.growing / force, self.steady / force)

@@ -129,7 +129,7 @@ class HeldPivot:
         return np.concatenate((self.pose, self._y))
 
     def restore(self, unknowns: Array) -> HeldState:
-        """Return to the state of ``unknowns`` (N,); return this state."""
+        """Return to the state of ``unknowns`` (N,) [m, rad, N]; return this state."""
         self.pose[:], self._y[:], self._led = unknowns[:3], unknowns[3:], None
         return self._state(1.0, 0)
 

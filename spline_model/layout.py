@@ -34,12 +34,12 @@ class Layout:
         return self.coordinate_count + sum(count for _, count in self.modes)
 
     def strip(self, name: str) -> slice:
-        """Slice of a strip's control points, 2 n entries."""
+        """Return the slice of a strip's control points, 2 n entries [m]."""
         start, count = self.strips[name]
         return slice(start, start + 2 * count)
 
     def body(self, name: str) -> slice:
-        """Slice of a body's x, y, theta."""
+        """Return the slice of a body's x, y, theta [m, m, rad]."""
         start = self.bodies[name]
         return slice(start, start + 3)
 
@@ -53,11 +53,11 @@ class Layout:
         return slice(self.coordinate_count - 3 * len(self.bodies), self.coordinate_count)
 
     def axial_modes(self, effect: int) -> slice:
-        """Slice of the axial-force modes of a MixedStretching effect."""
+        """Return the slice of the axial-force modes [N] of a MixedStretching effect."""
         start, count = self.modes[effect]
         return slice(start, start + count)
 
     def rows(self, constraint: int) -> slice:
-        """Slice of a constraint's multipliers."""
+        """Return the slice of a constraint's multipliers [N, N m]."""
         start, count = self.multipliers[constraint]
         return slice(start, start + count)

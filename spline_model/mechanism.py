@@ -10,7 +10,7 @@ from typing import Any, Literal, Self, Unpack
 
 import numpy as np
 
-from spline_model.design import HINGE, BodyDesign, Design, StripDesign
+from spline_model.design import HINGE, LARGEST_OPENING, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
 from spline_model.effects import Clamp, Driven, DrivenRotation
 from spline_model.effects.base import Inertia
@@ -28,9 +28,6 @@ from spline_model.effects.registry import (
 from spline_model.errors import InvalidParameter, require_kind
 from spline_model.rigid import loose, props_of
 from spline_model.scene import Body, Effect, Scene, Strip
-
-LARGEST_OPENING = math.radians(100.0)
-"""Angle of an arc at rest above which it is cut into segments."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

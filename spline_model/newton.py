@@ -42,7 +42,7 @@ class Laps:
         self._last = perf_counter()
 
     def lap(self, part: str) -> dict[str, float]:
-        """End a lap; returns the seconds by part so far."""
+        """End a lap; return the seconds by part so far."""
         now = perf_counter()
         self._seconds[part] = self._seconds.get(part, 0.0) + now - self._last
         self._last = now

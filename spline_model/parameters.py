@@ -90,7 +90,7 @@ class Given:
 
     @property
     def compliance(self) -> Array:
-        """Axial compliance of each strip over the longest strip and the largest rigidity, (D, S)."""
+        """Axial compliance of each strip over the longest strip and the largest rigidity, (D, S) [1]."""
         stiffness = self.section[..., 0] * self.section[..., 2] * self.span.max(axis=1)[:, None] ** 2
         return np.asarray(self.rigidity.max(axis=1)[:, None] / stiffness)
 
@@ -102,11 +102,11 @@ class Given:
         return np.asarray(self.ends[:, 0, 0] + share[:, None] * a)
 
     def rows(self, kept: NDArray[np.int64]) -> Given:
-        """Some of the designs."""
+        """Return some of the D designs, those of the numbers ``kept`` (R,), in SI units."""
         return Given(ends=self.ends[kept], centres=self.centres[kept], section=self.section[kept])
 
     def put(self, asked: Mechanism, name: str, column: Array, own: float = 0.0) -> None:
-        """Give the numbers of that name the values of a column (D,), or add it to ``own`` times themselves.
+        """Set the numbers of that name to ``own`` times themselves plus a column (D,) [SI units].
 
         Where both strips of a pivot change alike, its body goes along.
         """
@@ -143,7 +143,10 @@ def _place_of(design: Design, name: str) -> tuple[str, tuple[Any, ...]]:
 
 
 def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None:
-    """Refuse names of which the design has no number."""
+    """Check that the design has a number of each of these names.
+
+    Raises InvalidParameter, which names the argument, for a name without one.
+    """
     shape = SHAPE if isinstance(asked, Pivot) else ()
     for name in names:
         if name not in shape and not _place_of(asked.design, name)[0]:

@@ -60,11 +60,9 @@ def follow(
     watch = Watch(work, leaves=branch == "follow", by_load=True)
     track = _Track(watch, np.array([0.0, *load_factors]), progress)
     message = track.begin(start)
-    settled = not message
     while track.states < len(track.factors) and not message:
         message = track.advance()
-    path = track.path(message)
-    return path if settled else replace(path, settled=False)
+    return track.path(message)
 
 
 def follow_arc(
@@ -87,7 +85,7 @@ def follow_arc(
     point, norms, message = first_point(watch)
     if message:
         rows = _first_rows(watch.work, point, message)
-        return replace(_path(watch, rows, message, [norms]), settled=False)
+        return _path(watch, rows, message, [norms])
     way = abs(end - point.load_factor) / increments
     follower, message = ArcFollower(watch, point, norms, end, way), ""
     follower.first = follower.step = min(LARGEST_STEP, follower.step)
@@ -299,5 +297,5 @@ def _grown(watch: Watch) -> tuple[Follower, str]:
         replace(each, load_factor=0.0, rotation=0.0 * each.rotation, preload=each.load_factor)
         for each in own.critical
     )
-    watch.leaves, watch.before = own.leaves, own.remark()
+    watch.leaves, watch.before, watch.grown = own.leaves, own.remark(), follower.at
     return follower, message

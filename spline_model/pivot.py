@@ -181,7 +181,7 @@ def ends_at_rest(
 
 
 def turned(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
-    """A point turned about the origin; numbers or arrays."""
+    """Return a point (x, y) turned about the origin by an angle [rad]; numbers or arrays of one shape."""
     return _turned_by(np.cos(angle), np.sin(angle), x, y)
 
 

@@ -39,7 +39,7 @@ class PointTable(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
-        """Gauss points of bending and stretching; those that two effects share stand there once.
+        """Return the Gauss points of bending and stretching; those that two effects share stand there once.
 
         The stress-free curvature is the one at rest and the natural one.
         """
@@ -70,13 +70,13 @@ class PointTable(NamedTuple):
         return self.numbers[:, RIGIDITY]
 
     def moments(self, strain: Array) -> Array:
-        """Bending moments (P,) [N m] of curvatures that are counted from the stress-free ones [1/m]."""
+        """Return bending moments (P,) [N m] of curvatures from the stress-free ones (P,) [1/m]."""
         drop, curl = self.numbers[:, DROP:], self.numbers[:, CURL]
         factor = curl_factors(strain, drop, curl)[1] if curl.any() else 1.0
         return np.asarray(self.rigidity * strain * factor)
 
     def derivatives(self, z: Array) -> Array:
-        """x', y', x'', y'' at the unknowns z (N,), (4, P)."""
+        """Return x', y', x'', y'' by u at the unknowns z (N,), shape (4, P) [m]."""
         behind = np.minimum(np.arange(self.basis.shape[2]), self.place[:, WIDTH, None] - 1)
         columns = self.place[:, FIRST, None] + 2 * behind
         return np.array([np.einsum("pa,pa->p", d, z[columns + i]) for d in self.basis for i in range(2)])

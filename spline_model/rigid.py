@@ -55,7 +55,10 @@ def props_of(scene: Scene) -> list[Constraint]:
 
 
 def require_unborne(system: System, reactions: Array) -> None:
-    """Refuse states whose props bear something: reactions (S, D) of the drives [N, N m]."""
+    """Check that props bear nothing: reactions (S, D) of the drives [N, N m].
+
+    Raises Unheld where one bears something.
+    """
     drives = system.drives
     if not drives.prop.any():
         return

@@ -37,7 +37,7 @@ class Strip:
     taper: Taper | None = None
 
     def gauss_points(self, of: str = "area") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Points u and weights p ds0 [m] of a rule that is exact for products of two basis functions.
+        """Return points u (P,) and weights p ds0 (P,) [m], exact for products of two basis functions.
 
         p: "area" or "second_moment" of the section over that at the start, 1 of a constant one.
         """
@@ -46,25 +46,25 @@ class Strip:
         return u, length if self.taper is None else length * getattr(self.taper, of)(u)
 
     def share_of_length(self) -> NDArray[np.float64]:
-        """int N p ds0 of each basis function with the area as p, shape (n,) [m]."""
+        """Return int N p ds0 of each basis function with the area as p, shape (n,) [m]."""
         u, length = self.gauss_points()
         return np.asarray(length @ self.basis.evaluate(u))
 
     def products(self) -> NDArray[np.float64]:
-        """int N^T N p ds0 (n, n) with the area as p [m]."""
+        """Return int N^T N p ds0 (n, n) with the area as p [m]."""
         u, length = self.gauss_points()
         values = self.basis.evaluate(u)
         return np.asarray(values.T @ (length[:, None] * values))
 
     def slope_products(self) -> NDArray[np.float64]:
-        """int (dN/ds0)^T (dN/ds0) p ds0 (n, n) with the second moment as p [1/m]."""
+        """Return int (dN/ds0)^T (dN/ds0) p ds0 (n, n) with the second moment as p [1/m]."""
         u, length = self.gauss_points("second_moment")
         slopes = self.basis.evaluate(u, 1)
         speed = np.hypot(*(slopes @ self.control_points).T)
         return np.asarray(slopes.T @ ((length / speed**2)[:, None] * slopes))
 
     def length_to(self, stations: NDArray[np.float64], taper: Taper | None = None) -> NDArray[np.float64]:
-        """Arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m].
+        """Return the arc length at rest from the start to ``stations`` (P,), u in [0, 1], shape (P,) [m].
 
         taper: where it is given, the length is weighed by the area over that at the start.
         """
@@ -157,7 +157,7 @@ class Scene:
         return {}
 
     def weight_of(self, strip: str) -> NDArray[np.float64]:
-        """Weight of a strip per du, spread over u as the area: its parts (3, 2) with 1, u and u^2 [N]."""
+        """Return the weight of a strip per du: its parts (3, 2) with 1, u and u^2, as the area [N]."""
         total = np.zeros((3, 2))
         for effect in self.of(StripGravity):
             if effect.strip == strip:

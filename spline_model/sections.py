@@ -160,7 +160,7 @@ def clamp_reactions(system: System, states: Array, strip: str, end: str) -> Arra
 
 
 def reactions(system: System, states: Array) -> Array:
-    """Those of root and tip of all strips (S, G, 2, 3)."""
+    """Return force [N] and moment [N m] of the clamps at root and tip of all strips (S, G, 2, 3)."""
     ends = [[clamp_reactions(system, states, name, end) for end in ENDS] for name in system.scene.whole]
     return np.asarray(np.array(ends).transpose(2, 0, 1, 3))
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
-from spline_model.discretisation import require_uncut
 from spline_model.effects.plate import STEP
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
@@ -91,7 +90,7 @@ def sensitivities(
     require_mechanism(asked)
     if asked.design.discretisation.control_points is None:
         asked = asked.on(solution.segments, solution.control_points)
-    require_uncut(asked.design.discretisation, "sensitivities")
+    asked.design.require_uncut("sensitivities")
     given = _stepped(asked, parameters)
     driven = not np.isnan(solution.torque).all()
     system = compile_scene(asked.driven(1.0, body) if driven else asked.scene)
@@ -276,8 +275,10 @@ class Sensitivities:
     counters: dict[str, int]
 
     def largest_stress(self) -> Quantity:
-        """Largest magnitude of the fibre stress (S,) [Pa]; its derivative is that of the point where it
-        is, exact as long as there is one such point."""
+        """Return the largest magnitude of the fibre stress (S,) [Pa].
+
+        Its derivative is that of the point where it is, exact as long as there is one such point.
+        """
         flat = self.fibre_stress.value.reshape(len(self.torque.value), -1)
         by = self.fibre_stress.derivative.reshape(*flat.shape, len(self.parameters))
         rows, where = np.arange(len(flat)), np.abs(flat).argmax(axis=1)

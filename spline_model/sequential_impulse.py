@@ -28,7 +28,6 @@ from numpy.typing import NDArray
 
 from spline_model.compile import System, compile_scene
 from spline_model.content import STEPS_PER_PERIOD
-from spline_model.discretisation import require_uncut
 from spline_model.effects import DrivenDisplacement, DrivenRotation
 from spline_model.effects.elastic import ANTICLASTIC
 from spline_model.errors import (
@@ -83,7 +82,7 @@ class ImpulseSolver:
             require_count("sweeps", sweeps, 1)
             if form == "stable":
                 raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
-        require_uncut(mechanism.design.discretisation, "sequential impulses")
+        mechanism.design.require_uncut("sequential impulses")
         self.motion, soft = set_in_motion(system), form == "stable"
         held = "another one for sequential impulses"
         if ANTICLASTIC in mechanism.design.curling:
@@ -103,7 +102,7 @@ class ImpulseSolver:
         return self.start_at(static_state(self.mechanism.at_start(), rotation, body=body))
 
     def start_at(self, z: Array, v: Array | None = None) -> State:
-        """A state at the unknowns z (N or more,), at rest or with velocity v (Q,).
+        """Return a state at the unknowns z (N or more,) [m, rad, N], at rest or with velocity v (Q,).
 
         z may be another system's of the same strips and bodies, such as of statics with other drives:
         its additional unknowns are ignored. The constraints should hold in both.
@@ -140,11 +139,11 @@ class ImpulseSolver:
         return stepper.outcome(taken, count, state.time + taken * h, held)
 
     def look(self, state: State) -> Outcome:
-        """What a state is, as that of no steps."""
+        """Return the outcome of no steps: what a state is."""
         return self.stepper(state).outcome(0, 0, state.time, state.held)
 
     def stepper(self, state: State) -> Stepper:
-        """Steps from a state on, in the solver's work space."""
+        """Return steps from a state on, in the solver's work space."""
         return Stepper(self.motion, self.problem, self.space, self.form, state)
 
     def _driven(self, state: State, pose: Array, duration: float) -> Motion:

@@ -118,9 +118,9 @@ class Path:
         Relative deviation of the strips' moments from balance (``continuation.resolution``).
     critical_points : tuple of CriticalPoint
         In the order of the path.
-    settled : bool
-        Whether the path begins under all of its weight and pre-strain; if not, its one state is the shape at
-        rest without them.
+    grown : float, 1
+        Share of weight and pre-strain that finds an equilibrium. Below 1, the only state of the path is the
+        shape at rest without them.
     """
 
     status: Status
@@ -137,15 +137,20 @@ class Path:
     critical_points: tuple[CriticalPoint, ...]
     counters: dict[str, int]
     history: tuple[tuple[float, ...], ...]
-    settled: bool = True
+    grown: float = 1.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether the path begins under all of its weight and pre-strain."""
+        return self.grown == 1.0
 
     @property
     def states(self) -> Array:
-        """The unknowns z of all states (S, N)."""
+        """Unknowns z of all states (S, N) [m, rad, N]."""
         return self.unknowns.array
 
     def rows(self, kept: slice) -> dict[str, Any]:
-        """What it has by state, of some of them."""
+        """Return the arrays that it has by state, of some of them."""
         unknowns = self.unknowns
         return {name: getattr(self, name)[kept] for name in BY_STATE} | {
             "unknowns": Later(partial(_some, unknowns, kept))
@@ -185,7 +190,7 @@ class Tabulated:
         read_only(vars(self))
 
     def columns(self) -> dict[str, Array]:
-        """What is one number in every row, by names with units."""
+        """Return the columns of a table: arrays (S,) of one number in every row, by names with units."""
         raise NotImplementedError
 
     def to_frame(self) -> pd.DataFrame:
@@ -260,7 +265,7 @@ class ErrorEstimate:
 
     @property
     def largest(self) -> float:
-        """The largest of the errors, which ``accuracy`` is about."""
+        """Largest of the estimated relative errors [1], which ``accuracy`` is about."""
         return largest(float(getattr(self, name)) for name in ERRORS)
 
     @property

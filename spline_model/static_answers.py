@@ -120,13 +120,13 @@ class StaticSolution(Tabulated, Path):
 
     @kept
     def bodies(self) -> dict[str, Array]:
-        """x, y, theta (S, 3) of the bodies by name [m, m, rad]."""
+        """Places x, y, theta (S, 3) of the bodies by name [m, m, rad]."""
         names = [body.name for body in self.system.scene.own_bodies]
         return {name: self.poses[:, 3 * i : 3 * i + 3] for i, name in enumerate(names)}
 
     @kept
     def torque(self) -> Array:
-        """lambda_13 of the driven rotation (S,) [N m], nan without one."""
+        """Torque on the body of the driven rotation (S,) [N m], lambda_13; nan without one."""
         driven = (self.driven, AXES[2])
         if driven not in self.prescribed:
             return np.full(len(self.work), np.nan)
@@ -142,7 +142,7 @@ class StaticSolution(Tabulated, Path):
 
     @kept
     def tips(self) -> dict[str, Array]:
-        """x, y [m] and turn of the section since rest [rad] (S, 3) of the free ends, by strip."""
+        """Place x, y [m] and turn since rest [rad] of the section at each free end (S, 3), by strip."""
         return free_tips(self.system, self.states)
 
     @property
@@ -162,7 +162,7 @@ class StaticSolution(Tabulated, Path):
 
     @kept
     def spring_energy(self) -> Array:
-        """Of the springs (S,) [J], zero without any."""
+        """Energy of the springs (S,) [J], zero without any."""
         return self.system.spring_energy(self.poses)
 
     @kept
@@ -185,12 +185,12 @@ class StaticSolution(Tabulated, Path):
 
     @kept
     def clamp_reactions(self) -> Array:
-        """Force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
+        """Return force [N] and moment [N m] of the clamps at root and tip of the strips (S, G, 2, 3)."""
         return reactions(self.system, self.states)
 
     @property
     def stations(self) -> Array:
-        """Where sections are recovered (P,), reference arc length over L."""
+        """Stations (P,) where sections are recovered: reference arc length over L [1]."""
         return STATIONS
 
     @cached_property
@@ -233,8 +233,10 @@ class StaticSolution(Tabulated, Path):
 
     @kept
     def own_stiffness(self) -> Array:
-        """``body_stiffness`` of the body that was asked for, the driven one or the only one (S, 3, 3); nan
-        without one, and for the published forces."""
+        """Stiffness (S, 3, 3) [N/m, N, N m/rad] of the driven body or the only one, as ``body_stiffness``.
+
+        nan without such a body, and for the published forces.
+        """
         body = self.asked or self.driven or (next(iter(self.bodies)) if len(self.bodies) == 1 else None)
         if body is None or reduced(self.system) is None:
             return np.full((len(self.work), 3, 3), np.nan)
@@ -259,7 +261,7 @@ class StaticSolution(Tabulated, Path):
         return next(iter(self.bodies)) if self.driven is None else self.driven
 
     def columns(self) -> dict[str, Array]:
-        """What is one number in every state, by names with units."""
+        """Return the columns of a frame: arrays (S,) of one number in every state, by names with units."""
         energies = ("bending_energy", "axial_energy", "gravity_energy", "work")
         return {
             "load_factor": self.load_factor,

@@ -183,7 +183,9 @@ def solve_mechanism(
             require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
-    solution = answered(mechanism.design, accuracy, solve, progress, rotations.size or increments, check)
+    way = 1.0 + abs(end) + float(np.abs(np.diff(rotations, prepend=0.0)).sum())
+    total = rotations.size or increments
+    solution = answered(mechanism.design, accuracy, solve, progress, total, way, check)
     return solution.checked(raise_on_failure)
 
 

@@ -127,20 +127,20 @@ class LoadTable(NamedTuple):
 
     @classmethod
     def of(cls, scene: Scene, followers: bool = False) -> LoadTable:
-        """Dead forces and moments on bodies that grow, and ``followers``, one row a component."""
+        """Return dead forces and moments on bodies that grow, and ``followers``, one row a component."""
         growing = [load for load in scene.of(Sized) if not load.steady]
         if not followers:
             growing = [load for load in growing if not getattr(load, "follower", False)]
         return _table_of_loads(scene, growing) if growing else NO_LOADS
 
     def rows(self, kept: NDArray[np.bool_]) -> LoadTable:
-        """Some of the rows."""
+        """Return the rows (R,) that are ``kept``, in N and N m."""
         own = {name: getattr(self, name)[kept] for name in ("coordinate", "value", "turns", "first", "pairs")}
         return self._replace(**own)
 
 
 def frames_of(scene: Scene) -> Frames:
-    """Frames that bodies of a scene carry, among its unknowns [m]."""
+    """Return the frames that bodies of a scene carry, among its unknowns [m]."""
     places, levers = [], []
     for frame in (body for body in scene.bodies if body.on is not None):
         on = None if frame.on == GROUND else scene.body(str(frame.on))

@@ -121,7 +121,7 @@ class Study:
         cases: names of the designs it reads, which its results depend on; the paper's pivot by default.
         parts: what is asked, in this order.
         made: tables that follow from those before them, by name: rows, or tables one below the other.
-        claims, claims_of_time: of all tables, the findings; those that differ from run to run apart.
+        claims: of all tables, the findings.
         figures: name -> what draws it from the tables as they come back from their files; none by default.
         varying: tables that differ from run to run, in addition to those with "time" in their name.
         digits: tolerances that are not those of `studies.record.store`, by "table.column" or "column"; None
@@ -133,7 +133,6 @@ class Study:
     parts: tuple[Part, ...]
     made: Mapping[str, Callable[[Tables], pd.DataFrame | Iterable[Any]]] = field(default_factory=dict)
     claims: tuple[Claim, ...] = ()
-    claims_of_time: tuple[Claim, ...] = ()
     figures: Mapping[str, Callable[[Tables], Figure]] = field(default_factory=dict)
     varying: tuple[str, ...] = ()
     digits: Mapping[str, Digits | None] = field(default_factory=dict)
@@ -150,13 +149,12 @@ class Study:
             for name, rows in answer.items():
                 one = isinstance(rows, Mapping | pd.DataFrame)
                 given.setdefault(name, []).extend([rows] if one else rows)
-        findings = {"findings": given.pop("findings", []), "findings_of_time": []}
+        findings = given.pop("findings", [])
         tables = {name: _as_table(rows) for name, rows in given.items()}
         for name, make in self.made.items():
             tables[name] = _as_table(make(tables))
-        for found, claims in zip(findings.values(), (self.claims, self.claims_of_time), strict=True):
-            found.extend(row for claim in claims for row in claim(tables))
-        return tables | {name: _as_table(rows) for name, rows in findings.items() if rows}
+        findings.extend(row for claim in self.claims for row in claim(tables))
+        return tables | ({"findings": _as_table(findings)} if findings else {})
 
     def draw(self, tables: Tables) -> dict[str, Figure]:
         """Return the figures by name."""

@@ -69,7 +69,6 @@ STUDIES: dict[str, str] = {
     "convergence/error_estimate": "studies.convergence.error_estimate",
     "model_form/plate": "studies.published.problems:PLATE",
     "model_form/solid_pivot": "studies.published.solid_pivot",
-    "model_form/solid_designs": "studies.published.solid_pivot:OTHER_DESIGNS",
     "model_form/calculix": "studies.published.calculix",
     "published/problems": "studies.published.problems",
     "stability/rotation": "studies.stability.families:ROTATION",

@@ -3,11 +3,13 @@
 import hashlib
 import importlib.metadata
 import tomllib
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
 
 from report.facts import FACTS, Fact, Results, Stored, Table, listing
-from report.forms import Form, count, degrees, percent, seconds, significant, unit
+from report.forms import Form, count, degrees, percent, power, seconds, significant, unit
 from studies.cases.problem import Problem, named_case
 from studies.record.source import ROOT
 from studies.registry import STUDIES
@@ -74,6 +76,35 @@ def _machine(results: Results) -> Table:
 def _read(name: str) -> dict[str, Any]:
     """Return what a TOML file of the suite holds."""
     return tomllib.loads((ROOT / name).read_text(encoding="utf-8"))
+
+
+@listing("matrix")
+def _matrix(results: Results) -> Table:
+    """Return the verification and validation matrix: one row per claim of ``tests/claims.toml``."""
+    gates = _read("tests/gates.toml")
+    yield ["claim", "evidence", "result", "uncertainty", "unit or scale", "number", "test"]
+    for claim in _read("tests/claims.toml")["claim"]:
+        number = sum(any(fnmatchcase(name, each) for each in claim["gates"]) for name in gates)
+        if "result" in claim:
+            pair, scale = [_magnitude(claim[part], results) for part in ("result", "uncertainty")], "relative"
+        else:
+            first = gates[claim["gates"][0]]
+            pair, scale = [first["measured"], first["limit"]], first["unit"].partition(",")[0]
+            scale = "relative" if scale == "1" or " over " in scale else scale.removesuffix(" of the beam")
+        form = percent if scale == "relative" else _small
+        values = [form(value) for value in pair]
+        yield [claim["text"], claim["kind"], *values, scale, count(number), claim["test"]]
+
+
+def _magnitude(source: Mapping[str, Any], results: Results) -> float:
+    """Return the largest magnitude of a column of a stored table, from its entry in ``claims.toml``."""
+    rows = Stored(source["study"], source["table"], **source["where"]).rows(results)
+    return float(rows[source["column"]].abs().max())
+
+
+def _small(value: float) -> str:
+    """Return a number with two digits, below a thousandth as a power of ten."""
+    return power(value) if value < 1e-3 else significant(value)
 
 
 FACTS |= {

@@ -7,7 +7,7 @@ import pandas as pd
 
 from report import forms
 from report.facts import FACTS, HOLDS, LISTINGS, Fact, Results, Stored, Table, listing
-from report.forms import angle, count, dash, degrees, digits, percent, seconds, significant, times, unit
+from report.forms import angle, dash, degrees, digits, percent, seconds, significant, times, unit
 
 CODES = "cost/codes"
 #: Groups of the comparison in addition to the spline, in the order of the table.
@@ -18,6 +18,8 @@ TASKS = {
     "path": (Stored(CODES, "path_ratios"), forms.decade),
     "swing": (Stored(CODES, "swing_ratios"), unit("rad", 1)),
 }
+#: Task -> its name in the table.
+NAMES = {"path": "path", "swing": "vibration"}
 SIMPLE = ("linear pivot", "pin joint", "four-bar", "beam constraint model")
 SPLINES = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 QUANTITIES = ("trajectory", "torque", "stiffness")
@@ -33,7 +35,7 @@ def _cost(results: Results) -> Table:
             groups: Any = rows.set_index("group")
             spline = rows.iloc[0]
             own = f"{seconds(spline['spline_s'])} ({seconds(spline['spline_solve_s'])})"
-            yield [f"{task}, {form(level)}", own, *(_peer(groups, group) for group in GROUPS)]
+            yield [f"{NAMES[task]}, {form(level)}", own, *(_peer(groups, group) for group in GROUPS)]
 
 
 def _peer(groups: Any, group: str) -> str:
@@ -92,26 +94,8 @@ HOLDS |= {"surrogates.free": SURROGATES.found("Dynamic splines are more accurate
 
 
 CHARTS = Stored("charts/pivot", "findings")
-RANGES, POINTS, VALIDITY = (Stored("charts/pivot", name) for name in ("ranges", "points", "validity"))
+VALIDITY = Stored("charts/pivot", "validity")
 WORTH = Stored("effects/worth", "worth", status="converged")
-
-
-@listing("ranges")
-def _ranges(results: Results) -> Table:
-    found = RANGES.rows(results).pivot(index="crossing_ratio", columns="strength", values="rotation_deg")
-    yield ["crossing ratio", *(f"strength {significant(each, 1)}" for each in found.columns)]
-    for ratio, own in found.iterrows():
-        yield [f"λ = {significant(ratio, 3)}", *map(dash(angle), own)]
-
-
-@listing("points")
-def _points(results: Results) -> Table:
-    found = POINTS.rows(results).pivot(
-        index=["quantity", "error"], columns="rotation_deg", values="control_points"
-    )
-    yield ["error", *(f"{turn:.0f}°" for turn in found.columns)]
-    for row in found.sort_index(ascending=False).reset_index().to_dict("split")["data"]:
-        yield [f"{row[0]} to {percent(row[1])}", *map(dash(count), row[2:])]
 
 
 @listing("effects")
@@ -180,9 +164,6 @@ def _promised(results: Results) -> pd.DataFrame:
 
 FACTS |= {
     "charts.shift": CHARTS.at("value", percent, formulation="shift"),
-    "charts.buckles": Stored("charts/pivot", "buckling").at(
-        "load", significant, crossing_ratio=0.5, inclination_deg=45
-    ),
     "sizing.effects": Fact(made=lambda r: float(_promised(r)[EFFECTS].max()), form=times),
     "sizing.tolerances": Fact(made=lambda r: float(_promised(r)[TOLERANCES].max()), form=times),
     "sizing.elements": DESIGNS.largest("error", percent),

@@ -20,7 +20,7 @@ LIMIT, TURN, BIFURCATION = "limit point", "turning point", "bifurcation"
 FINE = 1e-7
 """A critical point is known to this part of the step between the two states, or of the value
 there: closer to it the tangent is singular to no purpose."""
-JUMP = 1e-3
+JUMP = 1e-5
 """Part of the value at the ends of a step that is no zero: a sign that changes in a jump, from one
 path to another one."""
 NO_PART = 1e-6
@@ -46,7 +46,10 @@ class Bracket:
     step: float
 
     def plane(self) -> tuple[Array, float]:
-        """Normal (N,) and load-factor part of the planes across the path: the chord, or the load factor."""
+        """Return normal (N,) and load-factor part [1] of the planes across the path.
+
+        They are normal to the chord, or to the load factor.
+        """
         if self.before.slope == self.after.slope == 1.0:
             return np.zeros_like(self.before.z), 1.0
         normal = (self.after.z - self.before.z) / self.work.unit
@@ -54,7 +57,7 @@ class Bracket:
         return normal, self.after.load_factor - self.before.load_factor
 
     def at(self, t: float) -> Point | None:
-        """The state of the path at t, or None if Newton does not find it."""
+        """Return the state of the path at t in 0 to 1 [1], or None if Newton does not find it."""
         a, b, step = self.before, self.after, self.step
         z = hermite(a.z, b.z, step * a.rate, step * b.rate, t)
         factor = hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
@@ -230,7 +233,7 @@ class ReducedTangent:
 
     @property
     def grain(self) -> float:
-        """Round-off of an eigenvalue: with many segments it exceeds a thousandth of the softest mode's."""
+        """Round-off of an eigenvalue [1]: with many segments above a thousandth of the softest mode's."""
         return float(np.finfo(float).eps * np.abs(self.stiffness).sum(axis=0).max())
 
     def eigenpair(self, number: int) -> tuple[float, Array]:

@@ -82,7 +82,7 @@ class Followed:
 
     @classmethod
     def of(cls, system: System) -> Self:
-        """Fresh arrays for a system."""
+        """Return fresh arrays for a system."""
         size = system.layout.size
         return cls(system=system, gradient=np.empty(size), hessian=np.empty((size, size)))
 
@@ -107,7 +107,10 @@ class Followed:
         return self.system.scene.driven_row
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
-        """Fill gradient and hessian at z under a share of the preload; returns bending and axial energy."""
+        """Fill gradient and hessian at z (N,); return bending and axial energy [J].
+
+        load_factor [1] of the loads; share [1] of the preload.
+        """
         system = self.system
         if share != 1.0:
             points, weight = system.points.with_share(share), share * system.weight
@@ -115,7 +118,7 @@ class Followed:
         return evaluate(system, z, load_factor, self.gradient, self.hessian)
 
     def external(self, z: Array) -> tuple[float, float]:
-        """Work from rest to z of all loads at load factor 1, and of all weight."""
+        """Return the work from rest to z (N,) of all loads at load factor 1, and of all weight [J]."""
         loads, weight, moved = self.system.loads, self.system.weight, z - self.system.rest
         return float(moved[loads.coordinate] @ loads.value), float(moved[: weight.size] @ weight)
 
@@ -144,34 +147,37 @@ class Followed:
         return arms
 
     def along(self, z: Array, rate: Array) -> Array:
-        """A rate (N,) of the unknowns at z, with that of frames by their bodies."""
+        """Return a rate (N,) of the unknowns at z (N,) [m, rad, N], with that of frames by their bodies."""
         if self.frames.place.size:
             spread(rate, self.frames, self._arms(z))
         return rate
 
     def refuse(self, z: Array) -> str:
-        """Why a state that was just evaluated is no strip; empty if it is one."""
+        """Return why a state z (N,) [m, rad, N] that was just evaluated is no strip; empty if it is one."""
         return checks.refuse(self.system, z)
 
     def defect(self, z: Array, load_factor: float) -> float:
-        """The moment defect of a state (``continuation.resolution``)."""
+        """Return the moment defect [1] of a state z (N,) at a load factor (``continuation.resolution``)."""
         return moment_defect(self.system, z, self.acting(load_factor)[1])
 
     def state(self, unknowns: Array) -> Array:
-        """z of the scene's unknowns, whose clamps hold."""
+        """Return z (N,) [m, rad, N] of the scene's unknowns (N,), whose clamps hold."""
         return unknowns
 
     def unknowns(self, z: Array) -> Array:
-        """The scene's unknowns at z (N,) or (S, N)."""
+        """Return the scene's unknowns [m, rad, N] at z (N,) or (S, N)."""
         return z.copy()
 
     def moved(self, z: Array, direction: Array) -> Array:
-        """Change (Q,) of the scene's coordinates, dimensionless, with that of the ``count`` coordinates."""
+        """Return the change (Q,) [1] of the scene's coordinates with that of the ``count`` ones at z (N,)."""
         del z  # they are the same ones
         return direction
 
     def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
-        """What a ``Path`` has by state; done (S,): int P_lambda d(lambda) to each of the points."""
+        """Return the arrays that a ``Path`` has by state, a row for each point.
+
+        done (S,): int P_lambda d(lambda) to each of the S points [J].
+        """
         by_state = ("z", "load_factor", "stiffness", "energies", "inertia")
         states, factors, stiffness, energies, inertia = (
             np.array([getattr(point, name) for point in points]) for name in by_state
@@ -202,7 +208,10 @@ class Followed:
         return replace(self.of(compile_scene(replace(scene, effects=effects))), grows=self.grows)
 
     def unresolved(self, z: Array, load_factor: float) -> str:
-        """Why the control points no longer describe the strips; empty if they do."""
+        """Return why the control points no longer describe the strips at z (N,); empty if they do.
+
+        load_factor [1] is that of the state.
+        """
         defect = self.defect(z, load_factor) if self.judged else 0.0
         if defect > LARGEST_DEFECT:
             return (
@@ -217,11 +226,11 @@ class Followed:
         return not self.system.scene.of(Stretching)
 
     def acting(self, load_factor: float) -> tuple[float, float]:
-        """Load factor proper and share of weight and pre-strain."""
+        """Return load factor proper and share of weight and pre-strain [1]."""
         return (0.0, load_factor) if self.grows else (load_factor, 1.0)
 
     def evaluate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """Fill gradient and hessian at z; returns bending and axial energy.
+        """Fill gradient and hessian at z (N,) and a load factor [1]; return bending and axial energy [J].
 
         Not a number where C' = 0: control points that coincide have neither tangent nor curvature.
         """
@@ -234,15 +243,18 @@ class Followed:
             return np.nan, np.nan
 
     def norm(self) -> float:
-        """Largest entry of the dimensionless residual."""
+        """Return the largest entry of the dimensionless residual [1]."""
         return float(np.abs(self.gradient * self.unit).max() / self.energy)
 
     def size(self, change: Array) -> float:
-        """Largest entry of a change of the coordinates, in lengths and rad."""
+        """Return the largest entry of a change (N,) of the coordinates, in strip lengths and rad."""
         return float(np.abs(change / self.unit)[: self.count].max())
 
     def solve(self, right_side: Array) -> Array:
-        """Solve hessian x = right_side (N,) or (N, K), dimensionless inside; LinAlgError if singular."""
+        """Return x of hessian x = right_side (N,) or (N, K), dimensionless inside.
+
+        Raises LinAlgError if the hessian is singular.
+        """
         unit, energy = self.unit, self.energy
         own = unit if right_side.ndim == 1 else unit[:, None]
         self.counters.factorisations += 1
@@ -252,7 +264,7 @@ class Followed:
         return own * solved(matrix, right_side * own / energy)
 
     def push(self, z: Array, load_factor: float) -> Array:
-        """Minus the derivative of the gradient in the load factor at z, shape (N,).
+        """Return minus the derivative of the gradient in the load factor at z, shape (N,) [N, N m].
 
         Exact: in a share of the preload the gradient is a square at most.
         """
@@ -268,17 +280,20 @@ class Followed:
         return less - apart.gradient
 
     def potential(self, z: Array, load_factor: float, energies: tuple[float, float]) -> float:
-        """Energy of strips, springs, dead weight and loads."""
+        """Return the energy of strips, springs, dead weight and loads at z (N,) and a load factor [J].
+
+        energies: bending and axial energy of the strips there [J].
+        """
         factor, share = self.acting(load_factor)
         loads, weight = self.external(z)
         return sum(energies) + self.in_springs(z) - factor * loads - share * weight
 
     def in_springs(self, z: Array) -> float:
-        """Energy of the springs."""
+        """Return the energy of the springs at z (N,) [J]."""
         return float(self.system.spring_energy(z[self.system.layout.poses]))
 
     def conjugate(self, z: Array, load_factor: float) -> tuple[float, float]:
-        """First and second derivative of the potential in the load factor, drives released."""
+        """Return both derivatives [J] of the potential in the load factor at z (N,), drives released."""
         if not self.grows:
             return float(-self.push_of_loads[self.count :] @ z[self.count :]) - self.external(z)[0], 0.0
         apart = self.room()

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.critical import BIFURCATION
+from spline_model.continuation.critical import BIFURCATION, corrected
 from spline_model.continuation.followed import Point
 from spline_model.continuation.point import directed, done_by_load_factor, reached
 from spline_model.continuation.watch import Watch
@@ -32,7 +32,9 @@ SHARPEST_TURN = 0.5
 EASY, HARD = 4, 7
 """Newton iterations up to which the next step of an arc length is longer, and from which it is shorter."""
 BEYOND = 24
-"""Steps in the arc length that look for the limit point beyond a path's last state."""
+"""Steps in the arc length that look for what lies beyond a path's last state."""
+AROUND = 2.0**-10
+"""Part of the way to the next state after which the load factor is a path's parameter again."""
 
 
 class Follower:
@@ -76,7 +78,10 @@ class Follower:
         return known[-1:] if far else known
 
     def try_to(self, aim: float) -> tuple[Newton, str]:
-        """One step to ``aim``, and why it failed; else the follower stands there, or on another branch."""
+        """Make one step to the load factor or arc length ``aim`` [1].
+
+        Returns the last iteration and why it failed; else the follower stands there, or on another branch.
+        """
         predicted, load_factor = self._predict(aim)
         found = self._correct(predicted, load_factor)
         self.history.append(found.norms)
@@ -103,7 +108,10 @@ class Follower:
         return found, reason
 
     def advance(self, target: float) -> str:
-        """Go on to ``target`` and keep its state; returns why it failed, or nothing."""
+        """Go on to the load factor or arc length ``target`` [1] and keep its state.
+
+        Returns why it failed, or nothing.
+        """
         begin = self.at
         step = whole = target - begin
         if len(self.known) > 1 and whole * (begin - self.known[-2][0]) < 0:
@@ -116,7 +124,9 @@ class Follower:
                 self.work.counters.halved_increments += 1
                 step /= 2
                 if abs(step) < SMALLEST_STEP * abs(whole):
-                    return self._stop(at + 2 * step, reason)
+                    if told := self._turn(target, at + 2 * step, reason):
+                        return told
+                    begin, step = self.at, target - self.at
             elif self.at != aim:  # on another branch, and somewhere else
                 begin = self.at
                 step = whole = target - begin
@@ -131,16 +141,25 @@ class Follower:
         self.done.append(self.done_here)
         self.trail.clear()
 
-    def _stop(self, aim: float, reason: str) -> str:
-        """Keep the last state of a path that stopped, whether or not it was asked for; says why it did.
+    def _turn(self, target: float, aim: float, reason: str) -> str:
+        """Go on in the arc length where the path turns too sharply for steps of its load factor, as that of a
+        strip with a small imperfection does at its Euler load; returns why the path stops, or nothing.
 
         A limit point that lies ahead is kept as a critical point.
         """
+        limit, onward = None, None
+        if self.watch.is_resolved(self.here):
+            limit, onward = _beyond(self.watch, self.here, aim, target)
+        if onward is not None:
+            self.here, self.at = onward.here, onward.here.load_factor
+            self.done_here += onward.done_here
+            self.known = deque([(self.at, self.here)], maxlen=KNOWN_STATES)
+            self.trail.append(self.here)
+            return ""
         while self.trail and not self.watch.is_resolved(self.trail[-1]):
             self.trail.pop()
         self.points += self.trail[-1:]
         self.done += [self.done_here] * len(self.trail[-1:])
-        limit = _limit_beyond(self.watch, self.here, aim) if self.watch.is_resolved(self.here) else None
         if limit is not None:
             self.watch.critical.append(limit)
             reason = f"it buckles, a {limit.kind}: the stiffness vanishes there ({reason})"
@@ -183,7 +202,7 @@ class ArcFollower(Follower):
         self.step = self.first = change / abs(self.here.slope)
 
     def go_on(self) -> str:
-        """One step, in halves where it has to be; returns why it failed, or nothing."""
+        """Make one step, in halves where it has to be; return why it failed, or nothing."""
         while True:
             found, reason = self.try_to(self.at + self.step)
             if not reason:
@@ -243,13 +262,27 @@ class ArcFollower(Follower):
         return normal, self.here.slope
 
 
-def _limit_beyond(watch: Watch, here: Point, aim: float) -> CriticalPoint | None:
-    """The limit point that the path from a state on goes over in its arc length, if it does."""
+def _beyond(
+    watch: Watch, here: Point, aim: float, target: float
+) -> tuple[CriticalPoint | None, ArcFollower | None]:
+    """Follow a path in its arc length from a state whose next step, to ``aim``, failed.
+
+    Returns the limit point that the path goes over, if it does; or the follower, at a state with the load
+    factor as its parameter, if it comes a part of the way to the load factor ``target``.
+    """
     onward, beyond = aim - here.load_factor, Watch(watch.work, leaves=False, by_load=False)
     follower = ArcFollower(beyond, here, (), math.copysign(math.inf, onward), 2.0 * abs(onward))
     for _ in range(BEYOND):
         _, reason = follower.try_to(follower.at + follower.step)
         if beyond.critical:
-            return next((each for each in beyond.critical if each.kind != BIFURCATION), None)
+            return next((each for each in beyond.critical if each.kind != BIFURCATION), None), None
+        way = (follower.here.load_factor - here.load_factor) / (target - here.load_factor)
+        if AROUND <= way <= 1.0:
+            z = follower.here.z
+            point = corrected(watch.work, z, follower.here.load_factor, np.zeros_like(z), 1.0)
+            if point is None:
+                return None, None
+            follower.here = point
+            return None, follower
         follower.step *= 0.25 if reason else 2.0
-    return None
+    return None, None

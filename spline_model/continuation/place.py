@@ -25,7 +25,10 @@ class Place:
     system: System | None
 
     def at(self, load_factor: float, rotation: float = math.nan) -> str:
-        """One place; rotation [rad] of the driven body, if it is known better than by the load factor."""
+        """Return the words for one place.
+
+        load_factor [1]; rotation [rad] of the driven body, if it is known better than by the load factor.
+        """
         if self.system is None:
             return f"{100 * load_factor:.6g} % of weight and pre-strain"
         if self._is_steady:
@@ -33,7 +36,7 @@ class Place:
         return f"load factor {self._share(load_factor):.6g}{self._acting(load_factor, rotation)}"
 
     def between(self, last: float, following: float) -> str:
-        """Two neighbouring places."""
+        """Return the words for two neighbouring places, by their load factors [1]."""
         if self.system is None:
             return f"{100 * last:.6g} and {self.at(following)}"
         if self._is_steady:

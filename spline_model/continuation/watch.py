@@ -38,7 +38,8 @@ class Watch:
 
     by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
     whether the path is to leave its branch at the next bifurcation; place: what a load factor is
-    called; before: what is to be said of what came before the path, and settled: its critical points.
+    called; before: what is to be said of what came before the path, and settled: its critical points;
+    grown: share of weight and pre-strain that the path begins under.
     """
 
     def __init__(self, work: Followed, *, leaves: bool, by_load: bool) -> None:
@@ -46,17 +47,23 @@ class Watch:
         self.place, self.before = Place(system=None if work.grows else work.system), ""
         self.critical: list[CriticalPoint] = []
         self.settled: tuple[CriticalPoint, ...] = ()
-        self.note = ""
+        self.note, self.grown = "", 1.0
         self._finer: Followed | None = None
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
-        """Why a converged state is not the next one; empty if it may be."""
+        """Return why a converged state is not the next one; empty if it may be.
+
+        here: state before. predicted, z: unknowns (N,) [m, rad, N] of prediction and state. load_factor [1].
+        """
         unit = self.work.unit[: self.work.count]
         reason = self.work.refuse(z) or left_the_branch(unit, here.z, predicted, z)
         return reason or self.work.unresolved(z, load_factor)
 
     def go(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
-        """Where a step from here to a sound point ends, there or on another branch, and why it is no step."""
+        """Return where a step [1] from here to a sound point ends, and why it is no step.
+
+        It ends there or on another branch. The reason is empty for a sound step.
+        """
         reason = jumped(here, point, step, self.work.energy)
         if reason:
             return here, reason
@@ -113,8 +120,10 @@ class Watch:
         return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
 
     def remark(self, inertia: int = 0) -> str:
-        """Where a path that reached its end passed critical points, and whether its last state, with that
-        inertia, is unstable; empty if neither."""
+        """Return where a path that reached its end passed critical points, and whether its end is unstable.
+
+        inertia: negative eigenvalues of the last state. The text is empty if neither is so.
+        """
         said, told = [self.before, self.note], () if self.note else self.critical
         for kind in dict.fromkeys(c.kind for c in told):
             places = ", ".join(self.place.at(c.load_factor, c.rotation) for c in told if c.kind == kind)
@@ -140,6 +149,7 @@ class Watch:
             critical_points=(*self.settled, *self.critical),
             counters=dict(vars(self.work.counters)),
             history=tuple(history),
+            grown=self.grown,
             **rows,
         )
 

@@ -171,7 +171,7 @@ class DrivenRotation(Driven):
 
     @property
     def parts(self) -> dict[int, float]:
-        """The rotation."""
+        """The rotation [rad] under its axis, 2."""
         return {2: self.angle}
 
     def _times(self, factor: float) -> Self:
@@ -213,7 +213,7 @@ class DrivenDisplacement(Driven):
 
     @property
     def parts(self) -> dict[int, float]:
-        """The displacements."""
+        """The prescribed displacements [m] under their axes, 0 and 1."""
         return {axis: part for axis, part in enumerate(self.displacement) if part is not None}
 
     def _times(self, factor: float) -> Self:
@@ -241,7 +241,7 @@ class Sized(Load):
         return self._times(_factor_of(self.history, time))
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """Place in z, value and kind of each component."""
+        """Return place in z, value [N, N m] and kind of each component."""
         raise NotImplementedError
 
 
@@ -260,7 +260,7 @@ class AppliedForce(Sized):
         return replace(self, force=(factor * self.force[0], factor * self.force[1]))
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """fx and fy of the body."""
+        """Return place in z, value [N] and kind of fx and fy of the body."""
         kind = FOLLOWER if self.follower else FORCE
         return [(layout.bodies[self.body] + k, force, kind) for k, force in enumerate(self.force)]
 
@@ -276,7 +276,7 @@ class AppliedMoment(Sized):
         return replace(self, moment=factor * self.moment)
 
     def components(self, layout: Layout) -> list[tuple[int, float, int]]:
-        """The moment of the body."""
+        """Return place in z, value [N m] and kind of the moment of the body."""
         return [(layout.bodies[self.body] + 2, self.moment, MOMENT)]
 
 

@@ -24,29 +24,30 @@ LEAST = 0.25
 """Part of the compliance without roots below which that with roots does not fall between their peaks."""
 
 
+@lru_cache(maxsize=256)
 def rigidity_of(
     ratio: complex,
     poisson_ratio: float,
     degree: int,
-    u: Array,
-    reach: tuple[float, float] = (0.0, 1.0),
-    roots: tuple[complex, complex] = (0.0, 0.0),
+    at: bytes,
+    reach: tuple[float, float],
+    roots: tuple[complex, complex],
 ) -> Array:
-    """Return R / EI of a piece of a strip, as a curve of a degree follows it.
+    """Return R / EI of a piece of a strip, as a curve of a degree follows it; it is computed once.
 
     Parameters
     ----------
     ratio : width over length b/L; 0 where no clamp holds the section flat.
     poisson_ratio : of the material.
     degree : degree of the curve.
-    u : places along the piece (P,), 0 to 1.
+    at : places u along the piece (P,), 0 to 1, as bytes.
     reach : where the piece begins and ends, in parts of the strip's length.
     roots : lengths of the roots at both ends over the strip's length. Their compliance stands there as delta
         functions.
 
     Returns
     -------
-    R / EI at u (P,).
+    R / EI at u (P,), read-only.
 
     Notes
     -----
@@ -55,27 +56,14 @@ def rigidity_of(
     however thin the layers are. With more control points the result tends to R. Roots are projected up to
     ROOT_DEGREE, and as far as the compliance stays above LEAST of the compliance without them.
     """
+    u = np.frombuffer(at)
     if not ratio and not any(roots):
         return np.ones(len(u))
-    return _rigidity(ratio, poisson_ratio, degree, reach, roots, u.tobytes())
-
-
-@lru_cache(maxsize=256)
-def _rigidity(
-    ratio: complex,
-    poisson_ratio: float,
-    degree: int,
-    reach: tuple[float, float],
-    roots: tuple[complex, complex],
-    at: bytes,
-) -> Array:
     most = max(2, degree - 3)
     count, sign = 2.0 * np.arange(most + 1) + 1.0, (-1.0) ** np.arange(most + 1)
     plate = count * (_projected(ratio, poisson_ratio, most, reach) if ratio else np.eye(1, most + 1)[0])
     peaks = count * (roots[0] * sign + roots[1])
-    values, fine = (
-        legendre.legvander(2.0 * u - 1.0, most) for u in (np.frombuffer(at), np.linspace(0.0, 1.0, 65))
-    )
+    values, fine = (legendre.legvander(2.0 * x - 1.0, most) for x in (u, np.linspace(0.0, 1.0, 65)))
     compliance = plate
     for highest in range(min(most, ROOT_DEGREE), -1, -1):
         compliance = plate + np.where(np.arange(most + 1) <= highest, peaks, 0.0)
@@ -86,24 +74,19 @@ def _rigidity(
     return np.asarray(rigidity)
 
 
+@lru_cache(maxsize=256)
 def curl_terms(
-    ratio: complex, poisson_ratio: float, degree: int, u: Array, reach: tuple[float, float] = (0.0, 1.0)
+    ratio: complex, poisson_ratio: float, degree: int, at: bytes, reach: tuple[float, float]
 ) -> Array:
     """Return the reduction of a plate's rigidity by the curl at u (P,) of a piece, as a curve follows it.
 
     Coefficients (P, TERMS) of f, f^2, ..., with f the share of the curl that curvature leaves. They take
     1 - (1 - nu^2) R / EI of clamps of a strip of width f b/L at TERMS values of f, which are Chebyshev's.
+    Parameters are as of ``rigidity_of``; the array is read-only.
     """
+    most, u = max(2, degree - 3), np.frombuffer(at)
     if not ratio:
         return np.eye(1, TERMS)[np.zeros(len(u), dtype=int)] * poisson_ratio**2
-    return _curl_terms(ratio, poisson_ratio, degree, reach, u.tobytes())
-
-
-@lru_cache(maxsize=256)
-def _curl_terms(
-    ratio: complex, poisson_ratio: float, degree: int, reach: tuple[float, float], at: bytes
-) -> Array:
-    most, u = max(2, degree - 3), np.frombuffer(at)
     filled = 0.5 * (1.0 - np.cos(np.pi * np.arange(TERMS) / (TERMS - 1)))
     values = legendre.legvander(2.0 * u - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
     taken = [np.full(len(u), poisson_ratio**2 + 0.0 * ratio)]

@@ -41,21 +41,21 @@ class Taper(NamedTuple):
     thickness: float
 
     def side(self, name: str, u: Array) -> Array:
-        """Width or thickness over that at the start, at u (P,)."""
+        """Return width or thickness over that at the start [1], at u (P,)."""
         return np.asarray(1.0 + (getattr(self, name) - 1.0) * u)
 
     def area(self, u: Array) -> Array:
-        """Area over that at the start, at u (P,)."""
+        """Return the area over that at the start [1], at u (P,)."""
         return self.side("width", u) * self.side("thickness", u)
 
     @property
     def powers(self) -> tuple[float, float, float]:
-        """Parts of the area over that at the start with 1, u and u^2."""
+        """Return the parts of the area over that at the start [1] with 1, u and u^2."""
         b, t = self.width - 1.0, self.thickness - 1.0
         return 1.0, b + t, b * t
 
     def second_moment(self, u: Array) -> Array:
-        """Second moment of area over that at the start, at u (P,)."""
+        """Return the second moment of area over that at the start [1], at u (P,)."""
         return self.area(u) * self.side("thickness", u) ** 2
 
 
@@ -82,11 +82,13 @@ class Curl:
     reach: tuple[float, float] = (0.0, 1.0)
 
     def drop(self, degree: int, u: Array) -> Array:
-        """The part of the plate's rigidity that the curl takes at u (P,) of the piece, as a curve of that
-        degree can follow it: coefficients (P, TERMS) of f, f^2, ...; zeros where f is 1."""
+        """Return the part of the plate's rigidity [1] that the curl takes at u (P,) of the piece.
+
+        A curve of that degree can follow it: coefficients (P, TERMS) of f, f^2, ...; zeros where f is 1.
+        """
         if not self.flattening:
             return np.zeros((len(u), TERMS))
-        return curl_terms(self.clamped, self.poisson_ratio, degree, u, self.reach)
+        return curl_terms(self.clamped, self.poisson_ratio, degree, u.tobytes(), self.reach)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -151,9 +153,9 @@ class Bending(StrainEnergy):
         self.require_sum(*MEASURES)
 
     def rigidity_at(self, degree: int, u: Array) -> Array:
-        """Rigidity at u (P,) of a strip of that degree [N m^2]."""
+        """Return the rigidity at u (P,) of a strip of that degree [N m^2]."""
         curl = Curl(poisson_ratio=0.0, clamped=0.0, flattening=0.0) if self.curl is None else self.curl
-        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u, curl.reach, self.roots)
+        stiffer = rigidity_of(curl.clamped, curl.poisson_ratio, degree, u.tobytes(), curl.reach, self.roots)
         if self.taper is not None:
             stiffer = stiffer * self.taper.second_moment(u)
         return self.flexural_rigidity * stiffer
@@ -169,7 +171,7 @@ class Bending(StrainEnergy):
         return replace(self, curl=self.curl and replace(self.curl, clamped=ratio), roots=roots)
 
     def moment_at(self, strain: Array, degree: int, u: Array) -> Array:
-        """Bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
+        """Return bending moments (P, ...) [N m] at u (P,) of curvatures from the stress-free ones [1/m]."""
         moment = self.rigidity_at(degree, u)[:, None] * strain
         if self.curl is not None and self.curl.flattening > 0.0:
             moment *= curl_factors(strain, self.curl.drop(degree, u), self.curl.flattening)[1]
@@ -237,5 +239,5 @@ class MixedStretching(StrainEnergy):
         self.require_sum(MEASURES[0])
 
     def compliance_at(self, u: Array) -> Any:
-        """Axial compliance at u (P,) [1/N]."""
+        """Return the axial compliance at u (P,) [1/N]."""
         return self.axial_compliance if self.taper is None else self.axial_compliance / self.taper.area(u)

@@ -255,7 +255,11 @@ SEVERAL = (
 
 
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
-    """Refuse unknown, doubled, contradictory and missing effects, and parameters of absent ones."""
+    """Check the names of effects and of their parameters.
+
+    Raises InvalidParameter for unknown, doubled, contradictory and missing effects, and for parameters of
+    absent ones.
+    """
     for name in (*names, *parameters):
         if name == "shear":
             raise InvalidParameter("effects", name, "splines without shear (use --model fe-shear)")

@@ -56,7 +56,7 @@ class Masses(NamedTuple):
 
     @classmethod
     def of(cls, motion: Motion, model: Reduced) -> Masses:
-        """Those of a motion of the reduced mechanism."""
+        """Return those of a motion of the reduced mechanism."""
         layout, length, energy = model.system.layout, model.length, model.energy
         poses, strips, loads, drives = len(model.bodies.rest), model.strips, motion.loads, motion.drives
         unit, begin = model.system.scales.pose**2 / energy, layout.poses.start
@@ -122,14 +122,14 @@ class State(NamedTuple):
 
     @classmethod
     def of(cls, sizes: dict[str, int]) -> State:
-        """One at zero; sizes: of what the letters stand for."""
+        """Return one at zero; sizes: of what the letters stand for."""
         state = zeros(cls, sizes)
         record = np.zeros(sum(each.size for each in state[:RECORDED]))
         parts = dict(zip(cls._fields, state.parted(record[None]), strict=False))
         return state._replace(record=record, **{name: each[0] for name, each in parts.items()})
 
     def parted(self, records: Array) -> list[Array]:
-        """Views of y, rate, velocity, clamped and reaction of records (R, W), (R, ...) each."""
+        """Return views of y, rate, velocity, clamped and reaction of records (R, W), in SI units (R, ...)."""
         ends = np.cumsum([each.size for each in self[:RECORDED]])
         parts = zip(np.split(records, ends[:-1], axis=1), self, strict=False)
         return [each.reshape(len(records), *like.shape) for each, like in parts]
@@ -237,7 +237,10 @@ class Poses(NamedTuple):
 
     @classmethod
     def of(cls, y: Array, rate: Array, masses: Masses, all_bodies: int) -> Poses:
-        """A state with these coordinates and velocities."""
+        """Return a state with these coordinates y (Y,) [m, rad, N] and velocities rate (Y,).
+
+        all_bodies: number of bodies, driven ones included.
+        """
         light = np.flatnonzero(masses.inertia == 0.0)
         still = [*np.setdiff1d(light, masses.frames.carried), *range(len(rate), all_bodies)]
         poses = zeros(cls, {"Y": len(y), "Q": len(rate), "Q'": all_bodies})

@@ -201,7 +201,10 @@ def standing(scene: Scene, strips: Any, y: Array, s: int) -> str:
 
 
 def why(counters: NDArray[np.int64], scene: Scene, strips: Any, y: Array, s: int) -> str:
-    """Why a step from y (Y,) was given up, by what was counted, and what helps; s: the first to fold."""
+    """Return why a step from y (Y,) [m, rad, N] was given up, by the counted events, and what helps.
+
+    s: the first strip to fold.
+    """
     strip, where = scene.strips[s], standing(scene, strips, y, s)
     helps = f"take a shorter step, or more control points than {strip.basis.control_points}"
     if counters[HALVED] > MOST_HALVED + MOST_HALVED_A_STEP * counters[WHOLE]:
@@ -247,13 +250,13 @@ class Stepper(Moves):
         return int(_run(*asked, *given, records))
 
     def record(self) -> Array:
-        """The present state's record (W,)."""
+        """Return the present state's record (W,): lengths over L, energies over EI/L [1]."""
         record = np.zeros(self.width)
         store(self._state, self._arrays, self._masses, record)
         return record
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records.
+        """Return unknowns (R, N) [m, rad, N] and velocities (R, Q) [m/s, rad/s] of records (R, W).
 
         Axial forces and multipliers are the means of the steps that end there.
         """
@@ -295,10 +298,10 @@ class Stepper(Moves):
             self._state.totals[0] -= lost
 
     def kept(self) -> list[Array]:
-        """Copies of the state's arrays, for ``take_back``."""
+        """Return copies of the state's arrays, in their units and shapes, for ``take_back``."""
         return [array.copy() for array in self._state]
 
     def take_back(self, kept: list[Array]) -> None:
-        """Return to a state that was kept."""
+        """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
         for array, value in zip(self._state, kept, strict=True):
             array[:] = value

@@ -249,7 +249,7 @@ def highest_frequency(motion: Motion, z: Array) -> float:
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
     if motion.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
-        expected = "energy (fixed step) for damping, loads, drives and supports"
+        expected = "energy (the default) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
     layout = motion.system.layout
     blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]

@@ -36,10 +36,10 @@ class Steps(NamedTuple):
 
     @classmethod
     def of(cls, duration: float, step: float, records: int | None, width: int) -> Steps:
-        """As many as there are in a duration, for at most so many records of ``width`` numbers each.
+        """Return the steps of a duration [s], for at most so many records of ``width`` numbers each.
 
-        Raises InvalidParameter for a step longer than the duration, and for records that do not fit
-        into MOST_MEMORY.
+        step [s]: the longest one. Raises InvalidParameter for a step longer than the duration, and for
+        records that do not fit into MOST_MEMORY.
         """
         if step > duration:
             raise InvalidParameter("step", step, f"at most the duration, {duration:g} s")
@@ -87,11 +87,11 @@ class Moves:
     width: int
 
     def instants(self, run: Steps) -> list[float]:
-        """When drives begin, change or end inside a run [s]."""
+        """Return the instants inside a run at which drives begin, change or end [s]."""
         return self.motion.event_times(run.steps * run.step, run.step)
 
     def advance(self, time: float, duration: float) -> bool:
-        """Advance by a step of ``duration``, halved at need; whether it was done."""
+        """Advance from ``time`` [s] by ``duration`` [s], in halves at need; return whether it was done."""
         return self.take(time, duration, 0, 1, 2, np.zeros((0, self.width))) == 1
 
     def take(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
@@ -136,31 +136,35 @@ class Moves:
         return True
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
-        """Take whole steps; the number of the first that fails, at whose begin all is left, or end."""
+        """Take whole steps of length ``step`` [s] from the instant ``time`` [s] on.
+
+        begin, end: numbers of the steps; every: which of them are written to ``records`` (R, W). Returns the
+        number of the first step that fails, at whose begin all is left, or end.
+        """
         raise NotImplementedError
 
     def record(self) -> Array:
-        """The present state's record (W,)."""
+        """Return the present state's record (W,), in the units of the scheme."""
         raise NotImplementedError
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
-        """Unknowns (R, N) and velocities (R, Q) of records."""
+        """Return unknowns (R, N) [m, rad, N] and velocities (R, Q) [m/s, rad/s] of records (R, W)."""
         raise NotImplementedError
 
     def shown(self, records: Array) -> tuple[Array, Array]:
-        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        """Return poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records (R, W)."""
         scales, bodies = self.motion.system.scales, len(self.motion.turns)
         poses = records[:, : 3 * bodies] * np.tile(scales.pose, bodies)
         return poses, records[:, -ENERGIES:] * scales.energy
 
     def counted(self, steps: int) -> dict[str, int]:
-        """What was counted, by name; steps: of the good records."""
+        """Return the counted iterations by name; steps: of the good records."""
         places = {"steps": STEPS, "halved_steps": HALVED, "newton_iterations": NEWTON}
         places["factorisations"] = FACTORISATIONS
         return {name: int(self.counters[place]) for name, place in places.items()}
 
     def look(self) -> tuple[Array, Array, Array]:
-        """Unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
+        """Return unknowns (1, N), velocities (1, Q) and energies (1, 5) [J] of the present state."""
         record = self.record()[None]
         return *self.unknowns(record), self.shown(record)[1]
 
@@ -168,7 +172,11 @@ class Moves:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
 
     def stopped(self, record: float, reached: float, *, grows: bool) -> str:
-        """Why the run stopped: record: when the first one is due that is not good [s]; grows: its energy."""
+        """Return why the run stopped.
+
+        record: when the first one is due that is not good [s]; reached: instant reached [s]; grows: whether
+        its energy grows.
+        """
         if grows:
             return f"stopped at {record:.6g} s: the energy grows by more than {self.most_gain:g} of itself"
         return f"stopped at {reached:.6g} s: {self.reason()}"

@@ -53,12 +53,12 @@ def stepper(start: Start) -> Moves:
         )
     if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
         raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
-    motion.system.require_dead("effects")
+    motion.system.require_dead("effects", "strip_inertia")
     if motion.drives.row.size:
         raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
     own = len(motion.system.scene.own_bodies)
     if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
-        expected = "loads at centres of bodies only, with massless strips"
+        expected = "strip_inertia for it: with massless strips loads act at centres of bodies"
         raise InvalidParameter("effects", "a load at a tip or point", expected)
     model, y = start.known.last or (reduced(motion.system), None)
     if model is None:

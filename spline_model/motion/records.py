@@ -42,17 +42,17 @@ class Whole:
     every: int = 1
 
     def thinned(self, every: int) -> Whole:
-        """Every so many of the records, from the first on."""
+        """Return every so many of the records, from the first on."""
         return Whole(self.motion, self.make, every * self.every)
 
     @kept
     def both(self) -> tuple[Array, Array]:
-        """z (R, N) and v (R, Q)."""
+        """Return unknowns z (R, N) [m, rad, N] and velocities v (R, Q) [m/s, rad/s]."""
         z, v = self.make()
         return z[:: self.every], v[:: self.every]
 
     def free_ends(self, every: int) -> Array:
-        """Places of the strips' ends that no clamp holds, of every so many of the records (R, E, 2) [m]."""
+        """Return the places (R, E, 2) [m] of the E free strip ends, at every so many records."""
         system = self.motion.system
         free = system.scene.free_ends
         ends = np.array([system.layout.strip(name).stop for name in free], dtype=int)
@@ -60,7 +60,7 @@ class Whole:
 
     @kept
     def gaps(self) -> Array:
-        """Largest constraint residual [m] at each record, (R,)."""
+        """Return the largest constraint residual [m] at each record, (R,)."""
         z, _ = self.both
         largest = np.zeros(len(z))
         for c in range(len(self.motion.system.tables.clamps.place)):
@@ -196,12 +196,12 @@ class Trajectory(Tabulated):
 
     @property
     def states(self) -> Array:
-        """Unknowns (T, N) of the system in motion."""
+        """Unknowns (T, N) of the system in motion [m, rad, N]."""
         return self.whole.both[0]
 
     @property
     def velocities(self) -> Array:
-        """Velocities (T, Q) of the system in motion."""
+        """Velocities (T, Q) of the coordinates in motion [m/s, rad/s]."""
         return self.whole.both[1]
 
     @property
@@ -240,7 +240,7 @@ class Trajectory(Tabulated):
         return self.bodies[self.body][:, :2]
 
     def moves(self, every: int = 1) -> tuple[Array, Array]:
-        """Rotations of all bodies (R, B) [rad], and places of them and of free ends (R, P, 2) [m].
+        """Return rotations of all bodies (R, B) [rad], and places of them and of free ends (R, P, 2) [m].
 
         They are those of every so many of the records.
         """

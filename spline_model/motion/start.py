@@ -84,7 +84,7 @@ class Motion:
         return np.array([start + 2 for start in self.system.layout.bodies.values()], dtype=np.int64)
 
     def later(self, time: float) -> Motion:
-        """With the clock set to ``time`` [s]: histories and drives are that far on."""
+        """Return the motion with the clock set to ``time`` [s]: histories and drives are that far on."""
         drives, loads = self.drives, self.loads
         drives = drives._replace(
             times=drives.times - time, begin=drives.begin - time, until=drives.until - time
@@ -92,7 +92,7 @@ class Motion:
         return replace(self, drives=drives, loads=loads._replace(times=loads.times - time))
 
     def event_times(self, duration: float, step: float) -> list[float]:
-        """Instants inside at which a drive begins or ends or a history has a corner [s].
+        """Return the instants inside at which a drive begins or ends or a history has a corner [s].
 
         A step that ends there keeps its order, and a corner of an active drive, which is a jump of
         its rate, does not ring on as it would in a step across it.
@@ -106,18 +106,21 @@ class Motion:
         return [float(time) for time in inside[apart]]
 
     def drives_at(self, time: float) -> Places:
-        """1 for each drive row that holds at that time [s], 0 for the others."""
+        """Return 1 for each drive row (D,) that holds at that time [s], 0 for the others."""
         return ((self.drives.begin < time) & (time < self.drives.until)).astype(np.int64)
 
     def from_here(self, z: Array, active: Places, before: Places, time: float) -> Motion:
-        """With the drives that begin now starting from where their bodies are."""
+        """Return the motion with the drives that begin now starting from where their bodies are.
+
+        z (N,): unknowns [m, rad, N]; active, before: drive rows (D,) that hold now and before; time [s].
+        """
         drives, origin = self.drives, self.drives.origin.copy()
         for d in np.flatnonzero(active & ~before.astype(bool)):
             origin[d] = z[drives.coordinate[d]] - factor_of(d, time, drives) * drives.target[d]
         return replace(self, drives=drives._replace(origin=origin))
 
     def catch(self, z: Array, v: Array, active: Places, time: float, span: float) -> tuple[Array, float]:
-        """Velocity that the active drives allow, and the kinetic energy that the change takes [J].
+        """Return the velocity (Q,) that the active drives allow, and the kinetic energy that is lost [J].
 
         v+ is the velocity nearest to v in the kinetic metric that satisfies all constraints and
         the drives' rates over the next ``span`` [s]: the effect of impulses along the constraints,
@@ -209,7 +212,10 @@ class Motion:
         return self.system.with_tables(acting=loads, loads=loads.rows(loads.turns != FOLLOWER))
 
     def require_material(self) -> None:
-        """Refuse another measure than the material one, which only the leapfrog integrates."""
+        """Check that the measure is the material one; only the leapfrog integrates another.
+
+        Raises InvalidParameter for another measure.
+        """
         for bending in self.system.scene.of(Bending):
             if bending.measure != "material":
                 raise InvalidParameter("measure", bending.measure, "material, or the integrator leapfrog")
@@ -229,12 +235,12 @@ class Start:
 
     @property
     def acceleration(self) -> Array:
-        """Consistent with the state, (Q,); worked out when it is first asked for."""
+        """Acceleration (Q,) [m/s^2, rad/s^2] of the state; computed at its first access."""
         return self._consistent[0]
 
     @property
     def z(self) -> Array:
-        """The unknowns (N,) with the axial forces and multipliers that go with it."""
+        """Unknowns (N,) [m, rad, N] with the axial forces and multipliers of the state."""
         return self._consistent[1]
 
 

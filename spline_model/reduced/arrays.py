@@ -65,7 +65,7 @@ class Space(NamedTuple):
 
     @classmethod
     def of(cls, bodies: Bodies, size: int, dtype: Any = float) -> Self:
-        """Fresh ones for that many unknowns."""
+        """Return fresh ones for that many unknowns."""
         q, f = bodies.load.size, bodies.free.size
         shapes = (q, q), (f, f), (8, max(q, 7)), (2 * KNOWN + 4, size), (SUMS,)
         return cls(*(np.zeros(shape, dtype=dtype) for shape in shapes))
@@ -112,7 +112,7 @@ class Answer(NamedTuple):
     counters: NDArray[np.int64]
 
     def rows(self, kept: slice) -> Answer:
-        """Some of the states."""
+        """Return some of the states."""
         if kept == slice(0, len(self.done)):
             return self
         by_state = {name: getattr(self, name)[kept] for name in self._fields if name != "counters"}
@@ -120,7 +120,7 @@ class Answer(NamedTuple):
 
     @classmethod
     def empty(cls, states: int, size: int, held: int) -> Self:
-        """One of that many states that are not solved yet."""
+        """Return one of that many states that are not solved yet."""
         return cls(
             y=np.zeros((states, size)),
             reaction=np.zeros((states, held)),

@@ -92,7 +92,7 @@ class Elements(Followed):
 
     @cached_property
     def place(self) -> NDArray[np.int64]:
-        """Place of each entry of y in z (Y,)."""
+        """Place of each entry of y (Y,) in z, an index."""
         poses, (count, modes) = len(self.model.bodies.rest), self.model.strips.compliance.shape
         return _places(poses, count, (self.model.size - poses) // count - modes, modes)
 
@@ -126,7 +126,7 @@ class Elements(Followed):
         return self._follow(Route(load_factors, origin, target, 1.0), start, self.arrays)
 
     def grown(self) -> Array | None:
-        """The state (Y,) under all weight and pre-strain, grown from none; None where something happens."""
+        """State (Y,) under all weight and pre-strain [m, rad, N]; None if something happens on the way."""
         origin, target = self.model.drives
         route = Route(np.array([0.0, 1.0]), origin, 0.0 * target, 0.0, swells=True)
         answer = self._follow(route, at_rest(self.model), self.loose)
@@ -163,11 +163,14 @@ class Elements(Followed):
         return self.model.size + place if place >= 0 else None
 
     def y(self, z: Array) -> Array:
-        """The state in the order of the elements."""
+        """Return the state (Y,) in the order of the elements, of unknowns z (N,) [m, rad, N]."""
         return z[..., self.place]
 
     def fill(self, z: Array, load_factor: float, share: float) -> tuple[float, float]:
-        """Gradient, tangent and energies at z."""
+        """Fill gradient and tangent at z (N,); return bending and axial energy [J].
+
+        load_factor [1] of the loads; share [1] of the preload.
+        """
         model = self.model
         arrays = self.arrays if share == 1.0 else self.loose
         if share != 1.0:
@@ -187,7 +190,7 @@ class Elements(Followed):
         return float(out[BENDING]), float(out[AXIAL])
 
     def external(self, z: Array) -> tuple[float, float]:
-        """Work from rest to z of loads and of weight."""
+        """Return the work from rest to z (N,) of loads and of weight [J]."""
         bodies, preload = self.model.bodies, self.preload
         moved = z[: len(bodies.rest)] - bodies.rest
         loads, weight = (float(moved @ force[: len(moved)]) for force in (bodies.load, bodies.weight))
@@ -195,7 +198,7 @@ class Elements(Followed):
         return loads, weight + float(hung.sum() - preload.hung[0])
 
     def in_springs(self, z: Array) -> float:
-        """Energy of the springs."""
+        """Return the energy of the springs at z (N,) [J]."""
         springs = self.model.bodies.springs
         moved = z[: len(springs)] - self.model.bodies.rest[: len(springs)]
         return float(0.5 * moved @ springs @ moved)
@@ -209,7 +212,7 @@ class Elements(Followed):
         return force
 
     def refuse(self, z: Array) -> str:
-        """Why a state that was just evaluated is no strip."""
+        """Return why a state z (N,) [m, rad, N] that was just evaluated is no strip; empty if it is one."""
         own = self.place[len(self.model.bodies.rest) :].reshape(len(self.model.strips.roots), -1)
         last = own.shape[1] - self.model.strips.compliance.shape[1]
         if (z[own[:, last - 2 : last]] > 0.0).all() and self.arrays.space.out[SLOWEST] > checks.SLOWEST_SPEED:
@@ -217,20 +220,20 @@ class Elements(Followed):
         return super().refuse(self.unknowns(z))
 
     def defect(self, z: Array, load_factor: float) -> float:
-        """The moment defect of a state."""
+        """Return the moment defect [1] of a state z (N,) at a load factor [1]."""
         share = self.acting(load_factor)[1]
         self.fill(z, load_factor, share)
         return float(_defect_of(self.y(z), self.arrays if share == 1.0 else self.loose))
 
     def state(self, unknowns: Array) -> Array:
-        """z of the scene's unknowns, whose clamps hold."""
+        """Return z (N,) [m, rad, N] of the scene's unknowns (N,), whose clamps hold."""
         drives, z = self.system.drives, np.zeros(len(self.gradient))
         z[self.place] = from_unknowns(self.model, unknowns)
         z[self.held] = unknowns[drives.row] * self.model.drive_length / self.model.energy
         return z
 
     def unknowns(self, z: Array) -> Array:
-        """The scene's unknowns at z (N,) or (S, N)."""
+        """Return the scene's unknowns [m, rad, N] at z (N,) or (S, N)."""
         states = np.atleast_2d(z)
         return unknowns_of(self.model, self.y(states), states[:, self.held]).reshape(*z.shape[:-1], -1)
 
@@ -243,7 +246,10 @@ class Elements(Followed):
         return np.asarray((there - back) / (2.0 * part * self.system.scales.unit[:count]))
 
     def rows(self, points: Sequence[Point], done: Sequence[float]) -> dict[str, Any]:
-        """What a ``Path`` has by state."""
+        """Return the arrays that a ``Path`` has by state, a row for each point.
+
+        done (S,): int P_lambda d(lambda) to each of the S points [J].
+        """
         z, factor, stiffness, energies, inertia = (
             np.array([getattr(p, name) for p in points])
             for name in ("z", "load_factor", "stiffness", "energies", "inertia")
@@ -261,7 +267,7 @@ class Elements(Followed):
         return self.compiled_rows(factor, answer) | {"z": z}
 
     def compiled_rows(self, factors: Array, answer: Answer) -> dict[str, Any]:
-        """The same from the answer at load factors (S,)."""
+        """Return the same from the answer at load factors (S,) [1]."""
         model = self.model
         z = np.zeros((len(factors), len(self.gradient)))
         z[:, self.place], z[:, self.held] = answer.y, answer.reaction

@@ -46,7 +46,7 @@ class Reduced:
         return len(self.bodies.rest) + len(self.strips.roots) * (own + modes)
 
     def places(self, strip: int) -> tuple[slice, slice]:
-        """Where w and a of a strip stand in y."""
+        """Return where w and a of a strip stand in y."""
         own, modes = 2 * len(self.shape.order) - 6, int(self.strips.compliance.shape[1])
         at = len(self.bodies.rest) + strip * (own + modes)
         return slice(at, at + own), slice(at + own, at + own + modes)
@@ -73,7 +73,7 @@ class Reduced:
         return drives.origin / self.drive_length, drives.target / self.drive_length
 
     def let_go(self, system: System) -> Reduced:
-        """That of a system in which nothing is driven, with the same strips and bodies."""
+        """Return that of a system in which nothing is driven, with the same strips and bodies."""
         every = np.arange(len(self.bodies.load))
         free = np.delete(every, self.bodies.frames.carried)
         bodies = self.bodies._replace(free=free, held=every[:0], driven=-1)
@@ -93,11 +93,11 @@ class Reduced:
         return Arrays(self.bodies, self.strips, self.shape, self.local(), space)
 
     def local(self) -> Local:
-        """Working arrays of the strips."""
+        """Return working arrays of the strips."""
         return Local.of(self.strips, len(self.shape.order))
 
     def at_stations(self, stations: Array) -> Reduced:
-        """The same with stations u (P,) in place of the Gauss points, where sections are recovered."""
+        """Return the same with stations u (P,) [1] for Gauss points, where sections are recovered."""
         system = self.system
         shape = shape_at(system.scene.strips[0].basis, stations, np.zeros(len(stations)))
         speeds = speeds_of(system.scene, shape, self.length)
@@ -207,7 +207,7 @@ def in_units(system: System, matrix: Array) -> Array:
 
 
 def at_rest(model: Reduced) -> Array:
-    """Return the state y at rest."""
+    """Return the state y (Y,) at rest [1]: lengths over L, turns [rad], axial forces over EI/L^2."""
     y, bodies = np.zeros(model.size), model.bodies
     y[: len(bodies.rest)] = bodies.rest
     for s, strip in enumerate(model.system.scene.strips):

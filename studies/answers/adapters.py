@@ -6,10 +6,10 @@ from typing import Any
 
 from studies.answers.answer import Answer
 from studies.answers.models import Asked, model_of, put
-from studies.answers.motion import NOT_JUDGED, NOTHING_MOVES, UNSTABLE, Motion, Spectrum
+from studies.answers.motion import MOVED, NOT_JUDGED, NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.design import Design
+from studies.cases.design import Design, flexural_scale
 from studies.cases.effects import Effects
 from studies.cases.mechanism import Body, Mechanism, Strip
 from studies.errors import BadInput
@@ -164,7 +164,9 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
     """Return a motion that starts in equilibrium; its message reports this, and an unstable equilibrium.
 
     Not asked where a load or a drive has a history, as modes are about the state under full loads. A load
-    that follows its body has no modes: the stability is not judged then, which the message says.
+    that follows its body has no modes: the stability is not judged then, which the message says. Strips of
+    extreme slenderness have forces of release below the round-off of their axial forces: the energy of the
+    motion decides there whether it moves.
     """
     design, effects = answer.design, answer.design.effects
     every = [own for name in effects.tables for own in effects.every(name)]
@@ -172,9 +174,15 @@ def _weighed(answer: Motion, settings: Settings, start: float | None) -> Motion:
         return answer
     if any(own.get("follower") for own in every):
         return replace(answer, message=NOT_JUDGED, resolution="")
-    fall = answer_modes(design, settings, rotation=start, count=1).falls_in
-    message = NOTHING_MOVES if fall is None else UNSTABLE.format(fall)
-    return replace(answer, message=message, resolution="")
+    moved = float(answer.kinetic_energy.max(initial=0.0)) > MOVED * flexural_scale(design)
+    try:
+        fall = answer_modes(design, settings, rotation=start, count=1).falls_in
+    except BadInput as refused:
+        told = f"the stability of the start is not judged: {refused}" if moved else NOTHING_MOVES
+        return replace(answer, message=told)
+    if fall is not None:
+        return replace(answer, message=UNSTABLE.format(fall), resolution="")
+    return answer if moved else replace(answer, message=NOTHING_MOVES, resolution="")
 
 
 def _drive_of(asked: Asked) -> dict[str, Any]:

@@ -111,6 +111,7 @@ class Answer:
         if parts is None:
             return None
         found = asdict(parts)
+        found.pop("stopped", None)  # the message states it
         found |= dict(found.pop("errors", {}))
         return found | self._errors_beside(found)
 

@@ -215,7 +215,13 @@ COMPARED: dict[str, Callable[[Response], Array]] = {
 
 
 class Frequency(NamedTuple):
-    """Frequency of a swing [Hz], or NaN with the reason; rest: that it swings about, in its own unit."""
+    """Frequency of a free vibration.
+
+    Attributes:
+        value: [Hz]; NaN with the reason.
+        reason: why there is none.
+        rest: value that the quantity vibrates about, in its own unit.
+    """
 
     value: float
     reason: str = ""

@@ -19,6 +19,9 @@ from studies.kinds import Array
 CARRIED = 0.2
 #: Kinetic energy over EI/L of the stiffest strip that is none: a turn of some 1e-8 rad.
 STILL = 1e-16
+#: The same, above which a start moves whose forces are below round-off: a turn of some 1e-6 rad. Round-off
+#: alone gave a stable equilibrium up to 3e-14, at lengths of 20 to 3e6 thicknesses.
+MOVED = 1e-12
 NOTHING_MOVES = (
     "nothing moves: the start is in equilibrium with all that acts; rotate a body before its release, or "
     "give a load a history"

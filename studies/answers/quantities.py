@@ -94,7 +94,7 @@ class Scale:
     factor: float = 0.0
 
     def fitting(self, arrays: Iterable[Array]) -> tuple[float, str]:
-        """Return the factor to the unit that suits these values (in SI units), and that unit."""
+        """Return the factor to the unit that suits these values (any shape, in SI units), and that unit."""
         if self.factor:
             return self.factor, self.unit
         largest = max((float(np.nanmax(np.abs(each), initial=0.0)) for each in arrays), default=0.0)

@@ -79,13 +79,6 @@ class Reference(SolvedPath):
     source: str
     finest: Response
 
-    @classmethod
-    def of(cls, path: Response, coarser: Response, source: str) -> "Reference":
-        """Return a fine path unchanged, with its difference to a coarser path as its uncertainty [1]."""
-        arrays = {name: getattr(path, name) for name in ARRAYS.values()}
-        uncertainty = largest_errors(coarser, path)
-        return cls(rotation=path.rotation, **arrays, uncertainty=uncertainty, source=source, finest=path)
-
 
 def reference(design: Design, element: str = "corotational") -> Reference:
     """Solve `design` on the meshes of an element and return their limit.

@@ -113,11 +113,18 @@ class Response(Answer):
         """Stiffness (S, 3, 3) of the driven or only body, about its centre, in x, y and rotation, at fixed
         loads.
 
-        Units: [N/m, N, N m/rad]. It is computed at its first access, and nan with the published forces.
+        Units: [N/m, N, N m/rad]. It is computed at its first access, and nan with the published forces. What
+        is none but round-off of the strips' own stiffness is zero, as of a body that nothing holds.
         """
         if self.settings.get("measure") == "published":
             return read_only(np.full((len(self.load_factor), 3, 3), np.nan))
-        return read_only(np.asarray(self.solution.body_stiffness(self.body)))
+        found = np.asarray(self.solution.body_stiffness(self.body))
+        strips, lever = self.design.strips, max(strip.length for strip in self.design.strips)
+        least = (
+            4.0 * np.finfo(float).eps * max(each.youngs_modulus * each.area / each.length for each in strips)
+        )
+        arms = np.array([1.0, 1.0, lever])
+        return read_only(np.where(np.abs(found) < least * np.outer(arms, arms), 0.0, found))
 
     @classmethod
     def of(cls, asked: Asked, result: Any, **given: Any) -> Self:

@@ -6,7 +6,6 @@ forgotten.
 """
 
 import difflib
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -252,23 +251,4 @@ def _parameters(path: str, name: str, given: Table, label: str) -> dict[str, Any
     """Return the parameters of a table in SI; those of an effect without keys here as they stand."""
     if name not in EFFECT_KEYS:
         return {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
-    found = document.values(path, EFFECT_KEYS[name], given, label)
-    return _free_fall(path, found) if name == "gravity" else found
-
-
-def _free_fall(path: str, found: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the acceleration of gravity that is given by its parts, or by size and direction."""
-    if not found:
-        return {}
-    beside = [key.name for key in EFFECT_KEYS["gravity"][1:] if key.attribute in found]
-    if "acceleration" in found and beside:
-        raise CaseError(
-            f"{path}: effects.gravity.{beside[0]}: got it beside acceleration_m_per_s2, expected one of them"
-        )
-    if "acceleration" in found:
-        return dict(found)
-    downwards = STANDARD["gravity"]["acceleration"]
-    size = found.get("magnitude", math.hypot(*downwards))
-    angle = found.get("direction")
-    x, y = downwards if angle is None else (math.cos(angle), math.sin(angle))
-    return {"acceleration": (size * x / math.hypot(x, y), size * y / math.hypot(x, y))}
+    return document.values(path, EFFECT_KEYS[name], given, label)

@@ -227,12 +227,8 @@ _LED, _ROOT = rules.free_pair("m"), rules.number_or("monolithic", not_negative("
 #: Effect -> its keys.
 _PARAMETERS: dict[str, tuple[_Row, ...]] = {
     "gravity": (
-        ("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), "of magnitude and direction",
+        ("acceleration_m_per_s2", "acceleration", finite_pair("m/s^2"), "[0, -9.81]",
          "[0, -9.81]", "acceleration of free fall [x, y]"),
-        ("magnitude_m_per_s2", "magnitude", not_negative("m/s^2"), "9.81",
-         "9.81", "size of the acceleration of free fall"),
-        ("direction_deg", "direction", ROTATION, "-90, against the y axis",
-         "-90", "where it points, counter-clockwise from the x axis"),
     ),
     "strip_damping": (
         ("relaxation_time_s", "relaxation_time", not_negative("s"), "",

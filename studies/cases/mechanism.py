@@ -16,7 +16,6 @@ from studies.cases.section import (
     inherited,
     out_of_scale,
     refuse_both,
-    renamed,
     too_heavy,
     without,
 )
@@ -33,11 +32,7 @@ class Strip(Sectioned):
 
     Attributes:
         tip: None for a free end. rise: sagitta of the circular arc at rest [m], to the left of start to end.
-        width, thickness: of a rectangular section [m], None if only A and I are known; width_end,
-            thickness_end: at the end of a tapered one [m].
-        outer_fibre: distance of the outermost fibre from the neutral axis of other sections [m].
         root_joint, tip_joint: "clamp" or "hinge".
-        yield_strength: [Pa]; None if unknown.
     """
 
     name: str
@@ -48,17 +43,6 @@ class Strip(Sectioned):
     root_joint: str = CLAMP
     tip_joint: str = CLAMP
     rise: float = 0.0
-    area: float
-    second_moment_of_area: float
-    width: float | None = None
-    thickness: float | None = None
-    width_end: float | None = None
-    thickness_end: float | None = None
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
-    yield_strength: float | None = None
-    outer_fibre: float | None = None
 
     @property
     def length(self) -> float:
@@ -151,7 +135,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     """
     document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
-        **document.values(path, SECTION, renamed(path, document.table(path, content, "section")), "section"),
+        **document.values(path, SECTION, document.table(path, content, "section"), "section"),
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     refuse_both(path, shared, "section")
@@ -197,7 +181,7 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
-    own = document.values(path, [*keys.STRIP, *keys.OWN], renamed(path, given), label)
+    own = document.values(path, [*keys.STRIP, *keys.OWN], given, label)
     refuse_both(path, own, label)
     found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]

@@ -11,7 +11,7 @@ from studies.cases.document import CaseError, is_mechanism, parsed, refuse_secti
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LISTS, LOADS_FIRST
 from studies.cases.mechanism import Body, Point, Strip, read_points
-from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, renamed, too_heavy
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -42,14 +42,6 @@ class Problem(Sectioned):
         length: length L of a strip [m].
         inclination: angle a of strip 1 to the ground plate at rest [rad].
         crossing_ratio: distance of the crossing point from the ground end over L [1].
-        area: section area A [m^2].
-        second_moment_of_area: I [m^4].
-        width, thickness: of a rectangular section with that A and I [m]; None where only A and I are known.
-        width_end, thickness_end: of a tapered one, at the body [m]; None of a constant one.
-        youngs_modulus: E [Pa].
-        poisson_ratio: nu [1].
-        density: rho [kg/m^3].
-        yield_strength: that stresses must stay below [Pa]; None where none is known.
         body_mass: mass of the moving body [kg].
         body_moment_of_inertia: about its centre of mass [kg m^2].
         centre_offset: of the centre of mass from the midpoint of B1 B2, in body axes [m].
@@ -57,8 +49,6 @@ class Problem(Sectioned):
         rotation: end of the driven path, counter-clockwise positive [rad].
         increments: equal increments of the path [1].
         order: of loads and rotation, "loads first" or "together".
-        outer_fibre: distance of the outermost fibre from the neutral axis [m]; None of a rectangle, and where
-            it is not known.
         effects: of the scene.
         history, held: of the rotation in a motion that goes on with it, pairs of time [s] and factor, and its
             begin and end [s]; None for a release.
@@ -71,23 +61,12 @@ class Problem(Sectioned):
     length: float
     inclination: float
     crossing_ratio: float
-    area: float
-    second_moment_of_area: float
-    youngs_modulus: float
-    poisson_ratio: float
-    density: float
     body_mass: float
     body_moment_of_inertia: float
     centre_offset: tuple[float, float] = (0.0, 0.0)
     rotation: float
     increments: int
     order: str = LOADS_FIRST
-    outer_fibre: float | None = None
-    width: float | None = None
-    thickness: float | None = None
-    width_end: float | None = None
-    thickness_end: float | None = None
-    yield_strength: float | None = None
     orientation: float = 0.0
     effects: Effects = field(default_factory=Effects)
     history: tuple[tuple[float, float], ...] | None = None
@@ -190,7 +169,7 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
     found: dict[str, Any] = {}
     for section in sections:
         keys = [key for key in KEYS if key.section == section]
-        given = renamed(path, table(path, content, section))
+        given = table(path, content, section)
         if section not in content:
             needed = ", ".join(key.name for key in [key for key in keys if not key.optional] or keys)
             raise CaseError(f"{path}: [{section}]: got no such section, expected one with {needed}")

@@ -1,9 +1,8 @@
 """Sections of strips: sides, or area and second moment; outermost fibre; and what a case gives of them."""
 
-import logging
 import math
 from collections.abc import Iterable, Mapping
-from functools import cache
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from studies.cases import keys
@@ -15,28 +14,35 @@ if TYPE_CHECKING:  # a template of a case waits for no arrays
 
 Values = Mapping[str, Any]
 
-#: Older name of the key of the outermost fibre: twice its distance.
-OLD_DEPTH = "section_depth_m"
-
 #: Numbers of a strip that double precision bears: stiffness [N] or mass per length [kg/m], slenderness [1].
 SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
 
 
+@dataclass(frozen=True, kw_only=True)
 class Sectioned:
-    """An object with a section: modulus [Pa], area [m^2], second moment [m^4] and, if known, its form [m].
+    """Section and material of strips.
 
-    All values are at its start. The form is both sides and those at the end, or the distance of the outermost
-    fibre; None for unknown values.
+    Args:
+        area, second_moment_of_area: A [m^2] and I [m^4] of the section, at the start of a strip.
+        width, thickness: of a rectangular section with that A and I [m]; None where only these are known.
+        width_end, thickness_end: of a tapered one, at the end [m]; None of a constant one.
+        outer_fibre: distance of the outermost fibre from the neutral axis [m]; None of a rectangle, and where
+            it is not known.
+        youngs_modulus, poisson_ratio, density: of the material [Pa, 1, kg/m^3].
+        yield_strength: that stresses must stay below [Pa]; None where none is known.
     """
 
-    youngs_modulus: float
     area: float
     second_moment_of_area: float
-    outer_fibre: float | None
-    width: float | None
-    thickness: float | None
-    width_end: float | None
-    thickness_end: float | None
+    width: float | None = None
+    thickness: float | None = None
+    width_end: float | None = None
+    thickness_end: float | None = None
+    outer_fibre: float | None = None
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    yield_strength: float | None = None
 
     @property
     def depth(self) -> float:
@@ -194,21 +200,6 @@ def refuse_tapers(where: str, strips: Iterable[Any], what: str) -> None:
     for strip in strips:
         if strip.width_end or strip.thickness_end:
             raise CaseError(f"{where}: {strip.name}: got a taper, expected a constant section for {what}")
-
-
-def renamed(where: str, content: Values) -> Values:
-    """Return a table with the key of the outermost fibre in place of its older name, with a warning."""
-    depth = content.get(OLD_DEPTH)
-    if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
-        return content
-    _warn_of_name(where)
-    return {FIBRE.name: depth / 2.0} | without(content, [OLD_DEPTH])
-
-
-@cache
-def _warn_of_name(where: str) -> None:
-    use = f"{OLD_DEPTH} will be removed in the next version (use: {FIBRE.name} = half of its value)"
-    logging.getLogger("studies").warning("warning: %s: %s", where, use)
 
 
 def inherited(shared: Values, own: Values) -> dict[str, Any]:

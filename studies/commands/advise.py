@@ -8,7 +8,7 @@ stress is by balance of moments, far more accurate than that by its curvature), 
 and with shear, and of a pivot the surrogate models in closed form and the other codes that are installed.
 Without --dynamic the error is that of path and torque over the static path, and those of stiffness and
 largest stress are told beside it; with it, that of the rotation (over the rotation at the start) and of the
-frequency in the first four swings after the release. Each model is held against the limit of its own theory,
+frequency in the first four periods after the release. Each model is held against the limit of its own theory,
 whose own error is printed. A setting counts when finer ones keep the error. Times are measured here, on one
 thread, once all is compiled and loaded: of whole calls, from the design to the answer, set-up included, and
 of the increments or steps alone. Exit code 0: done; 2: bad input; 3: there is no reference, or no

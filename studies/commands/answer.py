@@ -68,7 +68,7 @@ def deliver(
     """
     if answers and getattr(arguments, "plot", None) is not None:
         shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
-        draw(arguments, shown, arguments.plot)
+        draw(arguments, shown)
     csv, stream = getattr(arguments, "csv", None), getattr(arguments, "json", None)
     if isinstance(document, list):
         document = document[0] if len(document) == 1 else {"answers": document, **beside(answers)}
@@ -263,11 +263,12 @@ def shown_of(case: str, answer: Answer) -> "Shown":
     return Shown(name=called(case, answer), answer=answer)
 
 
-def draw(arguments: argparse.Namespace, shown: "list[Shown]", target: Path) -> None:
-    """Draw answers over one another in a file, and say where they are."""
+def draw(arguments: argparse.Namespace, shown: "list[Shown]") -> None:
+    """Draw answers over one another where `--plot` says, and say where they are."""
     from studies.pictures.page import picture  # only who asks for a picture waits for matplotlib
     from studies.record.style import printed
 
+    target = arguments.plot
     try:
         write_whole(target, printed(picture(shown), target.suffix[1:].lower()))
     except BadInput as error:

@@ -118,7 +118,7 @@ INCREMENTS = Argument(
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)
 HELD = Argument("--held", "hold the rotation of the body")
-DURATION = Argument("--duration T", "of the motion, in s (default: four swings of the design)", positive)
+DURATION = Argument("--duration T", "of the motion, in s (default: four periods of the design)", positive)
 STEP = Argument("--step S", "of the integrator, in s (default: its own)", positive)
 INTEGRATOR = Argument(
     "--integrator NAME",

@@ -89,7 +89,7 @@ def _prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndar
 
 
 def angle(radians: ArrayLike, *, group: str = "") -> Column:
-    """Return a column of angles in degrees."""
+    """Return a column of angles in degrees; radians: values (S,) [rad]."""
     degrees = np.degrees(_above(ANGLE_FLOOR, radians))
     decimals = max(ANGLE_DECIMALS, _decimals(_largest(degrees), ANGLE_DECIMALS + 2))
     cells = tuple(fixed(each, decimals) for each in degrees)

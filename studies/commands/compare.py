@@ -3,14 +3,12 @@
     python -m studies compare cross_axis_pivot spring_steel_pivot --rotation-deg 15
     python -m studies compare spring_steel_pivot --model spline,fe --plot models.svg
     python -m studies compare four_bar_of_flexures parallel_strip_guide --json -
-    python -m studies compare titanium_pivot spring_steel_pivot --plot-modes modes.svg
 
 Every case is solved by every model, as `solve` does, to the end of its own path unless --rotation-deg is
-given; frequencies are those of `modes` at rest, whose first six --plot-modes draws over one another. A, B
-... are the designs in their order, and the columns at the right are over A. Variation is the largest less the
-smallest stiffness of the path over that at its begin; safety, and from which rotation on a strip yields, are
-of cases with a yield strength. A dash: the design has no such number. Exit code 0: all converged; 2: bad
-input; 3: one did not, and is told up to where it came.
+given; frequencies are those of `modes` at rest. A, B ... are the designs in their order, and the columns at
+the right are over A. Variation is the largest less the smallest stiffness of the path over that at its begin;
+safety, and from which rotation on a strip yields, are of cases with a yield strength. A dash: the design has
+no such number. Exit code 0: all converged; 2: bad input; 3: one did not, and is told up to where it came.
 """
 
 import argparse
@@ -41,17 +39,8 @@ from studies.record.progress import Bar, watched
 
 #: Digits of a number; a variation below which a stiffness is constant but for round-off [1].
 DIGITS, ROUND_OFF = 5, 1e-8
-#: Modes that are drawn.
-MODES = 6
 #: What `solve` prints of a path beside the lines of the table.
 NOT_SHOWN = ("places", "stiffness of the body")
-PLOT_MODES = Argument(
-    "--plot-modes FILE",
-    "draw the first six natural modes at rest over one another (default: no picture)",
-    take.PLOT.read,
-)
-
-
 #: Lines of the table by their key in JSON.
 ROWS = {
     "rotation_rad": Scale(heading="rotation, end", unit="deg", factor=180.0 / math.pi),
@@ -123,7 +112,6 @@ def _values(answer: Response) -> dict[str, Any]:
     take.ACCURACY.but("wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
     take.JSON,
     take.PLOT,
-    PLOT_MODES,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve all, report and draw; return the exit code. BadInput: answers that cannot be compared."""
@@ -133,13 +121,8 @@ def main(arguments: argparse.Namespace) -> int:
         raise BadInput(f"compare: got {got}, expected 2 to {len(LETTERS)} designs, or a design by two models")
     with Bar("compare") as bar:
         found = [_solved(case, settings, arguments) for case, settings in watched(asked, bar)]
-    for target, answers in (
-        (arguments.plot, [each.path for each in found if len(each.path.load_factor)]),
-        (arguments.plot_modes, [each.modes for each in found if each.modes and len(each.modes.frequency)]),
-    ):
-        if target is not None and len(answers) == len(found):
-            shown = [shown_of(each.case, answer) for each, answer in zip(found, answers, strict=True)]
-            draw(arguments, shown, target)
+    if arguments.plot is not None and all(len(each.path.load_factor) for each in found):
+        draw(arguments, [shown_of(each.case, each.path) for each in found])
     failed = (f"{LETTERS[k]}: {e.path.message}" for k, e in enumerate(found) if not e.path.converged)
     document = {"designs": [_document(each) for each in found]}
     return deliver(arguments, document, _readable(found), failure="; ".join(failed))
@@ -161,7 +144,7 @@ def _solved(case: str, settings: Settings, arguments: argparse.Namespace) -> _Co
     design = take.driven(read_design(case, changes=arguments.effects), arguments)
     path, modes = answer_static(design, settings, accuracy=arguments.accuracy), None
     if set(INERTIA) & set(design.effects.names):
-        modes = answer_modes(design, settings, count=1 if arguments.plot_modes is None else MODES)
+        modes = answer_modes(design, settings, count=1)
     return _Compared(case, path, modes)
 
 

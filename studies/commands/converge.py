@@ -13,14 +13,11 @@ not converge keeps its row.
 import argparse
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
 
-from studies.answers.adapters import answer_static
-from studies.answers.reference import QUANTITIES, NoReference, Reference, largest_errors
-from studies.answers.response import Response
+from studies.answers.reference import QUANTITIES, NoReference, Reference
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import not_converged
@@ -82,8 +79,7 @@ def main(arguments: argparse.Namespace) -> int:
     with Bar("splines") as bar:
         rows = [spline_row(problem, each, limit) for each in watched(settings, bar)]
     splines = with_orders(pd.DataFrame(rows), "control_points")
-    itself = answer_static(problem, replace(settings[0], control_points=None))
-    print("\n".join((*_report(splines, elements, limit), *_by_itself(itself, limit))))
+    print("\n".join(_report(splines, elements, limit)))
     with style.applied():
         figure = drawn(splines, elements, limit)
         contents = {f"convergence.{kind}": style.rendered(figure, kind) for kind in ("svg", "png")}
@@ -123,18 +119,6 @@ def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> 
     yield from _reached(splines, elements, limit, QUANTITIES)
     if max(limit.uncertainty[name] for name in QUANTITIES) > min(ACCURACIES):
         yield f"{UNSURE}: the reference is uncertain by more than that; finer meshes help (--elements 20:640)"
-
-
-def _by_itself(answer: Response, limit: Reference) -> Iterator[str]:
-    """Yield what the spline does without a number of control points: its errors, its estimates of them."""
-    yield ""
-    estimate = answer.estimate or {}
-    if not answer.converged or not estimate:
-        yield f"without --control-points `solve` stops: {answer.message}"
-        return
-    yield f"without --control-points `solve` takes {estimate['control_points']}, with moments by balance"
-    for title, values in (("error", largest_errors(answer, limit)), ("estimate", estimate)):
-        yield f"{title:<9}" + ", ".join(f"{name} {values[name]:.1e}" for name in QUANTITIES)
 
 
 def _reached(

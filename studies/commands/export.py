@@ -4,12 +4,11 @@
     python -m studies export four_bar_of_flexures --model fe --analysis modes --out modes
     python -m studies export my_pivot.toml --analysis release --duration 0.01 --out swing
 
-vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; svg: a drawing of
-the design at rest and deformed; csv, parquet: tables NAME_states, NAME_strips, NAME_bodies, NAME_reactions;
-json: the same tables in one file. NAME is the analysis: static, release or modes. docs/data.md describes the
-files; the names of columns and arrays contain the units. The folder must be new or empty, or hold a
-former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done; 2: bad
-input; 3: not converged, and then the converged part of a path or a motion is written.
+vtk: NAME.pvd, which ParaView opens as one series, with NAME_0000.vtu ... for the states; csv, parquet: tables
+NAME_states, NAME_strips, NAME_bodies, NAME_reactions. NAME is the analysis: static, release or modes.
+docs/data.md describes the files; the names of columns and arrays contain the units. The folder must be new or
+empty, or hold a former export, which is replaced as a whole: nothing is ever half-written. Exit code 0: done;
+2: bad input; 3: not converged, and then the converged part of a path or a motion is written.
 """
 
 import argparse
@@ -18,16 +17,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import Settings
 from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.parser import Argument, command, degrees_list, names_of, whole_number
+from studies.commands.parser import Argument, command, names_of, whole_number
 from studies.errors import BadInput
-from studies.exchange.formats import FORMATS, contents, require_own, write
+from studies.exchange.formats import FORMATS, require_own, write
 from studies.record.progress import Bar
 
 #: Options that belong to one analysis, with their defaults; given for another they are refused.
@@ -37,8 +34,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "modes": {"count": 6, "held": False},
 }
 RECORDS = Argument("--records R", "release: largest number of states, default 200", whole_number(1))
-#: States that a drawing shows, parts of the series.
-DRAWN = (0.5, 1.0)
 
 
 @command(
@@ -46,19 +41,14 @@ DRAWN = (0.5, 1.0)
     take.OUT.but("new, empty, or of a former export", required=True),
     Argument(
         "--formats LIST",
-        f"of {', '.join(FORMATS)}, separated by commas, default vtk,svg",
+        f"of {', '.join(FORMATS)}, separated by commas, default vtk",
         names_of(FORMATS),
-        default=("vtk", "svg"),
+        default=("vtk",),
     ),
     Argument("--analysis", "what is solved, default static", choices=list(OPTIONS), default="static"),
     take.ROTATION.but(
         "end of the path, start of the motion, or state of the modes, in deg "
         "(default: the case's; of modes 0)"
-    ),
-    Argument(
-        "--draw-deg LIST",
-        "draw the states nearest to these rotations, in deg (svg; default: middle and end)",
-        degrees_list,
     ),
     *(
         each.but(group="of one analysis")
@@ -74,7 +64,7 @@ DRAWN = (0.5, 1.0)
     ),
 )
 def main(arguments: argparse.Namespace) -> int:
-    """Solve and write; return the exit code. BadInput: options that do not fit the formats or the design."""
+    """Solve and write; return the exit code. BadInput: options of another analysis."""
     design = take.driven(take.chosen_design(arguments), arguments)
     if arguments.analysis == "modes" and arguments.rotation is None:
         design = dataclasses.replace(design, rotation=0.0)  # modes are at rest unless they say more
@@ -92,7 +82,7 @@ def main(arguments: argparse.Namespace) -> int:
         (answer,) = answers
         if answer.solution is None:
             return
-        files = contents(answer, arguments.formats, _drawn(answer, arguments.draw_deg))
+        files = {name: each for form in arguments.formats for name, each in FORMATS[form](answer).items()}
         write(arguments.out, files, answer, Path(arguments.case).name)
         yield from (tell.described(answer), *tell.estimated(answer))
         yield from filter(None, [answer.resolution])
@@ -102,27 +92,13 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _own_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the options of the analysis; those of another are an error, so are rotations of modes."""
+    """Return the options of the analysis; those of another are an error."""
     for analysis, options in OPTIONS.items():
         for name in options:
             if analysis != arguments.analysis and getattr(arguments, name) is not None:
                 raise BadInput(
                     f"{take.option(name)}: got it with --analysis {arguments.analysis}, expected {analysis}"
                 )
-    if arguments.draw_deg is not None and (arguments.analysis == "modes" or "svg" not in arguments.formats):
-        raise BadInput("--draw-deg: got it without a path or motion to draw, expected static or release, svg")
     own = OPTIONS[arguments.analysis]
     given = {name: getattr(arguments, name) for name in own}
     return {name: own[name] if value is None else value for name, value in given.items()}
-
-
-def _drawn(answer: Answer, degrees: tuple[float, ...] | None) -> list[int]:
-    """Return the numbers of the states that a drawing shows, each once, in order."""
-    last = len(answer.values) - 1
-    if answer.analysis == "modes":
-        return list(range(last + 1))
-    if degrees is None:
-        return sorted({round(part * last) for part in DRAWN})
-    if answer.body is None:
-        raise BadInput("--draw-deg: got it for a design without bodies, expected none")
-    return sorted({int(np.abs(np.degrees(answer.rotation) - angle).argmin()) for angle in degrees})

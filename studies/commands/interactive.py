@@ -194,7 +194,7 @@ def _require_extra(name: str) -> None:
     if missing:
         raise BadInput(
             f"{name}: got no {', '.join(missing)}, expected the extra: run `make interactive`, "
-            "or pip install -e '.[interactive]'"
+            "or pip install 'cross-axis-pivot-validation[interactive]'"
         )
 
 

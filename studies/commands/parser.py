@@ -137,11 +137,6 @@ positive = _number("above 0", low=0.0)
 not_negative = _number("of at least 0", low=0.0, closed="low")
 
 
-def degrees_list(text: str) -> tuple[float, ...]:
-    """Return the angles [deg] of a text with commas."""
-    return tuple(degrees(part) for part in text.split(","))
-
-
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
     """Return a parser of names with commas, each one of `known` and none twice; it raises BadInput."""
     choices = tuple(known)

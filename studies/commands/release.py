@@ -4,28 +4,30 @@
     python -m studies release cross_axis_pivot --model fe --duration 0.02 --json -
     python -m studies release cantilever_with_body --effects=-gravity
 
-The start is at rest in static equilibrium: the body turned to the rotation of the case or of --rotation-deg,
-weight, pre-strain and driven displacements in full, and each load at its value times its history at t = 0, in
-full without a history. Then the rotation is released, and a driven displacement without a history; one with a
-history goes on holding. So does the rotation where [drive] of the case says when, by `held_s = [begin, end]`,
-and by a `history`, whose change times rotation_deg is prescribed from the current rotation. Loads go on as
-value times history(t), constant before its first and after its last time. A mechanism without a rotation
-starts where all of this settles it: under constant loads it stands still, and `message` reports this.
+The motion starts at rest in static equilibrium. The body is rotated to the rotation of the case or to
+--rotation-deg. Weight, pre-strain and driven displacements act in full. Each load acts with its value times
+its history at t = 0, or in full without a history. Then the rotation is released, and each driven
+displacement without a history. A driven displacement with a history remains prescribed. The rotation remains
+prescribed in the interval `held_s = [begin, end]` of [drive]. A `history` in [drive] changes the prescribed
+rotation: its change times rotation_deg is added to the current rotation. Loads follow value times history(t),
+which is constant before its first and after its last time. A mechanism without a rotation starts in its
+equilibrium: under constant loads it does not move, and `message` reports this.
 
-Without --duration four swings of the first natural mode at rest are followed, after all histories, or, where
-that mode is unstable, its growth by a factor of 23. Without --step the implicit splines take 256 steps to a
-swing, or more where another of the first modes asks for it; a design without such a mode has 0.05 s.
-Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
-The arrays of the JSON run over the instants, the release first, and effects are those that were assembled.
-frequency_Hz is of the swing about its rest where one mode carries the rotation: no other has a fifth of its
-amplitude. Else, and without a whole swing, it is null, and frequency_reason says why. modes are the
-frequencies that the rotation contains, with amplitudes, the largest first, down to a tenth of the largest.
-Multiples of a larger one are its harmonics and not listed.
-rotation_error_rad and displacement_error_m estimate the largest errors of the rotations of all bodies and of
-the places of all bodies and free ends. They come from companion motions with other steps and control points
-or elements (--no-check leaves them out). wall_s is of the whole call, without these motions.
-Exit code 0: done, though `resolution` may say that step or discretisation do not resolve the motion; 2: bad
-input; 3: statics does not reach the start, or the motion stopped early.
+Without --duration the motion lasts four periods of the first natural mode at rest, after the end of all
+histories. If this mode is unstable, the motion lasts until it has grown by a factor of 23. Without --step the
+implicit splines take 256 steps per period, or more if another of the first modes requires it. A design
+without such a mode moves for 0.05 s.
+The coordinates of a pivot have their origin at A1, the ground clamp of strip 1. Rotation is positive
+counter-clockwise. The arrays of the JSON run over the times, the release first. `effects` lists the effects
+that were assembled. frequency_Hz is the frequency of the free vibration if one mode carries the rotation: no
+other mode has more than a fifth of its amplitude. Otherwise, and in less than one period, it is null, and
+frequency_reason states the reason. `modes` lists the frequencies that the rotation contains, with their
+amplitudes, in decreasing order down to a tenth of the largest. Harmonics of a larger one are not listed.
+rotation_error_rad and displacement_error_m estimate the largest errors of the rotations of all bodies, and of
+the positions of all bodies and free ends. They come from additional motions with other steps and control
+points or elements; --no-check omits them. wall_s is the time of the whole call without these motions.
+Exit code 0: done; `resolution` may state that step or discretisation do not resolve the motion. 2: bad
+input. 3: the start was not reached, or the motion stopped early.
 """
 
 import argparse
@@ -202,7 +204,7 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
     )
     swing = answer.swing
     if len(answer.time):
-        rate = f"{swing.value:.4f} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
+        rate = f"{_frequency(swing.value)} Hz" if math.isfinite(swing.value) else f"-: {swing.reason}"
         moved = max(float(each.max()) for each in (kinetic, strain)) > STILL * scale
         yield f"frequency {rate}" + (f"; energy balanced to {answer.energy_error:.1e}" if moved else "")
     if math.isfinite(answer.rotation_error):
@@ -220,3 +222,8 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
     if answer.converged and answer.message:
         yield answer.message
     yield tell.ending(answer)
+
+
+def _frequency(value: float) -> str:
+    """Return a frequency [Hz] with four decimals, or with as many digits where these are none."""
+    return f"{value:.4f}" if value >= 1.0 else f"{value:.5g}"

@@ -2,21 +2,22 @@
 
     python -m studies size cross_axis_pivot --objective centre-shift --rotation-deg 45
     python -m studies size spring_steel_pivot --objective stiffness-variation --aspect 0.5
-    python -m studies size large_steel_pivot --objective centre-shift --length-mm 300 --out best.toml
+    python -m studies size large_steel_pivot --objective centre-shift --free strip.length_m=0.3
     python -m studies size four_bar_of_flexures --objective stress --free section.thickness_m=1e-4:5e-4
 
 The case of a pivot gives the material, the range to either side (its rotation), the loads that it carries and
 the design to compare with. The wanted stiffness is its own at rotation 0 unless it is given; the allowable
-stress is the yield strength over the safety factor, or the case's own at the end of the range where no
-strength is known. Under loads both sides of the range are solved, the stress is held at both ends and before
-the body turns, and a design that buckles is none. Both strips are alike, with a rectangular section; they
-become neither thicker for their length than the case's nor wider than --aspect times their length; a
-dimension with one value is held. Gradients are exact; several starts show local optima, and one whose path
-ends early is moved towards the case. A case whose own path ends early takes --stiffness, and a stress where
-none is known; then other designs are searched. A start is given up after 300 designs. The optimum is answered
-to 1e-4, found again with more control points where it takes more, and solved by the finite elements in the
-limit of refinement; --out writes it as a case file. A price is the change of the objective over that of a
-limit, in % over %. What the scene names is assembled: clamped widths, sections that flatten and roots too.
+stress is the yield strength, or the case's own at the end of the range where no strength is known. Under
+loads both sides of the range are solved, the stress is held at both ends and before the body turns, and a
+design that buckles is none. Both strips are alike, with a rectangular section; they become neither thicker
+for their length than the case's nor wider than --aspect times their length. --free sets the bounds of a
+dimension, or the one value that holds it. Gradients are exact; several starts show local optima, and one
+whose path ends early is moved towards the case. A case whose own path ends early takes --stiffness, and a
+stress where none is known; then other designs are searched. A start is given up after 300 designs. The
+optimum is answered to 1e-4, found again with more control points where it takes more, and solved by the
+finite elements in the limit of refinement; --out writes it as a case file. A price is the change of the
+objective over that of a limit, in % over %. What the scene names is assembled: clamped widths, sections that
+flatten and roots too.
 
 Of a mechanism the numbers of its file that --free names are found, as `sweep` names them, in the file's unit;
 keys with commas share a value. Held is the stiffness of the driven body as it begins to turn, or, of a
@@ -27,7 +28,6 @@ none was found, and then the table of the starts says how near they came.
 import argparse
 import math
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -37,14 +37,14 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.design import as_toml
 from studies.cases.document import is_mechanism, parsed
-from studies.cases.keys import LOADS_FIRST
+from studies.cases.keys import KEYS, LOADS_FIRST
 from studies.cases.problem import Problem
 from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
-from studies.commands.parser import Argument, command, positive, reads, whole_number
+from studies.commands.parser import Argument, command, positive, whole_number
 from studies.commands.sized import Optimum, as_document, question, readable
-from studies.design.evaluate import CONTROL_POINTS, STRESS, Accurate, PathEnds, sides_of
+from studies.design.evaluate import CONTROL_POINTS, STRESS, VARIABLES, Accurate, PathEnds, sides_of
 from studies.design.numbers import MechanismQuestion
 from studies.design.optimise import best, search
 from studies.design.programme import STARTS, compared
@@ -53,28 +53,8 @@ from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
 
-#: Part by which bounds may miss one another.
-ROUND_OFF = 1e-9
-#: Variable -> option, its unit in SI, what the option must be below, and its bounds where it is not given.
-BOUNDS: dict[str, tuple[str, float, float, str]] = {
-    "length": ("length_mm", 1e-3, math.inf, "in mm, default 0.5 to 1 of the case's"),
-    "inclination": ("inclination_deg", math.radians(1.0), 90.0, "in deg, default 20:70"),
-    "crossing_ratio": ("crossing_ratio", 1.0, 1.0, "relative to the length, default 0.1:0.9"),
-    "thickness": ("thickness_mm", 1e-3, math.inf, "in mm, default 0.1 to 1.6 of the case's"),
-    "width": ("width_mm", 1e-3, math.inf, "in mm, default 0.2 of the case's to its length"),
-}
-
-
-def _interval(most: float) -> Callable[[str], tuple[float, float]]:
-    """Return a parser of a value, or of intervals LOW:HIGH, within 0 and `most`."""
-
-    def value_of(text: str) -> tuple[float, float] | None:
-        low, _, high = text.partition(":")
-        found = float(low), float(high or low)
-        return found if 0.0 < found[0] <= found[1] < most else None
-
-    limit = "" if math.isinf(most) else f" < {most:g}"
-    return reads(f"a value, or LOW:HIGH with 0 < LOW <= HIGH{limit}", value_of)
+#: Numbers of a pivot's file that are found.
+FOUND = {f"strip.{key.name}": key for key in KEYS if key.attribute in VARIABLES}
 
 
 @command(
@@ -87,7 +67,8 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     ),
     Argument(
         "--free KEY[=LOW:HIGH]",
-        "a number of a mechanism's file to be found, repeatable (default bounds: half to twice its own)",
+        "a number of the file to be found, repeatable: of a mechanism the only ones (default bounds: half to "
+        "twice its own); of a pivot bounds of its length, inclination, crossing, thickness and width",
         action="append",
     ),
     take.ROTATION.but("range to either side, in deg (default: the case's)"),
@@ -99,17 +80,8 @@ def _interval(most: float) -> Callable[[str], tuple[float, float]]:
     ),
     Argument(
         "--max-stress-MPa S",
-        "allowable, in MPa (default: the yield strength over the safety factor, or the case's own)",
+        "allowable, in MPa (default: the yield strength, or the case's own)",
         positive,
-    ),
-    Argument("--safety-factor F", "yield strength relative to the allowable stress (default 1)", positive),
-    *(
-        Argument(
-            f"{take.option(attribute)} LOW:HIGH",
-            f"bounds of the {name.replace('_', ' ')}, or the value to hold, {said}",
-            _interval(most),
-        )
-        for name, (attribute, _, most, said) in BOUNDS.items()
     ),
     Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
@@ -161,35 +133,26 @@ def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
         expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
     if got:
         raise BadInput(f"{arguments.case}: {got}, expected {expected}")
-    bounds = {}
-    for name, (attribute, unit, _, _) in BOUNDS.items():
-        if (given := getattr(arguments, attribute)) is not None:
-            bounds[name] = given[0] * unit, given[1] * unit
-    task = PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
-    length, _, _, thickness, width = task.variables
-    slender, aspect = (ratio.limit for ratio in task.ratios)
-    longest = 1e3 * length.high
-    for option, least, most, why in (
-        ("--thickness-mm", 1e3 * thickness.low, longest / slender, "the case's thickness to the length"),
-        ("--width-mm", 1e3 * width.low, longest * aspect, "--aspect times the length"),
-    ):
-        if least > most * (1.0 + ROUND_OFF):
-            expected = f"no more than {most:.4g}, {why}, which is at most {longest:.4g} mm"
-            raise BadInput(f"{option}: got at least {least:.4g}, expected {expected}")
-    return task
+    bounds = dict(map(_bounds, arguments.free or ()))
+    return PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
+
+
+def _bounds(text: str) -> tuple[str, tuple[float, float]]:
+    """Return the name of a pivot's number and its bounds in SI, equal where the text has one value."""
+    name, _, given = text.partition("=")
+    try:
+        ends = [FOUND[name].rule.parse(float(part)) for part in given.split(":")]
+    except (KeyError, ValueError) as error:
+        what = f"one of {', '.join(FOUND)}" if name not in FOUND else str(error)
+        raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH, in the file's unit: {what}") from None
+    return FOUND[name].attribute, (min(ends), max(ends))
 
 
 def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
     """Raise BadInput for an option of the other kind of design."""
-    others = ["free", "travel_mm"]
-    if mechanism:
-        others = [attribute for attribute, *_ in BOUNDS.values()]
-    for name in others:
-        if vars(arguments).get(name) is not None:
-            expected = "--free KEY=LOW:HIGH for a mechanism" if mechanism else "it for a mechanism only"
-            raise BadInput(
-                f"{take.option(name)}: got it for {Path(arguments.case).stem}, expected {expected}"
-            )
+    if arguments.travel_mm is not None and not mechanism:
+        got = f"got it for {Path(arguments.case).stem}"
+        raise BadInput(f"--travel-mm: {got}, expected it for a mechanism only")
     wrong = "centre-shift" if mechanism else STRESS
     if arguments.objective == wrong:
         kinds = "stress or stiffness-variation" if mechanism else " or ".join(OF_PIVOT)
@@ -222,7 +185,9 @@ def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, A
     travel = arguments.travel_mm
     wanted = arguments.stiffness if travel is None else 1e-3 * travel
     strengths = [strip.yield_strength for strip in task.start.strips]
-    allowable = _allowable(None if None in strengths else min(strengths), arguments)
+    allowable = None if None in strengths else min(strengths)
+    if arguments.max_stress_MPa is not None:
+        allowable = 1e6 * arguments.max_stress_MPa
     try:
         own = task.accurate()
     except PathEnds:
@@ -254,16 +219,3 @@ def _unknown(task: Question, arguments: argparse.Namespace, limits: dict[str, fl
         raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}; {remedy}")
     nothing, (_, answers) = dict.fromkeys(task.quantities, math.nan), compared(task)
     return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
-
-
-def _allowable(strength: float | None, arguments: argparse.Namespace) -> float | None:
-    """Return the stress that is allowed [Pa], from what is given or the yield strength; None without both."""
-    factor, wanted = arguments.safety_factor, arguments.max_stress_MPa
-    if factor is not None and wanted is not None:
-        raise BadInput(f"--safety-factor: got {factor:g} beside --max-stress-MPa, expected one of them")
-    if factor is not None and strength is None:
-        expected = "material.yield_strength_Pa in the case, or --max-stress-MPa"
-        raise BadInput(f"--safety-factor: got {factor:g} without a yield strength, expected {expected}")
-    if wanted is not None:
-        return float(1e6 * wanted)
-    return None if strength is None else strength / (factor or 1.0)

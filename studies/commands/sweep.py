@@ -18,7 +18,6 @@ omitted:
 
     [analysis]
     kind = "static"                   # static (default), modes, release
-    both_sides = true                 # static: also to the opposite rotation; default false
     # modes: rotation_deg, count, held; release: duration_s, step_s, integrator
 
     [sample]
@@ -91,7 +90,7 @@ def main(arguments: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return INTERRUPTED
-    kept = plan.sample.points - solved
+    kept = plan.points - solved
     told = f"{solved} designs solved" + (f", {kept} were there" if kept else "")
     print(f"{told}: {arguments.out / 'designs.parquet'}")
     return 0

@@ -1,13 +1,10 @@
-"""Frequency of the swing and of small motion against control points, elements and amplitude."""
+"""Frequency of the swing and of small motion against control points and elements."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, partial
-from itertools import product
 from typing import Any
-
-import numpy as np
 
 from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.metrics import extrapolate, quasi_static_frequency
@@ -15,7 +12,7 @@ from studies.answers.reference import rotation_error
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
-from studies.paper.formulations import FE, SETTINGS, SIX, STEPS, refined_swing, released, resolved
+from studies.paper.formulations import STEPS, refined_swing, resolved
 from studies.record.store import Digits
 
 COUNTS = tuple(STEPS)
@@ -23,19 +20,13 @@ COUNTS = tuple(STEPS)
 MOST_CONSISTENT = 7
 #: Stretch forms with their counts.
 FORMS = [("mixed", n) for n in COUNTS] + [("consistent", n) for n in COUNTS if n <= MOST_CONSISTENT]
-AMPLITUDES = (2, 5, 10, 20, 30, 45, 60, 75, 90)
 
 #: Linear modes shown, and the meshes whose limit they are held against.
 MODES, MODE_MESHES = 5, (5, 10, 20, 40, 80)
-#: Options of the backbone's swings; at this step [s] the rotation is off by less than 2e-5 rad.
-BACKBONE: dict[str, dict[str, Any]] = {FE: {}, SIX: {"integrator": "leapfrog", "step": 2e-6}}
-
 #: The part of a shift by which its prediction from statics may be off and still explain it.
 EXPLAINED = 0.25
 #: What "due to the number of control points" is read as: at most this part of the shift is left with more.
 LEFT = 0.05
-#: Both models "swing alike" within this part of the frequency: three times the error of 20 elements.
-ALIKE = 1e-3
 
 
 def _of_control_points(stretch: str, n: int) -> Answer:
@@ -90,23 +81,6 @@ def _modes() -> Answer:
     return {"modes": rows}
 
 
-def _of_amplitude(name: str, amplitude: float) -> Answer:
-    """Return the row of a model and amplitude: the frequency of the swing, and that of its static path.
-
-    Columns: formulation, amplitude_rad, status, frequency_Hz, frequency_from_statics_Hz, first_mode_Hz.
-    """
-    motion = released(SETTINGS[name], start=float(amplitude), **BACKBONE[name])
-    row = {
-        "formulation": name,
-        "amplitude_rad": amplitude,
-        "status": motion.status,
-        "frequency_Hz": motion.frequency if motion.converged else math.nan,
-        "frequency_from_statics_Hz": _static_frequency(SETTINGS[name], float(amplitude)),
-        "first_mode_Hz": answer_modes(named_case(), SETTINGS[name], count=1).frequency[0],
-    }
-    return {"backbone": row}
-
-
 def _reference() -> Answer:
     """Return the frequency in the limit of the finite elements and its uncertainty."""
     known = {
@@ -117,12 +91,10 @@ def _reference() -> Answer:
 
 
 @cache
-def _static_frequency(settings: Settings, amplitude: float | None = None) -> float:
-    """Return the frequency of the swing that the static path implies to an amplitude [rad], or the case's
-    [Hz]."""
+def _static_frequency(settings: Settings) -> float:
+    """Return the frequency of the swing that the static path implies [Hz]."""
     problem = named_case()
-    turned = problem if amplitude is None else replace(problem, rotation=amplitude)
-    answer = answer_static(turned, settings)
+    answer = answer_static(problem, settings)
     return quasi_static_frequency(
         answer.rotation,
         answer.centre,
@@ -155,17 +127,10 @@ def _four(tables: Tables) -> list[Row]:
     return [{"locking": locking, "first_mode": abs(first / four["mixed"])}]
 
 
-def _apart(tables: Tables) -> list[Row]:
-    """Return the largest difference of both models' frequencies over the amplitudes."""
-    wide = tables["backbone"].pivot(index="amplitude_rad", columns="formulation", values="frequency_Hz")
-    return [{"apart": (wide[SIX] / wide[FE] - 1.0).abs().max()}]
-
-
 STUDY = Study(
     parts=(
         Part(at=lambda: FORMS, ask=_of_control_points),
         Part(ask=_modes),
-        Part(at=lambda: product(BACKBONE, np.radians(AMPLITUDES)), ask=_of_amplitude),
         Part(ask=_reference),
     ),
     claims=(
@@ -200,14 +165,6 @@ STUDY = Study(
             rows=_four,
             value="first_mode",
             holds=lambda row: row["first_mode"] > 0.5,
-        ),
-        Claim(
-            claim="Both models swing alike at every amplitude from 2 to 90 degrees",
-            formulation=SIX,
-            quantity="the largest difference of the frequency to 20 finite elements",
-            rows=_apart,
-            value="apart",
-            most=ALIKE,
         ),
     ),
     digits={"findings.value": Digits(floor=1e-7), "modes.uncertainty": Digits(floor=1e-9)},

@@ -6,7 +6,6 @@ reaches a level, and keeps it at finer meshes or steps, over the fastest spline 
 """
 
 import importlib.metadata
-import json
 import subprocess
 import sys
 import time
@@ -21,7 +20,6 @@ from matplotlib.figure import Figure
 
 from studies.answers import reference
 from studies.answers.reference import Reference, SwingReference, largest_errors
-from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cost import tried
@@ -170,43 +168,26 @@ def _unsure(tables: Tables, name: str, level: float) -> list[str]:
     return list(limits.loc[CERTAINTY * limits[of] > level, "theory"])
 
 
-#: Label -> settings of the least number that keep path and torque to 1e-4, and the words that ask for them.
-WAITED: dict[str, tuple[Settings, tuple[str, ...]]] = {
-    "spline, n = 6": (SplineSettings(control_points=6), ("--control-points", "6")),
-    "80 elements": (FeSettings(elements=80), ("--model", "fe", "--elements", "80")),
+#: Label -> words that ask for the settings of the least number that keep path and torque to 1e-4.
+WAITED = {
+    "spline, n = 6": ("--control-points", "6"),
+    "80 elements": ("--model", "fe", "--elements", "80"),
 }
-#: Runs of a process of its own.
-PROCESSES = 5
-#: What a process is asked that makes one call: what importing and the call took [s].
-FIRST = """
-import json, time
-begin = time.perf_counter()
-from studies.answers.adapters import answer_static
-from studies.cost.codes import WAITED
-from studies.cases.problem import named_case
-ready = time.perf_counter()
-answer = answer_static(named_case(), WAITED[{label!r}][0])
-print(json.dumps([ready - begin, time.perf_counter() - ready]))
-"""
+#: Runs of a command.
+COMMANDS = 5
 
 
 def _waited(label: str) -> Answer:
-    """Return what a user waits for before anything is loaded: a command, the import, and a first call."""
-    command = ("-m", "studies", "solve", TABLE_1, *WAITED[label][1])
-    imported, first = zip(
-        *(json.loads(_process("-c", FIRST.format(label=label))[1]) for _ in range(PROCESSES)), strict=True
-    )
-    whole = [_process(*command)[0] for _ in range(PROCESSES)]
-    times = {"command line": whole, "import of the suite": imported, "first call": first}
-    rows = [{"model": label, "what": what} | tried.spread(each, each) for what, each in times.items()]
-    return {"waits_of_time": [{k: v for k, v in row.items() if k != "solve_s"} for row in rows]}
-
-
-def _process(*words: str) -> tuple[float, str]:
-    """Return how long a process of Python takes [s], and what it prints."""
-    begin = time.perf_counter()
-    done = subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, check=True)
-    return time.perf_counter() - begin, done.stdout
+    """Return what a user waits for a command, which loads everything."""
+    command = [sys.executable, "-m", "studies", "solve", TABLE_1, *WAITED[label]]
+    whole = []
+    for _ in range(COMMANDS):
+        begin = time.perf_counter()
+        subprocess.run(command, cwd=ROOT, capture_output=True, check=True)
+        whole.append(time.perf_counter() - begin)
+    times = tried.spread(whole, ())
+    del times["solve_s"]
+    return {"waits_of_time": {"model": label, "what": "command line", **times}}
 
 
 def _figure(tables: Tables) -> Figure:

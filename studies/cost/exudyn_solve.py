@@ -58,7 +58,7 @@ class System:
     reaction: int
 
     def stored(self, sensor: int) -> Array:
-        """Return what a sensor has kept of the last run: time or load factor, then its values."""
+        """Return the values (T, 1 + K) of a sensor in the last run: time [s] or load factor [1], K values."""
         return np.array(self.mbs.GetSensorStoredData(sensor))
 
 

@@ -8,10 +8,7 @@ l the crossing point's distance from the moving end over L, and a the strips' in
 
 where d moves the point of the body that lies at the crossing at rest. Exact for rotations p towards zero
 under a pure couple, K for strips that do not stretch (for l = 1/2 for any); neglects all that follows in
-p. Source: the line of Haringx and Wittrick, checked against the spline in the tests. In motion the strips
-take the shape of small rotations (a cubic in the arc length) times p: with m, J and mu of body and strips,
-
-    M = J + m |dg/dp|^2 + 2 mu L^3 (b^2/5 + b c/3 + c^2/7),  b = 3 l - 1,  c = 1 - 2 l
+p. Source: the line of Haringx and Wittrick, checked against the spline in the tests.
 
 `pin_joint`: the model of Jensen and Howell with one pin, a joint at the crossing with a torsional spring.
 
@@ -22,9 +19,7 @@ The body turns about the crossing point at rest, which stays where it is. Publis
 mid-length, as a mean over large rotations: at small ones it is several per cent too stiff, at large ones too
 soft. Range of validity 0.5 <= n <= 4 (n = tan(inclination)); outside it is refused. Source: Jensen and
 Howell, Mechanism and Machine Theory 37 (2002) 461-476, polynomial as public codes have it; the original was
-not at hand. In motion the part of each strip beyond the pin turns with the body,
-M = J + m |g - c|^2 + 2 mu (L/2)^3 / 3 with g - c from crossing to centre of mass: constant, so that the swing
-is harmonic.
+not at hand.
 
 `four_bar`: their model with four pins, crossed rigid links with torsional springs. Each strip is a rigid link
 of length c L in the middle of it, with a pin and a spring k at either end; what is left of the strip is rigid
@@ -39,8 +34,7 @@ crossing towards ground and body, p the rotation, a the inclination, in complex 
     u = i w (sqrt((q + b)^2 / |w|^2 - cos(a)^2) - sin(a))
 
 where the links turn by m + h and m - h and u moves the body's point that lies at the crossing at rest.
-In motion a link is a uniform rod on its ground pin, and the strip's part beyond the body pin belongs to the
-body. Source of the model: as of the pin joint; own derivation of the rest.
+Source of the model: as of the pin joint; own derivation of the rest.
 """
 
 import math
@@ -49,7 +43,7 @@ from typing import Any
 import numpy as np
 
 from studies.cases.problem import Problem
-from studies.cost.model import Geometry, Law, State, Surrogate, geometry_of
+from studies.cost.model import Geometry, State, Surrogate, geometry_of
 from studies.errors import BadInput
 from studies.kinds import Array
 
@@ -76,57 +70,24 @@ def _shift_coefficient(problem: Problem) -> float:
 
 def _centre(at_rest: Geometry, p: Array, shift: Any) -> Array:
     """Return the centre of mass (S, 2) of a body whose point at the crossing moves by x + iy [m]."""
-    z = shift + _arm(at_rest) * np.exp(1j * p)
+    z = shift + complex(*(at_rest.centre - at_rest.crossing)) * np.exp(1j * p)
     return np.stack((z.real, z.imag), axis=-1) + at_rest.crossing
 
 
-def _arm(at_rest: Geometry) -> complex:
-    """Return the way from the crossing to the centre of mass at rest, as x + iy [m]."""
-    return complex(*(at_rest.centre - at_rest.crossing))
+def _constant(problem: Problem, p: Array, stiffness: float, shift: float = 0.0) -> State:
+    """Return a pivot of constant stiffness [N m/rad]; shift: of the body's point at the crossing, over p^2
+    [m]."""
+    centre = _centre(geometry_of(problem), p, 1j * shift * p**2)
+    return State(centre, stiffness * p, np.full(len(p), stiffness))
 
 
-def _speed(p: Array, rate: Any, arm: complex) -> Array:
-    """Return the square of the speed of a point of the body at p' = 1 [m^2].
-
-    Args:
-        rate: velocity of the body's point at the crossing, as x + iy [m].
-        arm: from there to the point, at rest.
-    """
-    return np.asarray(np.abs(rate + 1j * arm * np.exp(1j * p)) ** 2)
+def _linear_law(problem: Problem, p: Array) -> State:
+    """Return the linear pivot at rotations p (S,)."""
+    return _constant(problem, p, small_angle_stiffness(problem), _shift_coefficient(problem))
 
 
-def _constant(problem: Problem, stiffness: float, strips: float, shift: float = 0.0) -> Law:
-    """Return the law of a constant stiffness [N m/rad].
-
-    Args:
-        strips: their inertia [kg m^2]. shift: of the body's point at the crossing, over p^2 [m].
-    """
-    at_rest = geometry_of(problem)
-    turning = problem.body_moment_of_inertia + strips
-
-    def law(p: Array) -> State:
-        return State(
-            centre=_centre(at_rest, p, 1j * shift * p**2),
-            energy=0.5 * stiffness * p**2,
-            torque=stiffness * p,
-            stiffness=np.full(len(p), stiffness),
-            inertia=turning + problem.body_mass * _speed(p, 2j * shift * p, _arm(at_rest)),
-        )
-
-    return law
-
-
-def _linear_law(problem: Problem) -> Law:
-    """Return the law of the linear pivot."""
-    away = 1.0 - problem.crossing_ratio
-    b, c = 3.0 * away - 1.0, 1.0 - 2.0 * away
-    strip = problem.density * problem.area * problem.length**3
-    strips = 2.0 * strip * (b**2 / 5.0 + b * c / 3.0 + c**2 / 7.0)
-    return _constant(problem, small_angle_stiffness(problem), strips, _shift_coefficient(problem))
-
-
-def _pinned_law(problem: Problem) -> Law:
-    """Return the law of the pin joint: that of the linear pivot without a shift.
+def _pinned_law(problem: Problem, p: Array) -> State:
+    """Return the pin joint at rotations p (S,): the linear pivot without a shift.
 
     Raises:
         BadInput: a pivot outside the model's range.
@@ -140,9 +101,8 @@ def _pinned_law(problem: Problem) -> Law:
     if not RANGE[0] <= ratio <= RANGE[1]:
         raise BadInput(f"{PIN_JOINT}: got height / width {ratio:.3g}, expected {RANGE[0]:g} to {RANGE[1]:g}")
     rigidity = problem.youngs_modulus * problem.second_moment_of_area
-    strips = 2.0 * problem.density * problem.area * (0.5 * problem.length) ** 3 / 3.0
     coefficient = float(np.polynomial.polynomial.polyval(ratio, COEFFICIENTS))
-    return _constant(problem, coefficient * rigidity / (2.0 * problem.length), strips)
+    return _constant(problem, p, coefficient * rigidity / (2.0 * problem.length))
 
 
 def link_length(problem: Problem) -> float:
@@ -184,43 +144,28 @@ def _apart(p: Array, ground: float, body: float) -> tuple[Array, Array, Array]:
     return size, first, (-ground * body * np.cos(p) - first**2) / size
 
 
-def _shift(p: Array, ground: float, body: float, inclination: float) -> tuple[Array, Array]:
-    """Return the displacement of the body's point at the crossing, as x + iy, and its derivative [m]."""
-    whole, turned = ground + body, body * np.exp(1j * p)
-    size, first, _ = _apart(p, ground, body)
-    height = np.sqrt(whole**2 / size**2 - math.cos(inclination) ** 2)
-    height_1 = -(whole**2) * first / (size**3 * height)
-    above, w = height - math.sin(inclination), ground + turned
-    return 1j * w * above, 1j * (1j * turned * above + w * height_1)
+def _shift(p: Array, ground: float, body: float, inclination: float) -> Array:
+    """Return the displacement of the body's point at the crossing, as x + iy [m]."""
+    size = _apart(p, ground, body)[0]
+    height = np.sqrt((ground + body) ** 2 / size**2 - math.cos(inclination) ** 2)
+    shift: Array = 1j * (ground + body * np.exp(1j * p)) * (height - math.sin(inclination))
+    return shift
 
 
-def _linkage(problem: Problem) -> Law:
-    """Return the law of the linkage."""
-    at_rest, link, k = geometry_of(problem), link_length(problem) * problem.length, spring(problem)
-    left = 0.5 * (problem.length - link)
+def _linkage_law(problem: Problem, p: Array) -> State:
+    """Return the linkage at rotations p (S,)."""
+    k, left = spring(problem), 0.5 * (1.0 - link_length(problem)) * problem.length
     ground = problem.crossing_ratio * problem.length - left
     body = (1.0 - problem.crossing_ratio) * problem.length - left
-    linear = problem.density * problem.area
-    stubs = [complex(*place) for place in (body + 0.5 * left) * at_rest.direction]
-    turning = problem.body_moment_of_inertia + 2.0 * linear * left**3 / 12.0
-
-    def law(p: Array) -> State:
-        (m, m_1, m_2), (h, h_1, h_2) = _links(p, ground, body, problem.inclination)
-        shift, rate = _shift(p, ground, body, problem.inclination)
-        links = linear * link**3 / 3.0 * ((m_1 + h_1) ** 2 + (m_1 - h_1) ** 2)
-        ends = linear * left * sum(_speed(p, rate, stub) for stub in stubs)
-        by_mean = m_1**2 + m * m_2 + (1.0 - m_1) ** 2 - (p - m) * m_2
-        return State(
-            centre=_centre(at_rest, p, shift),
-            energy=k * (m**2 + (p - m) ** 2 + 2.0 * h**2),
-            torque=2.0 * k * (m * m_1 + (p - m) * (1.0 - m_1) + 2.0 * h * h_1),
-            stiffness=2.0 * k * (by_mean + 2.0 * (h_1**2 + h * h_2)),
-            inertia=turning + links + problem.body_mass * _speed(p, rate, _arm(at_rest)) + ends,
-        )
-
-    return law
+    (m, m_1, m_2), (h, h_1, h_2) = _links(p, ground, body, problem.inclination)
+    by_mean = m_1**2 + m * m_2 + (1.0 - m_1) ** 2 - (p - m) * m_2
+    return State(
+        centre=_centre(geometry_of(problem), p, _shift(p, ground, body, problem.inclination)),
+        torque=2.0 * k * (m * m_1 + (p - m) * (1.0 - m_1) + 2.0 * h * h_1),
+        stiffness=2.0 * k * (by_mean + 2.0 * (h_1**2 + h * h_2)),
+    )
 
 
-linear_pivot = Surrogate(name="linear pivot", law_of=_linear_law)
-pin_joint = Surrogate(name=PIN_JOINT, law_of=_pinned_law)
-four_bar = Surrogate(name="four-bar", law_of=_linkage)
+linear_pivot = Surrogate(name="linear pivot", law=_linear_law)
+pin_joint = Surrogate(name=PIN_JOINT, law=_pinned_law)
+four_bar = Surrogate(name="four-bar", law=_linkage_law)

@@ -1,8 +1,9 @@
 """The one list of settings that are compared: of every model, for the static path and for the swing.
 
 Implicit schemes of all models take the same steps; explicit ones take their own, near the largest stable one.
-In motion strips have no shear and no rotary inertia of their sections, but for Exudyn's exact beams, which
-have both: two theories are 3e-2 rad apart after 0.05 s, so that each is held against the limit of its own.
+Surrogates are of statics alone. In motion strips have no shear and no rotary inertia of their sections, but
+for Exudyn's exact beams, which have both: two theories are 3e-2 rad apart after 0.05 s, so that each is held
+against the limit of its own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -156,7 +157,6 @@ def swings(frequency: float = FREQUENCY) -> list[Setting]:
         *grid(spline, SPLINE, control_points=(4, 5, 6, 7, 8), integrator=("energy",), step=step),
         *grid(elements, ELEMENTS, elements=(5, 10, 16, 24, 36), integrator=explicit),
         *grid(elements, ELEMENTS, elements=(5, 10, 16, 24), integrator=implicit, step=step),
-        *(each for model in SURROGATES.values() for each in grid(model, SURROGATE, step=step)),
         *(s for model, meshes, how in damped for s in grid(model, EXUDYN, elements=meshes, step=step, **how)),
         *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40), step=step),
     ]

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers import reference
-from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.reference import Reference, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
@@ -29,34 +29,21 @@ from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
 from studies.record.progress import measure, silent
 
-#: Theories of a strip, by what their energies are measured in: bending per reference length without shear,
-#: per current length as the paper's Eq 10, and per reference length with shear.
-THEORIES = MATERIAL, SPATIAL, SHEAR = "material", "spatial", "shear"
-#: Control points of the spatial limit, and of the one below that says how uncertain it is.
-SPATIAL_POINTS = (15, 13)
+#: Theories of a strip, both with bending per reference length: without and with shear.
+THEORIES = MATERIAL, SHEAR = "material", "shear"
 #: Records of these: the strips' own oscillations are some 40 times as fast as the swing, and cubic
 #: interpolation between so many errs by less than 1e-6 rad.
 RECORDS = 4000
 
 
 def path_limit(design: Design, theory: str) -> Reference:
-    """Return the limit of a theory on the path of a design.
-
-    Material and shear: the elements' limit of refinement, which shares no code with the splines. Spatial: no
-    elements have it, so a spline finer than any that is shown, and its distance to a coarser one.
+    """Return the limit of a theory on the path of a design: that of elements, which share no code with the
+    splines.
 
     Raises:
         NoReference: the elements do not reach the end of the path.
     """
-    if theory != SPATIAL:
-        return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
-    paper: dict[str, Any] = {"measure": theory, "stretch": "consistent"}
-    fine, coarse = (
-        answer_static(design, SplineSettings(control_points=n, **paper)).whole() for n in SPATIAL_POINTS
-    )
-    return Reference.of(
-        fine, coarse, "spline with {} control points; its distance to one with {}".format(*SPATIAL_POINTS)
-    )
+    return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
 
 
 def swing_limit(

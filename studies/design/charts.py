@@ -1,38 +1,33 @@
-"""Design charts of the pivot: stiffness, shift, stress, range and loads over crossing ratio and inclination.
+"""Design charts of the pivot: stiffness, shift, stress and variation over crossing ratio and inclination.
 
 Two equal slender strips of length L, thickness t and rigidity EI, turned by theta. Dimensionless: stiffness
 K L/(EI); distance by which the body's point at the crossing moves, over L; largest stress sigma L/(E t);
-largest less smallest stiffness up to theta over that at rest; loads P L^2/(EI), at that point. All of these
-depend on the two ratios alone where strips are slender, and the table `collapse` says by how much they do
-not. Strain is that of the extreme fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own
-mirror image, so one side is enough. The theory is limited by the effects on the stiffness that a plain beam
-neglects.
+largest less smallest stiffness up to theta over that at rest. All of these depend on the two ratios alone
+where strips are slender, and the table `collapse` says by how much they do not. Strain is that of the extreme
+fibre, |N|/(EA) + |M| t/(2 EI). Turned to either side the pivot is its own mirror image, so one side is
+enough. The theory is limited by the effects on the stiffness that a plain beam neglects.
 """
 
-from dataclasses import replace
 from itertools import product
-from math import pi
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 from spline_model import solve_many
-from spline_model.batch_paths import Batch
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
-from studies.answers.critical import FORCE, critical_load
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.validity import Strip, anticlastic_factor, strips_of
-from studies.cases.effects import Effects
-from studies.cases.problem import Problem, named_case
+from studies.cases.problem import named_case
 from studies.cases.section import of_sides
-from studies.design.figures import CHARTS
 from studies.engine import Answer, Claim, Part, Study, Tables
 from studies.kinds import Array
+from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.style import BLACK, BLUE, GREEN, ORANGE, SKY, Look
 
-CASE = "cross_axis_pivot"
 #: The charts' grid, the rotations that are drawn, and the increment of a path [deg].
 RATIOS, INCLINATIONS = np.linspace(0.1, 0.9, 33), np.linspace(25.0, 65.0, 17)
 ROTATIONS, INCREMENT = (5.0, 10.0, 15.0, 30.0, 45.0), 2.5
@@ -40,13 +35,17 @@ ROTATIONS, INCREMENT = (5.0, 10.0, 15.0, 30.0, 45.0), 2.5
 SLENDER, OTHERS, FROM = 200.0, (15.0, 20.0, 30.0, 50.0, 100.0), 30.0
 #: Width over length and Poisson's ratio, which a beam's answer does not depend on.
 WIDTH, POISSON = 0.1, 0.3
+#: Control points of a strip.
 POINTS = 10
-QUANTITIES = ("stiffness", "shift", "stress", "variation")
-#: Strengths sigma_y L/(E t) whose ranges are listed, and the ratios of that list.
-STRENGTHS, LISTED = (0.05, 0.1, 0.2, 0.3, 0.5), (0.1273, 0.2, 0.3, 0.4, 0.5)
-#: Designs, rotations [deg], errors and control points of the table of points, and their reference.
-COARSE = ((0.1, 0.3, 0.5, 0.7, 0.9), (25.0, 45.0, 65.0))
-TURNS, LEVELS, COUNTS, REFERENCE = (5.0, 10.0, 15.0, 30.0, 45.0, 90.0), (1e-2, 1e-3, 1e-4), range(4, 12), 14
+#: Quantity -> how it is written beside its charts.
+QUANTITIES = {
+    "stiffness": "$K L/(EI)$",
+    "shift": "shift/$L$",
+    "stress": r"$\sigma L/(E t)$",
+    "variation": "variation of $K$",
+}
+#: Inclinations of the columns [deg], and colours of the rotations.
+DRAWN, COLOURS = (30.0, 45.0, 60.0), (BLUE, SKY, GREEN, ORANGE, BLACK)
 #: Pivots that are marked where the theory ends, and elements a strip by which their shear is weighed.
 PIVOTS = (
     "cross_axis_pivot",
@@ -57,45 +56,34 @@ PIVOTS = (
     "large_steel_pivot",
 )
 ELEMENTS = 160
-#: Loads P L^2/(EI) up to this one, and the designs that bear them, by half of the ratios: what holds for one
-#: holds for what it lacks to one. Directions from x to y [rad].
-MOST, STATES = 20.0, 20
-LOADED = ((0.1273, 0.2, 0.3, 0.4, 0.5), (30.0, 45.0, 60.0))
-DIRECTIONS = {"towards the ground": -pi / 2, "away from the ground": pi / 2, "across": 0.0}
 
 
-def turned(ratios: Array, inclinations: Array, largest: float, slenderness: float, points: int) -> Batch:
-    """Return the paths of pivots of unit length and modulus to a rotation [deg], crossing at (0, 0)."""
-    thickness = 1.0 / slenderness
-    return solve_many(
-        {
-            "length": 1.0,
-            "youngs_modulus": 1.0,
-            "poisson_ratio": POISSON,
-            "density": 1.0,
-            "body_mass": 1.0,
-            "body_moment_of_inertia": 1.0,
-            **of_sides(WIDTH, thickness),
-            "crossing_ratio": ratios,
-            "inclination": np.radians(inclinations),
-        },
-        rotation=np.radians(largest),
-        increments=round(largest / INCREMENT),
-        section_depth=thickness,
-        control_points=points,
-    )
+def paths(ratios: Array, inclinations: Array, slenderness: float) -> dict[str, Array]:
+    """Return the quantities of the charts (D, S) [1] by name, of D pivots in increments to the last rotation.
 
+    Of unit length and modulus, with the crossing at (0, 0).
 
-def dimensionless(found: Batch, ratios: Array, inclinations: Array, slenderness: float) -> dict[str, Array]:
-    """Return the quantities of the charts (D, S) [1] by name.
+    Args:
+        ratios, inclinations: (D,) crossing ratios [1] and inclinations [deg]. slenderness: L/t [1].
 
-    ratios, inclinations: crossing ratio [1] and inclination [rad] of the D pivots; slenderness: L/t [1].
+    Raises:
+        ValueError: a pivot that is not reached.
     """
-    rigidity = WIDTH / slenderness**3 / 12.0
-    stiffness = found.stiffness / rigidity
+    angles, section = np.radians(inclinations), of_sides(WIDTH, 1.0 / slenderness)
+    unit = dict.fromkeys(("length", "youngs_modulus", "density", "body_mass", "body_moment_of_inertia"), 1.0)
+    found = solve_many(
+        {**unit, **section, "poisson_ratio": POISSON, "crossing_ratio": ratios, "inclination": angles},
+        rotation=np.radians(max(ROTATIONS)),
+        increments=round(max(ROTATIONS) / INCREMENT),
+        section_depth=1.0 / slenderness,
+        control_points=POINTS,
+    )
+    if not found.converged.all():
+        raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
+    stiffness = found.stiffness / section["second_moment_of_area"]
     most, least = (extreme.accumulate(stiffness, axis=1) for extreme in (np.maximum, np.minimum))
     # the body's centre is midway between its clamps: from the crossing up by this
-    arm = ((1.0 - ratios) * np.sin(np.radians(inclinations)))[:, None]
+    arm = ((1.0 - ratios) * np.sin(angles))[:, None]
     sine, cosine = np.sin(found.rotation), np.cos(found.rotation)
     x, y = (found.centre - found.centre[:, :1]).transpose(2, 0, 1)
     return {
@@ -106,20 +94,12 @@ def dimensionless(found: Batch, ratios: Array, inclinations: Array, slenderness:
     }
 
 
-def _grid(ratios: Any, inclinations: Any) -> tuple[Array, Array]:
-    pairs = np.array(list(product(ratios, inclinations)))
-    return pairs[:, 0], pairs[:, 1]
-
-
-def _charts(ratios: Any, inclinations: Any, slenderness: float) -> pd.DataFrame:
+def _charts(slenderness: float) -> pd.DataFrame:
     """Return a row a design and rotation of the charts."""
-    designs = _grid(ratios, inclinations)
-    found = turned(*designs, max(ROTATIONS), slenderness, POINTS)
-    if not found.converged.all():
-        raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
-    values = dimensionless(found, *designs, slenderness)
+    ratios, inclinations = np.array(list(product(RATIOS, INCLINATIONS))).T
+    values = paths(ratios, inclinations, slenderness)
     parts = [
-        {"crossing_ratio": designs[0], "inclination_deg": designs[1], "rotation_deg": rotation}
+        {"crossing_ratio": ratios, "inclination_deg": inclinations, "rotation_deg": rotation}
         | {name: values[name][:, round(rotation / INCREMENT)] for name in QUANTITIES}
         for rotation in ROTATIONS
     ]
@@ -128,10 +108,10 @@ def _charts(ratios: Any, inclinations: Any, slenderness: float) -> pd.DataFrame:
 
 def _charted() -> Answer:
     """Return the charts' map, to five digits, and how far other slendernesses and designs are from it."""
-    slender = _charts(RATIOS, INCLINATIONS, SLENDER)
+    slender = _charts(SLENDER)
     rows = []
     for slenderness in OTHERS:
-        other = _charts(RATIOS, INCLINATIONS, slenderness)
+        other = _charts(slenderness)
         for name, turn in product(QUANTITIES, ROTATIONS):
             here = slender["rotation_deg"] == turn
             apart = (other[name] - slender[name])[here].abs() / slender.loc[here, name].max()
@@ -139,83 +119,6 @@ def _charted() -> Answer:
             rows.append(row | {"median": apart.median(), "largest": apart.max()})
     digits = {name: [float(f"{value:.5g}") for value in slender[name]] for name in QUANTITIES}
     return {"map": slender.assign(**digits), "collapse": rows}
-
-
-def _ranges() -> Answer:
-    """Return how far pivots at 45 degrees turn within a strength sigma_y L/(E t); none where farther."""
-    designs = _grid(LISTED, (45.0,))
-    found = turned(*designs, max(TURNS), SLENDER, POINTS)
-    stress, turns = found.strain * SLENDER, np.degrees(found.rotation)
-    return {
-        "ranges": [
-            {"crossing_ratio": ratio, "strength": strength, "rotation_deg": _crossed(turns, path, strength)}
-            for ratio, path in zip(designs[0], stress, strict=True)
-            for strength in STRENGTHS
-        ]
-    }
-
-
-def _crossed(turns: Array, path: Array, strength: float) -> float:
-    """Return the rotation [deg] at which a path first passes the strength."""
-    if path.max() < strength:
-        return np.nan
-    past = int(np.argmax(path >= strength))
-    return float(np.interp(strength, path[past - 1 : past + 1], turns[past - 1 : past + 1]))
-
-
-def _points() -> Answer:
-    """Return the least control points that keep an error up to a rotation in each of the designs."""
-    designs = _grid(*COARSE)
-    found = {n: turned(*designs, max(TURNS), SLENDER, n) for n in (*COUNTS, REFERENCE)}
-    rows = []
-    for quantity, start in (("torque", 1), ("stiffness", 0)):
-        exact = getattr(found[REFERENCE], quantity)[:, start:]
-        errors = [np.abs(getattr(found[n], quantity)[:, start:] / exact - 1.0) for n in COUNTS]
-        for turn, level in product(TURNS, LEVELS):
-            worst = np.array(
-                [error[:, : round(turn / INCREMENT)].max() for error in errors]
-            )  # nan: not reached
-            worst = np.where(np.isnan(worst), np.inf, worst)
-            kept = np.maximum.accumulate(worst[::-1])[::-1] <= level
-            least = COUNTS[int(np.argmax(kept))] if kept.any() else np.nan
-            rows.append({"quantity": quantity, "rotation_deg": turn, "error": level, "control_points": least})
-    return {"points": rows}
-
-
-def _loaded(ratio: float, inclination: float, direction: str) -> Answer:
-    """Return the stiffness of a pivot at rest under a growing load, and the load at which it buckles."""
-    problem = _at_crossing(ratio, inclination)
-    angle = DIRECTIONS[direction]
-    unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length**2
-    force = tuple(MOST * unit * part for part in (np.cos(angle), np.sin(angle)))
-    effects = Effects(names=(*problem.effects.names, FORCE), tables={FORCE: {"force": force}})
-    under = replace(problem, rotation=0.0, increments=STATES, effects=effects)
-    design = {"crossing_ratio": ratio, "inclination_deg": inclination, "direction": direction}
-    path = answer_static(under, SplineSettings(control_points=POINTS))
-    rows = [
-        design | {"load": load, "stiffness": stiffness / (unit * problem.length)}
-        for load, stiffness in zip(MOST * np.linspace(0.0, 1.0, STATES + 1), path.stiffness, strict=False)
-    ]
-    answer: dict[str, Any] = {"loads": rows}
-    if direction == "towards the ground":
-        found = critical_load(problem, SplineSettings(control_points=POINTS), direction=angle)
-        answer["buckling"] = design | {"load": (found.force or np.nan) / unit, "kind": found.kind}
-    return answer
-
-
-def _at_crossing(ratio: float, inclination: float) -> Problem:
-    """Return a slender pivot whose body is held and loaded at its point where the strips cross."""
-    case, angle = named_case(CASE), np.radians(inclination)
-    width, thickness = WIDTH * case.length, case.length / SLENDER
-    return replace(
-        case,
-        width=width,
-        thickness=thickness,
-        crossing_ratio=ratio,
-        inclination=angle,
-        centre_offset=(0.0, -(1.0 - ratio) * case.length * float(np.sin(angle))),
-        **of_sides(width, thickness),
-    )
 
 
 def _judged(name: str) -> Answer:
@@ -275,14 +178,27 @@ def _held(tables: Tables) -> list[dict[str, Any]]:
     return [{"quantity": name, "largest": some["largest"].max()} for name, some in rows.groupby("quantity")]
 
 
+def _figure(tables: Tables) -> Figure:
+    """Draw a row of charts a quantity, a column an inclination, a curve a rotation."""
+    rows = tables["map"]
+    turns = zip(sorted(set(rows["rotation_deg"])), COLOURS, strict=True)
+    looks = {turn: Look(label=f"{turn:g}°", colour=colour) for turn, colour in turns}
+    ratio = Axis("crossing_ratio", "crossing ratio λ", ticks=(0.1, 0.3, 0.5, 0.7, 0.9))
+    lines = []
+    for name, label in QUANTITIES.items():
+        some = (rows[rows["inclination_deg"] == inclination] for inclination in DRAWN)
+        lines.append(
+            [Panel(ratio, Axis(name, label), [Curves(each, looks, by="rotation_deg")]) for each in some]
+        )
+    columns = [f"inclination {inclination:g}°" for inclination in DRAWN]
+    return sheet(6.3, 6.6, lines, columns=columns, legend=len(looks))
+
+
 STUDY = Study(
     cases=PIVOTS,
     parts=(
         Part(ask=_charted),
-        Part(ask=_ranges),
-        Part(ask=_points),
         Part(ask=limits),
-        Part(at=lambda: product(*LOADED, DIRECTIONS), ask=_loaded),
         Part(at=lambda: PIVOTS, ask=_judged),
     ),
     claims=(
@@ -295,5 +211,5 @@ STUDY = Study(
             most=0.01,
         ),
     ),
-    figures=CHARTS,
+    figures={"charts": _figure},
 )

@@ -61,19 +61,21 @@ class MechanismQuestion(Question):
         return cls(where=where, content=document, **given)
 
     def document(self, values: Array) -> dict[str, Any]:
-        """Return the case with these values (N,)."""
+        """Return the case with these values (N,) in SI units."""
         document = copy.deepcopy(dict(self.content))
         for name, value in zip(self.names, values, strict=True):
             plan.put(document, dict.fromkeys(name.split(","), float(value)))
         return document
 
     def design(self, values: Array) -> Mechanism:
-        """Return the mechanism with these values (N,)."""
+        """Return the mechanism with these values (N,) in SI units."""
         return read_mechanism(self.where, self.document(values))
 
     def parameters(self, values: Array) -> tuple[list[str], Array]:
-        """Return names of the strips' and bodies' numbers that change, and derivatives (R, N) of these by the
-        case's."""
+        """Return names of the strips' and bodies' numbers that change, and derivatives by the case's values.
+
+        values: (N,) in SI units. The derivatives (R, N) are per SI unit.
+        """
         columns = []
         for i, number in enumerate(self.variables):
             size = STEP * (abs(values[i]) if number.low > 0.0 else number.span)

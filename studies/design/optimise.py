@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from scipy.optimize import lsq_linear, minimize
 
-from studies.cases.problem import Problem
 from studies.design.evaluate import Accurate, Answers
 from studies.design.programme import Active, Programme, missed
 from studies.design.question import Question
@@ -42,7 +41,7 @@ MOST_MOVES = 4
 LENGTH = 1e-3
 #: Residual of the Karush-Kuhn-Tucker conditions below which a point is an optimum, relative to the gradient.
 STATIONARY = 1e-3
-#: Two optima are one if objective, inclination and crossing ratio differ by less [1].
+#: Two optima are one if their objectives differ by less [1].
 SAME = 1e-3
 
 
@@ -235,28 +234,19 @@ def best(outcomes: list[Outcome]) -> Outcome | None:
 def numbered(outcomes: list[Outcome]) -> list[int]:
     """Return the number of every outcome's optimum, the best 1; 0 for what is none.
 
-    Two are one if objective, inclination and crossing ratio agree: sizes may then lie on a line of equals; of
-    a mechanism, if all its numbers do. A
-    design and its mirror image, with ground and body exchanged (crossing ratio r and 1 - r), have the same
-    stiffness, shift and stress and count as one.
+    Two with the same objective are one: sizes may lie on a line of equals, and a design and its mirror image,
+    with ground and body exchanged (crossing ratio r and 1 - r), have the same answers.
     """
-    good = [k for k, each in enumerate(outcomes) if each.converged]
-    known: list[Array] = []
+    known: list[float] = []
     numbers = [0] * len(outcomes)
-    for k in sorted(good, key=lambda k: outcomes[k].objective):
-        place = _place(outcomes[k])
-        near = [i for i, other in enumerate(known) if np.abs(place / other - 1.0).max() < SAME]
-        if not near:
-            known.append(place)
-        numbers[k] = near[0] + 1 if near else len(known)
+    for k in sorted(
+        (k for k, each in enumerate(outcomes) if each.converged), key=lambda k: outcomes[k].objective
+    ):
+        objective = outcomes[k].objective
+        if not known or objective > known[-1] * (1.0 + SAME):
+            known.append(objective)
+        numbers[k] = len(known)
     return numbers
-
-
-def _place(outcome: Outcome) -> Array:
-    if not isinstance(outcome.design, Problem):
-        return np.append(outcome.objective, 1.0 + outcome.at[:-1])
-    ratio = outcome.design.crossing_ratio
-    return np.array([outcome.objective, outcome.design.inclination, min(ratio, 1.0 - ratio)])
 
 
 def _outcome(programme: Programme, at: Array, found: Answers | None, message: str = "") -> Outcome:

@@ -105,7 +105,7 @@ class Programme:
         self._count = sum(len(rows.margin) for rows in self.limits(np.append(self.known, 1.0), given))
 
     def answers(self, y: Array) -> Answers | None:
-        """Return the design's answers; None where its path ends early."""
+        """Return the answers at relative variables y (N + 1,) [1]; None if the path ends early."""
         key = y[: len(self.question.span)].tobytes()
         if key != self._last[0]:
             self.solved += 1
@@ -119,14 +119,16 @@ class Programme:
         return self._last[1]
 
     def relative(self, objective: float) -> float:
-        """Return t of an objective: over the scale, and squared for the centre shift."""
+        """Return t [1] of an objective in SI units: over the scale, and squared for the centre shift."""
         ratio = objective / self.scale
         return ratio**2 if self.question.objective == CENTRE_SHIFT else ratio
 
     def limits(self, y: Array, found: Answers) -> Iterator[_Rows]:
-        """Yield the constraints at a point y (N + 1,) with these answers: the objective below t, the stress,
-        the ratios, which are linear in the variables, and last the equality: stiffness, or travel, over the
-        wanted one less one."""
+        """Yield the constraints at a point y (N + 1,) [1] with these answers.
+
+        They are the objective below t, the stress, the ratios, which are linear in the variables, and last
+        the equality: stiffness, or travel, over the wanted one less one.
+        """
         asked, name, eye = self.question, self.question.objective, np.eye(len(y))
         if name == CENTRE_SHIFT:  # squares are smooth at zero, and t is then the square too
             yield self._below(name, found.followed[name], self.scale**2, y[-1], eye[-1], signs=(1.0,))
@@ -186,7 +188,7 @@ class Programme:
         return (signs * margin)[free], (signs[:, None] * jacobian)[free, :-1]
 
     def conditions(self, y: Array, found: Answers) -> tuple[tuple[Active, ...], float]:
-        """Return the active constraints of a point y (N + 1,) and the residual of the conditions.
+        """Return the active constraints of a point y (N + 1,) [1] and the residual of the conditions [1].
 
         The gradient of t, which is 1, as a combination of the active rows' gradients with multipliers of at
         least zero, but for the equality's: the residual is the length of what is left over.

@@ -47,7 +47,7 @@ class Variable(NamedTuple):
 
     @property
     def span(self) -> float:
-        """Width of the bounds, 0 of a variable that is held."""
+        """Width of the bounds in the unit of the variable, 0 of a variable that is held."""
         return self.high - self.low
 
 
@@ -89,19 +89,22 @@ class Question:
     control_points: int = CONTROL_POINTS
 
     def design(self, values: Array) -> Any:
-        """Return the design with these variables (N,)."""
+        """Return the design with these variables (N,) in SI units."""
         raise NotImplementedError
 
     def document(self, values: Array) -> dict[str, Any]:
-        """Return the document of the case with these variables (N,)."""
+        """Return the document of the case with these variables (N,) in SI units."""
         raise NotImplementedError
 
     def dimensions(self, values: Array) -> dict[str, Any]:
-        """Return these variables (N,) as the JSON has them."""
+        """Return these variables (N,) in SI units as the JSON has them."""
         return {"numbers": dict(zip(self.names, map(float, values), strict=True))}
 
     def parameters(self, values: Array) -> tuple[Sequence[str], Array | None]:
-        """Return names of the sensitivities and their derivatives by the variables, as of `evaluate`."""
+        """Return names (R,) of the sensitivities and derivatives (R, N) by the variables, as of `evaluate`.
+
+        values: variables (N,) in SI units. None in place of derivatives: the names are the variables.
+        """
         return self.names, None
 
     @property
@@ -121,17 +124,17 @@ class Question:
 
     @property
     def own(self) -> Array:
-        """Variables of the start (N,)."""
+        """Variables of the start (N,) in SI units."""
         return np.array([variable.own for variable in self.variables])
 
     @property
     def low(self) -> Array:
-        """Lowest values of the variables (N,)."""
+        """Lowest values of the variables (N,) in SI units."""
         return np.array([variable.low for variable in self.variables])
 
     @property
     def span(self) -> Array:
-        """Widths of the bounds (N,), 0 of a variable that is held."""
+        """Widths of the bounds (N,) in SI units, 0 of a variable that is held."""
         return np.array([variable.span for variable in self.variables])
 
     def values(self, y: Array) -> Array:
@@ -148,14 +151,19 @@ class Question:
         return np.vstack((self.scaled(self.own), spread[: count - 1]))
 
     def answers(self, values: Array | None = None, control_points: int | None = None) -> Answers:
-        """Return what the design with these variables (N,) answers, or the start, with the question's control
-        points unless some are given; errors as of `evaluate.answers`."""
+        """Return the answers of the design with these variables (N,) in SI units, or of the start.
+
+        They are with the question's control points unless some are given; errors as of `evaluate.answers`.
+        """
         design = self.start if values is None else self.design(values)
         names, chain = self.parameters(self.own if values is None else values)
         return answers(design, control_points or self.control_points, parameters=names, chain=chain)
 
     def accurate(self, values: Array | None = None) -> Accurate:
-        """Return what a design, as of `answers`, answers with as many control points as it takes."""
+        """Return the answers of a design with as many control points as its accuracy takes.
+
+        values: variables (N,) in SI units; None: those of the start.
+        """
         return accurate(lambda points: self.answers(values, points), self.quantities)
 
 
@@ -198,11 +206,11 @@ class PivotQuestion(Question):
         return cls(start=start, variables=variables, objectives=OF_PIVOT, ratios=ratios, **asked)
 
     def design(self, values: Array) -> Problem:
-        """Return the pivot with these variables (5,)."""
+        """Return the pivot with these variables (5,) in SI units."""
         return varied(self.start, values)
 
     def document(self, values: Array) -> dict[str, Any]:
-        """Return the document of the pivot with these variables (5,)."""
+        """Return the document of the pivot with these variables (5,) in SI units."""
         return document_of(self.design(values))
 
     def dimensions(self, values: Array) -> dict[str, Any]:

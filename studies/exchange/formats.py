@@ -11,40 +11,14 @@ import pandas as pd
 
 from studies.answers.answer import Answer
 from studies.answers.motion import Spectrum
-from studies.answers.named import named, numbers_of
-from studies.answers.quantities import ALONG, QUANTITIES, along_of
+from studies.answers.named import numbers_of
+from studies.answers.quantities import along_of
 from studies.errors import BadInput
 from studies.record.files import replace_folder, require_writable_folder
 
 #: Columns of points and bodies: where they are, and how a mode moves them.
 PLACES = ("x_m", "y_m", "displacement_x_m", "displacement_y_m", "rotation_rad")
 MODES = ("mode_x_per_sqrt_kg", "mode_y_per_sqrt_kg", "mode_rotation_per_m_sqrt_kg")
-#: What each column holds; the first of a table is what runs over the states.
-COLUMNS = {
-    "load_factor": "part of the static path, 0 to 1 [1]",
-    "time_s": "time since the release [s]",
-    "mode": "number of the mode, the lowest 1",
-    "state": "number of the state, the first 0; the same in all tables, and the row of `solve --csv`",
-    **dict.fromkeys(("com_x_m", "com_y_m"), "of the only body, as by `solve --csv` [m]"),
-    **{each.key: f"{each.meaning} [{each.unit}]" for each in QUANTITIES},
-    "strip": "name of the strip",
-    "body": "name of the body",
-    "end": "root or tip of the strip",
-    "on": "what that end is on: ground, a body, or free",
-    "arc_length_m": "along the strip at rest, from its root [m]",
-    "x_m": "place; of a body that of its centre of mass [m]",
-    "y_m": "place; of a body that of its centre of mass [m]",
-    "displacement_x_m": "from rest [m]",
-    "displacement_y_m": "from rest [m]",
-    "rotation_rad": "of the section or of the body from rest, counter-clockwise [rad]",
-    **{key: meaning for key, (_, meaning) in ALONG.items()},
-    "mass_kg": "of the body [kg]",
-    "moment_of_inertia_kg_m2": "of the body about its centre of mass [kg m^2]",
-    **dict.fromkeys(("force_x_N", "force_y_N"), "of what the end is on, on the strip [N]"),
-    "moment_Nm": "of what the end is on, on the strip [N m]",
-    **dict.fromkeys(MODES[:2], "displacement of the mode at unit modal mass [m / sqrt(kg m^2)]"),
-    "mode_rotation_per_m_sqrt_kg": "rotation of the mode at unit modal mass [rad / sqrt(kg m^2)]",
-}
 
 
 def tables(answer: Answer) -> dict[str, pd.DataFrame]:
@@ -127,89 +101,37 @@ def _reactions(answer: Answer) -> pd.DataFrame:
 
 
 Contents = dict[str, bytes]
-#: Size of the drawing of a path or a motion [inch].
-SIZE = 4.6
 
 
-def contents(answer: Answer, formats: tuple[str, ...], drawn: list[int]) -> Contents:
-    """Return the files of the formats by name.
-
-    Args:
-        answer: what is written.
-        formats: names of `FORMATS`.
-        drawn: numbers of the states that a drawing shows.
-    """
-    found: Contents = {}
-    for name in formats:
-        found |= FORMATS[name](answer, drawn)
-    return found
-
-
-def _vtk(answer: Answer, drawn: list[int]) -> Contents:
+def _vtk(answer: Answer) -> Contents:
     from studies.exchange.vtk import vtk  # imported by who asks for it, as all libraries here
 
     return vtk(answer)
 
 
-def _svg(answer: Answer, drawn: list[int]) -> Contents:
-    """Return `<analysis>.svg`, to scale in millimetres: the same bytes for the same answer.
-
-    A path or a motion is one drawing of the chosen states over the shape at rest; modes are a drawing each,
-    over the state that they are about.
-    """
-    from studies.pictures import shapes
-    from studies.record import style
-
-    with style.applied():
-        if isinstance(answer, Spectrum):
-            figure = shapes.modes([(answer, None)], drawn)
-        else:
-            figure = style.page(SIZE, SIZE + 0.9)
-            panel = figure.subplots()
-            handles = shapes.states_over_rest(panel, answer, drawn)
-            shapes.to_scale(panel)
-            what = {"static": "static path", "release": "motion after the release"}[answer.analysis]
-            panel.set_title(f"{shapes.NAMES[answer.model]}: {what}")
-            figure.legend(handles=handles, loc="outside lower center", ncols=3)
-        return {f"{answer.analysis}.svg": style.rendered(figure, "svg")}
-
-
-def _csv(answer: Answer, drawn: list[int]) -> Contents:
+def _csv(answer: Answer) -> Contents:
     return {
         f"{answer.analysis}_{name}.csv": table.to_csv(index=False, lineterminator="\n").encode()
         for name, table in tables(answer).items()
     }
 
 
-def _parquet(answer: Answer, drawn: list[int]) -> Contents:
+def _parquet(answer: Answer) -> Contents:
     made = {name: table.to_parquet(None, index=False) for name, table in tables(answer).items()}
     return {f"{answer.analysis}_{name}.parquet": bytes(content) for name, content in made.items()}
 
 
-def _json(answer: Answer, drawn: list[int]) -> Contents:
-    made = tables(answer)
-    plain = {name: table.astype(object).where(table.notna(), None) for name, table in made.items()}
-    columns = COLUMNS | {each.key: f"{each.meaning} [{each.unit}]" for each in named(answer.design)}
-    document = _summary(answer) | {
-        "columns": {name: columns[name] for table in made.values() for name in map(str, table)},
-        "tables": {name: table.to_dict("list") for name, table in plain.items()},
-    }
-    return {f"{answer.analysis}.json": (json.dumps(document, allow_nan=False) + "\n").encode()}
-
-
 def _summary(answer: Answer) -> dict[str, Any]:
-    """Return what was asked and how it ended, as JSON has it."""
+    """Return what was asked and how it ended, as the manifest has it."""
     names = ("analysis", "model", "settings", "effects", "status", "message")
     return {name: getattr(answer, name) for name in names}
 
 
 #: Format -> what writes it.
-FORMATS: dict[str, Callable[[Answer, list[int]], Contents]] = {
+FORMATS: dict[str, Callable[[Answer], Contents]] = {
     "vtk": _vtk,
-    "svg": _svg,
     "csv": _csv,
     "parquet": _parquet,
-    "json": _json,
 }
 
 

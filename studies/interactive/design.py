@@ -58,7 +58,10 @@ class Snapshot:
 
     @staticmethod
     def free_stiffness(tangent: Array) -> float:
-        """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20)."""
+        """Return the rotational stiffness of a body whose centre is free [N m/rad] (Eq 20).
+
+        tangent: (3, 3) of its x, y and rotation [N/m, N, N m].
+        """
         return float(tangent[2] @ Snapshot.free_turn(tangent))
 
     @staticmethod
@@ -73,7 +76,10 @@ class Snapshot:
         return None if self.tangent is None else self.free_stiffness(self.tangent)
 
     def stable(self, length: float) -> bool:
-        """Whether the body would stay if its pose, or its turn alone, were no longer held."""
+        """Return whether the body would stay if its pose, or its rotation alone, were released.
+
+        length: of the strips [m], which makes the units of the tangent equal.
+        """
         if self.tangent is None:
             return True
         unit = np.array([1.0, 1.0, 1.0 / length])
@@ -142,24 +148,28 @@ class Placing:
         return np.asarray(self.centre - self.ground - self.rest[:2])
 
     def crossing_shift(self, body: Array) -> float | None:
-        """Return how far [m] the body's point that lies in the strips' crossing at rest is from there, None
-        of a design without a crossing."""
+        """Return the displacement [m] of the body point that lies in the strips' crossing at rest.
+
+        body: pose (3,) [m, m, rad]. None for a design without a crossing.
+        """
         if self._crossing is None:
             return None
         return float(np.hypot(*(self.moved(body, self._crossing) - self._crossing)))
 
     def moved(self, body: Array, place: Array) -> Array:
-        """Return where a place (2,) of the body at rest is in its pose (3,)."""
+        """Return where a place (2,) [m] of the body at rest is in its pose (3,) [m, m, rad]."""
         return np.asarray(body[:2] + turned(body[2], place - self.centre))
 
     def body(self, marker: Array, near: float = 0.0) -> Array:
-        """Return the body's pose (3,) for marker 1 at `marker` in marker 0's frame, its turn counted on
-        from `near`."""
+        """Return the body's pose (3,) [m, m, rad] for marker 1 at `marker` (3,) in marker 0's frame.
+
+        Its rotation is counted on from `near` [rad].
+        """
         angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
         return np.array([*(self.ground + marker[:2] + turned(angle, self._arm)), angle])
 
     def marker(self, body: Array) -> Array:
-        """Return the pose (3,) of marker 1 in marker 0's frame for the body's pose."""
+        """Return the pose (3,) of marker 1 in marker 0's frame for the body's pose (3,) [m, m, rad]."""
         return np.array([*(body[:2] - self.ground - turned(body[2], self._arm)), body[2] + self.rest[2]])
 
     def spread(self, sd: Array, turn: float) -> Array:

@@ -125,7 +125,7 @@ class Clock:
 
     @property
     def pace(self) -> float:
-        """Simulated time of the last frames over what they asked for, 1 before there are any."""
+        """Simulated time of the last frames over what they asked for [1], 1 before there are any."""
         asked, done = (sum(each) for each in zip(*self._paces, strict=True)) if self._paces else (0.0, 0.0)
         return done / asked if asked > 0.0 else 1.0
 
@@ -173,7 +173,7 @@ class Hand:
         self._odd: Array | None = None
 
     def add(self, time: float, pose: Array) -> None:
-        """The hand is at `pose`."""
+        """Add the pose (3,) [m, m, rad] of the hand at an instant [s]."""
         self._poses.append((time, pose))
 
     def forget(self) -> None:
@@ -182,7 +182,10 @@ class Hand:
         self._odd = None
 
     def believes(self, time: float, pose: Array) -> bool:
-        """Whether a pose may be taken: as near the last one as a hand moves in that time, or seen twice."""
+        """Return whether a pose (3,) [m, m, rad] at an instant [s] may be taken.
+
+        It may if it is as near the last one as a hand moves in that time, or seen twice.
+        """
         known, self._odd = self._odd, None
         if not self._poses or (known is not None and _close(pose, known, 1.0)):
             return True

@@ -117,7 +117,7 @@ class Mechanics:
         self.snapshot = self._static(self._held.reset())
 
     def hold(self, pose: Array) -> float:
-        """Hold the body at `pose` (3,); returns the part of the way that was solved, 1 for all of it.
+        """Hold the body at `pose` (3,) [m, m, rad]; return the part of the way that was solved [1].
 
         Where no equilibrium follows from the last state, a way from rest is tried: first turned, then pushed.
         """
@@ -136,7 +136,7 @@ class Mechanics:
         return 1.0
 
     def turn(self, rotation: float) -> float:
-        """Hold the rotation alone; returns as `hold`."""
+        """Hold the rotation [rad] alone; return the part of the way that was solved [1]."""
         if self._load.any():
             return self.grip(np.array([*self.placing.centre, rotation]), 0.0)
         state = self._held.turn(rotation)
@@ -167,12 +167,12 @@ class Mechanics:
         return 1.0
 
     def marker_at(self, rotation: float) -> Array:
-        """Return where marker 1 is in marker 0's frame (3,) once a moment alone holds a rotation."""
+        """Return marker 1's pose (3,) [m, m, rad] in marker 0's frame at a rotation [rad] without force."""
         self.turn(rotation)
         return self.placing.marker(self.snapshot.pose)
 
     def grounded(self, pose: Array) -> bool:
-        """Whether the centre of a body at `pose` (3,) lies beyond the ground's clamps."""
+        """Return whether the centre of a body at `pose` (3,) [m, m, rad] lies beyond the ground's clamps."""
         ground, centre = self.placing.base, self.placing.centre
         return bool((pose[:2] - ground) @ (centre - ground) < 0.0)
 

@@ -175,34 +175,29 @@ TIGHT: Any = {
 
 
 def picture(shown: Sequence[Shown]) -> Figure:
-    """Return the figure of one answer, or of up to five over one another: paths, motions or natural modes.
+    """Return the figure of one answer, or of up to five paths or motions over one another.
 
     Raises:
-        BadInput: more than five, kinds that do not go over one another, or less than two states; one line.
+        BadInput: more than five, several modes or kinds, or less than two states; one line.
     """
     if not shown:
         raise BadInput("picture: got no state, expected a solution with one")
     kinds = sorted({each.answer.analysis for each in shown})
-    if len(shown) > len(LETTERS) or len(kinds) > 1:
-        raise BadInput(
-            f"picture: got {len(shown)} of {', '.join(kinds)}, expected one, or 2 to 5 of one kind"
-        )
+    if len(shown) > len(LETTERS) or len(kinds) > 1 or (len(shown) > 1 and kinds == ["modes"]):
+        expected = "one, or 2 to 5 paths or motions"
+        raise BadInput(f"picture: got {len(shown)} of {', '.join(kinds)}, expected {expected}")
     for each in shown:
         if len(each.answer.values) < 1 + (each.answer.analysis != "modes"):
             raise BadInput(f"picture: got too few states of {each.name}, expected at least two")
     with style.applied(**style.PRINTED):
-        return _modes(shown) if kinds == ["modes"] else _page(shown)
-
-
-def _modes(shown: Sequence[Shown]) -> Figure:
-    drawn: Any = [(each.answer, look) for each, look in zip(shown, _looks(shown), strict=True)]
-    figure = shapes.modes(drawn, range(max(len(each.answer.values) for each in shown)))
-    _head(figure, shown)
+        answer: Any = shown[0].answer
+        figure = shapes.modes(answer, *_looks(shown)) if kinds == ["modes"] else _page(shown)
+        _head(figure, shown)
     return figure
 
 
 def _page(shown: Sequence[Shown]) -> Figure:
-    """Return the page: shapes at the upper left, charts beside and below them, names on top."""
+    """Return the page without its names: shapes at the upper left, charts beside and below them."""
     charts = list(_charts_of(shown))
     rows = 2 + max(0, -(-(len(charts) - 2) // 2))
     heading = LINE_HEIGHT * (1 + len(shown))
@@ -211,8 +206,10 @@ def _page(shown: Sequence[Shown]) -> Figure:
     _shapes(figure, grid[0:2, 0], shown)
     places = [grid[0, 1], grid[1, 1], *(grid[row, column] for row in range(2, rows) for column in (0, 1))]
     for chart, place in zip(charts, places, strict=False):
-        chart.draw(figure.add_subplot(place))
-    _head(figure, shown)
+        panel = figure.add_subplot(place)
+        chart.draw(panel)
+        if len(chart.curves) > 1 and len(shown) == 1:  # the key on top names those of several answers
+            panel.legend(ncols=len(chart.curves), **TIGHT)
     return figure
 
 
@@ -310,7 +307,7 @@ def plot(
 
 
 def overlay(solved: Mapping[str, Any], *, yield_strength: float | None = None) -> Picture:
-    """Return the picture of up to five paths, motions or modes in common axes.
+    """Return the picture of up to five paths or motions in common axes.
 
     Parameters
     ----------

@@ -1,7 +1,6 @@
 """Drawings of a design to scale, in millimetres: at rest, deformed at chosen states, in its modes."""
 
 import math
-import textwrap
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -23,70 +22,46 @@ COLOURS = {"spline": BLUE, "fe": BLACK, "fe-shear": GREEN}
 NAMES = {"spline": "spline", "fe": "FE, corotational", "fe-shear": "FE, with shear"}
 #: Colours of what is at rest, and of bodies.
 REST, BODY = "#aaaaaa", "#e0e0e0"
-#: Modes in a row, modes that are drawn at most, height of a row [inch], and letters over a mode.
-ROW, MOST_MODES, ROW_HEIGHT, TITLE = 3, 12, 2.1, 28
+#: Modes in a row, modes that are drawn at most, and height of a row [inch].
+ROW, MOST_MODES, ROW_HEIGHT = 3, 12, 2.1
 
 
-def states_over_rest(
-    panel: Axes, answer: Answer, states: Sequence[int], look: Look | None = None
-) -> list[Line2D]:
+def states_over_rest(panel: Axes, answer: Answer, states: Sequence[int], look: Look) -> list[Line2D]:
     """Draw states over the shape at rest, later ones stronger; return what a legend says of them."""
     _at_rest(panel, answer, answer.along.rest_shape, answer.along.rest_bodies)
     handles = [Line2D([], [], color=REST, linestyle="--", label="at rest")]
     strengths = np.linspace(0.45, 1.0, len(states)) if len(states) > 1 else [1.0]  # later ones stand out
     for state, strength in zip(states, strengths, strict=True):
-        how = _line(answer, look) | {"alpha": strength}
+        how = _line(look) | {"alpha": strength}
         _deformed(panel, answer, answer.along.shape[state], answer.along.bodies[state, :, :2], **how)
         handles.append(Line2D([], [], label=_named(answer, state), **how))
     return handles
 
 
-def _line(answer: Answer, look: Look | None) -> dict[str, Any]:
-    """Return colour and line as of `Axes.plot`, those of the model without a look."""
-    look = look or Look(label="", colour=COLOURS[answer.model])
+def _line(look: Look) -> dict[str, Any]:
+    """Return colour and line as of `Axes.plot`."""
     return {"color": look.colour, "linestyle": look.line, "linewidth": 1.8}
 
 
-def modes(several: Sequence[tuple[Spectrum, Look | None]], states: Sequence[int]) -> Figure:
-    """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about.
-
-    Args:
-        several: of each design its answer and look, None for that of its model; the modes of the same number
-            stand over one another, with the sign that turns them the same way.
-        states: the modes, by their place.
-    """
-    chosen = list(states)[:MOST_MODES]
-    columns = min(ROW, len(chosen))
-    rows = math.ceil(len(chosen) / columns)
+def modes(answer: Spectrum, look: Look) -> Figure:
+    """Return the drawings of modes, the first `MOST_MODES` of them, over the state that they are about."""
+    count = min(MOST_MODES, len(answer.values))
+    columns = min(ROW, count)
+    rows = math.ceil(count / columns)
     figure = style.page(style.PAGE_WIDTH, rows * ROW_HEIGHT + 0.3)
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
-    for panel in panels[len(chosen) :]:
+    for panel in panels[count:]:
         panel.set_axis_off()
-    for place, (panel, state) in enumerate(zip(panels, chosen, strict=False)):
-        there = [each for each in several if state < len(each[0].values)]
-        for answer, look in there:
-            _mode(panel, answer, state, _turned_as(answer, there[0][0], state), look)
-        rates = ", ".join(f"{float(each[0].frequency[state]):.5g}" for each in there)
-        panel.set_title(textwrap.fill(f"mode {state + 1}: {rates} Hz", TITLE))
-        left, bottom = place % columns == 0, place + columns >= len(chosen)
+    for state, panel in enumerate(panels[:count]):
+        still, centres = answer.along.shape[state], answer.along.bodies[state, :, :2]
+        scale = mode_scale(answer, state)
+        moved = still + scale * answer.mode_shape[state], centres + scale * answer.mode_bodies[state, :, :2]
+        _at_rest(panel, answer, still, centres)
+        _deformed(panel, answer, *moved, **_line(look))
+        panel.set_title(f"mode {state + 1}: {answer.frequency[state]:.5g} Hz")
+        left, bottom = state % columns == 0, state + columns >= count
         to_scale(panel, x="x [mm]" if bottom else "", y="y [mm]" if left else "")
     return figure
-
-
-def _mode(panel: Axes, answer: Spectrum, state: int, sign: float, look: Look | None) -> None:
-    """Draw a mode of a design over the state that it is about."""
-    scale = sign * mode_scale(answer, state)
-    shape = answer.along.shape[state] + scale * answer.mode_shape[state]
-    moved = answer.along.bodies[state, :, :2] + scale * answer.mode_bodies[state, :, :2]
-    _at_rest(panel, answer, answer.along.shape[state], answer.along.bodies[state, :, :2])
-    _deformed(panel, answer, shape, moved, **_line(answer, look))
-
-
-def _turned_as(answer: Spectrum, first: Spectrum, state: int) -> float:
-    """Return the sign with which a mode moves the middles of the strips, on the whole, as that of another
-    design does: 1 of designs with other strips."""
-    mine, theirs = (each.mode_shape[state, :, each.mode_shape.shape[2] // 2] for each in (answer, first))
-    return -1.0 if mine.shape == theirs.shape and float((mine * theirs).sum()) < 0.0 else 1.0
 
 
 def to_scale(panel: Axes, x: str = "x [mm]", y: str = "y [mm]") -> None:

@@ -67,7 +67,7 @@ class Arc:
     counters: Mapping[str, int] = field(default_factory=dict)
 
     def critical_load(self, kind: str, place: int = 0) -> float:
-        """Return the load of a critical point of a kind, 0 the first; NaN if there is none."""
+        """Return the load of a critical point of a kind, 0 the first, in the frame's unit; NaN if none."""
         found = [point.load for point in self.critical if point.kind == kind]
         return found[place] if place < len(found) else math.nan
 

@@ -20,10 +20,10 @@ from studies.answers.adapters import answer_modes
 from studies.answers.metrics import extrapolate
 from studies.answers.reference import MESHES, SWING_MESHES, reference, swing_reference
 from studies.answers.settings import FeSettings
-from studies.cases.design import as_toml
+from studies.cases.design import as_toml, document_of
 from studies.cases.problem import named_case
 from studies.paper.formulations import DURATION, INSTANTS
-from studies.published.solids import SOFT, STIFF, VALUES, states_of
+from studies.published.solids import PIVOT, SOFT, STIFF, VALUES, states_of
 from studies.record.source import ROOT
 from studies.record.store import as_csv
 
@@ -43,17 +43,14 @@ BEAMS: dict[str, tuple[str, float, tuple[int, ...]]] = {
 LAWS = {STIFF: "solid", SOFT: "solid_neo_hookean"}
 #: Quantity -> what `at` is, what `scale` is, and the tolerance. Theories differ by more than 0.1 % in torque:
 #: shear by 0.24 %, the material law and lateral clamping by 0.8 %. Shear changes the vibration by 2 %.
-ROTATION, TRAVEL = "rotation of the body [rad]", "the largest displacement of the centre of mass"
+ROTATION, INSTANT = "rotation of the body [rad]", "time after the release at 90 degrees [s]"
+TRAVEL = "the largest displacement of the centre of mass"
 QUANTITIES: dict[str, dict[str, Any]] = {
     "torque_Nm": {"at": ROTATION, "scale": "the torque of the state", "tolerance": 1e-3},
     "centre_x_m": {"at": ROTATION, "scale": TRAVEL, "tolerance": 1e-3},
     "centre_y_m": {"at": ROTATION, "scale": TRAVEL, "tolerance": 1e-3},
     "frequency_Hz": {"at": "number of the natural mode at rest", "scale": "the frequency", "tolerance": 1e-3},
-    "vibration_rotation_rad": {
-        "at": "time after the release at 90 degrees [s]",
-        "scale": "the rotation at the release",
-        "tolerance": 5e-3,
-    },
+    "vibration_rotation_rad": {"at": INSTANT, "scale": "the rotation at the release", "tolerance": 5e-3},
 }
 #: Number of the modes and the meshes that their limit is taken from; every so many instants of the free
 #: vibration; relative digits of the written values.
@@ -85,7 +82,7 @@ def package(stored: Callable[[str, str], pd.DataFrame]) -> dict[str, bytes]:
     """Return the files of the package by their names; `stored` gives a table by its study and name."""
     known, limits = (stored("model_form/solid_pivot", each) for each in ("references", "limits"))
     tables = {str(theory): rows.drop(columns="theory") for theory, rows in known.groupby("theory")}
-    for law, rows in limits.groupby("law"):
+    for law, rows in limits[limits["design"] == PIVOT].groupby("law"):
         torque = rows["uncertainty"] * rows["torque_Nm"]
         tables[LAWS[str(law)]] = _states(rows, torque, rows["uncertainty_m"])
     files = {f"{name}.csv": as_csv(tables[name]) for name in THEORIES}
@@ -114,23 +111,17 @@ def _rows(quantity: str, at: Any, value: Any, uncertainty: Any, scale: Any) -> p
 
 
 def _inputs() -> str:
-    """Return the inputs as TOML."""
+    """Return the inputs as TOML: the case, the places of its clamps, and what the references contain."""
     pivot = named_case()
-    given = {
-        "strip_length_m": pivot.length,
-        "strip_width_m": pivot.width,
-        "strip_thickness_m": pivot.thickness,
-        "youngs_modulus_Pa": pivot.youngs_modulus,
-        "poisson_ratio": pivot.poisson_ratio,
-        "density_kg_per_m3": pivot.density,
-        "ground_clamps_m": np.round([strip.start for strip in pivot.strips], 15).tolist(),
-        "body_clamps_m": np.round([strip.end for strip in pivot.strips], 15).tolist(),
-        "body_mass_kg": pivot.body_mass,
-        "body_moment_of_inertia_kg_m2": pivot.body_moment_of_inertia,
-        "centre_of_mass_m": np.round(pivot.bodies[0].centre, 15).tolist(),
-        "rotation_rad": pivot.rotation,
+    places: dict[str, Any] = {
+        "ground_clamps_m": [strip.start for strip in pivot.strips],
+        "body_clamps_m": [strip.end for strip in pivot.strips],
+        "centre_of_mass_m": pivot.bodies[0].centre,
     }
-    theories = {name: {"theory": theory} for name, theory in THEORIES.items()}
-    document = {"pivot": given, "references": theories, "quantities": QUANTITIES}
+    document = document_of(pivot) | {
+        "places_at_rest": {name: np.round(place, 15).tolist() for name, place in places.items()},
+        "references": {name: {"theory": theory} for name, theory in THEORIES.items()},
+        "quantities": QUANTITIES,
+    }
     remark = "The benchmark pivot, written by `python -m studies readme`; docs/benchmark.md explains it."
     return as_toml(document, [remark])

@@ -139,7 +139,7 @@ class Frame:
 
     @property
     def rest(self) -> tuple[float, float]:
-        """Place of the reported body at rest."""
+        """Place (x, y) of the reported body at rest, in the length unit of the frame."""
         return next(body.centre for body in self.design.bodies if body.name == self.body)
 
     def aside(self) -> Mechanism:

@@ -1,10 +1,11 @@
 """Pivots as three-dimensional solids, how far every beam model deviates from them, and the error budget.
 
-Strips are blocks between rigid end faces, or cut from one block with their supports. Meshes are refined in
-length, thickness and width together. The benchmark pivot has 20-node and 27-node elements and two laws.
+Strips are blocks between rigid end faces, or cut from one block with their supports: the benchmark pivot, a
+pivot of spring steel, and one with strips as wide as long. Meshes are refined in length, thickness and width
+together. The benchmark pivot has 20-node and 27-node elements and two laws.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -17,18 +18,20 @@ from matplotlib.figure import Figure
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.problem import TABLE_1
-from studies.engine import Answer, Claim, Part, Row, Study, Tables, percent
+from studies.cases.section import of_sides
+from studies.engine import Answer, Part, Row, Study, Tables, percent
 from studies.published import benchmark
-from studies.published.solids import SINGULAR, SOFT, STIFF, VALUES, Design, compared, deviation, states_of
+from studies.published.solids import PIVOT, SOFT, STIFF, VALUES, Design, compared, deviation, states_of
 from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, Look
 
 #: Beam models that are drawn: settings, effects that are added, colour and line; those for blocks.
 FINE, STRONG = SplineSettings(control_points=12), FeSettings(elements=160, element="reissner")
 CLAMPED, FLATTENED, SUPPORTS = "clamped_width", "anticlastic", "root_compliance"
+BEAM, SOLID, OTHER_LAW = "beam", f"solid, {STIFF}", f"solid, {SOFT}"
 Models = dict[str, tuple[Any, ...]]
 STRIPS: Models = {
-    "beam": (FINE, (), BLUE, "-"),
+    BEAM: (FINE, (), BLUE, "-"),
     "beam, lateral clamping": (FINE, (CLAMPED,), BLUE, "--"),
     "beam, anticlastic stiffening": (FINE, (FLATTENED,), ORANGE, "-."),
     "beam, both plate effects": (FINE, (CLAMPED, FLATTENED), BLUE, ":"),
@@ -40,50 +43,40 @@ BLOCKS: Models = {
     "supports and lateral clamping": (FINE, (SUPPORTS, CLAMPED), BLACK, "--"),
 }
 LOOKS = {name: Look(label=name, colour=each[2], line=each[3]) for name, each in (STRIPS | BLOCKS).items()}
-LOOKS |= {f"solid, {SOFT}": Look(label="solid, neo-Hookean", colour=RED)}
-#: Beam models that only the error budget compares.
-PUBLISHED = SplineSettings(control_points=4, measure="spatial", stretch="consistent")
-BUDGETED: Models = {
-    "4 control points, as published": (PUBLISHED, ()),
-    **{f"{n} control points": (SplineSettings(control_points=n), ()) for n in (4, 6, 8, 16)},
-    "20 elements": (FeSettings(elements=20), ()),
-    "inextensible": (SplineSettings(control_points=12, stretch="inextensible"), ()),
-    "supports": (FINE, (SUPPORTS,)),
-    "gravity": (FINE, ("gravity",)),
-}
-PIVOT, STEEL = "benchmark", "spring_steel_pivot"
-BENCHMARK = Design(
-    step=9.0,
-    states=10,
-    models=STRIPS | BUDGETED,
-    meshes=(
-        *((fineness, STIFF, "serendipity") for fineness in (5, 4, 3, 2)),
-        *((fineness, STIFF, "lagrange") for fineness in (3, 2)),
-        *((fineness, SOFT, "serendipity") for fineness in (4, 3, 2)),
-    ),
-)
-OTHERS = {
-    "spring steel": Design(case=STEEL, models=STRIPS),
-    "spring steel, b/L = 1": Design(case=STEEL, models=STRIPS, width=0.08),
-    "benchmark, one block": Design(models=STRIPS | BLOCKS, blocks=3.0, states=3, orders=(SINGULAR, 1.0)),
-}
-DESIGNS = {PIVOT: BENCHMARK, **OTHERS}
-#: Kinds of sources of error with their colours; source -> its kind, and the two models that differ.
+LOOKS |= {OTHER_LAW: Look(label="solid, neo-Hookean", colour=RED)}
+#: Kinds of sources of error with their colours. Source -> the beam model whose difference from the refined
+#: beam is its error: settings, effects that are added, kind.
 METHOD, MODEL, UNSURE = "error of a discretisation", "neglected effect", "uncertainty"
 COLOURS = {METHOD: BLUE, MODEL: ORANGE, UNSURE: GREY}
-BEAM, SOLID = "16 control points", f"solid, {STIFF}"
-SOURCES: dict[str, tuple[str, str, str]] = {
-    "membrane locking, n = 4 as published": (METHOD, "4 control points, as published", BEAM),
-    **{f"n = {n} without locking": (METHOD, f"{n} control points", BEAM) for n in (4, 6, 8)},
-    "20 elements per strip": (METHOD, "20 elements", BEAM),
-    "supports cut from one block": (MODEL, "supports", BEAM),
-    "plate action": (MODEL, "beam, both plate effects", BEAM),
-    "shear": (MODEL, "beam with shear", BEAM),
-    "stretching": (MODEL, "inextensible", BEAM),
-    "gravity": (MODEL, "gravity", BEAM),
-    "material law of solids": (MODEL, f"solid, {SOFT}", SOLID),
-    "beams against solids": (MODEL, "beam", SOLID),
-    "beams (refinement)": (UNSURE, "beam", BEAM),
+PUBLISHED = SplineSettings(control_points=4, measure="spatial", stretch="consistent")
+SOURCES: Models = {
+    "membrane locking, n = 4 as published": (PUBLISHED, (), METHOD),
+    **{f"n = {n} without locking": (SplineSettings(control_points=n), (), METHOD) for n in (4, 6, 8)},
+    "20 elements per strip": (FeSettings(elements=20), (), METHOD),
+    "supports cut from one block": (FINE, (SUPPORTS,), MODEL),
+    "plate action": (FINE, (CLAMPED, FLATTENED), MODEL),
+    "shear": (STRONG, (), MODEL),
+    "stretching": (SplineSettings(control_points=12, stretch="inextensible"), (), MODEL),
+    "gravity": (FINE, ("gravity",), MODEL),
+    "beams (refinement)": (SplineSettings(control_points=16), (), UNSURE),
+}
+STEEL, WIDE, THIN = "spring_steel_pivot", 0.08, 1e-3
+DESIGNS = {
+    PIVOT: Design(
+        step=9.0,
+        states=10,
+        models=STRIPS | SOURCES,
+        meshes=(
+            *((fineness, STIFF, "serendipity") for fineness in (5, 4, 3, 2)),
+            *((fineness, STIFF, "lagrange") for fineness in (3, 2)),
+            *((fineness, SOFT, "serendipity") for fineness in (4, 3, 2)),
+        ),
+    ),
+    "spring steel": Design(case=STEEL, models=STRIPS),
+    "spring steel, b/L = 1": Design(
+        case=STEEL, models=STRIPS, changes={"width": WIDE, "thickness": THIN, **of_sides(WIDE, THIN)}
+    ),
+    "benchmark, one block": Design(models=STRIPS | BLOCKS, blocks=3.0, states=3, orders=(1.5, 1.0)),
 }
 DEVIATIONS = (
     Axis("error_torque", "deviation of the torque [%]", factor=100.0),
@@ -116,7 +109,7 @@ def _limits(tables: Tables) -> Iterator[pd.DataFrame]:
 def _deviations(tables: Tables) -> Iterator[pd.DataFrame]:
     """Yield the states of the models that are drawn, with their deviations from the solids of each design
     and the uncertainty of these."""
-    for name in tables["limits"]["design"].unique():
+    for name in DESIGNS:
         models = compared(tables, name)
         solid = models[SOLID]
         for own in (models[each] for each in LOOKS if each in models):
@@ -127,71 +120,57 @@ def _deviations(tables: Tables) -> Iterator[pd.DataFrame]:
 def budget(tables: Tables) -> Iterator[Row]:
     """Yield the sources of error with their largest errors over the compared rotations."""
     models = compared(tables, PIVOT)
-    for source, (kind, model, against) in SOURCES.items():
+    pairs = {source: (kind, source, BEAM) for source, (_, _, kind) in SOURCES.items()} | {
+        "material law of solids": (MODEL, OTHER_LAW, SOLID),
+        "beams against solids": (MODEL, BEAM, SOLID),
+    }
+    for source, (kind, model, against) in pairs.items():
         largest = deviation(models[model], models[against]).abs().max()
-        yield {"source": source, "kind": kind, "model": model, "against": against, **largest}
+        yield {"source": source, "kind": kind, "against": against, **largest}
     solid, places = models[SOLID], models[SOLID][VALUES[1:]].to_numpy()
     place = solid["uncertainty_m"].max() / np.linalg.norm(places[-1] - places[0])
     errors = {"error_torque": solid["uncertainty"].max(), "error_trajectory": place}
-    yield {"source": "solids (refinement)", "kind": UNSURE, "model": SOLID, "against": "", **errors}
+    yield {"source": "solids (refinement)", "kind": UNSURE, "against": "", **errors}
 
 
 def _budget_figure(tables: Tables) -> Figure:
     """Draw the largest errors of torque and trajectory as bars over decades."""
-    rows = tables["budget"].sort_values("error_torque", ignore_index=True)
+    rows = tables["budget"].sort_values("error_torque")
     panels = [partial(_bars, rows, name) for name in ("torque", "trajectory")]
     return sheet(9.5, 4.4, [panels], legend=len(COLOURS))
 
 
 def _bars(rows: pd.DataFrame, name: str, panel: Axes) -> None:
     """Draw the errors of torque or trajectory as bars."""
-    errors = rows[f"error_{name}"]
-    low = 10.0 ** np.floor(np.log10(errors.min()) - 0.5)
-    for kind, colour in COLOURS.items():
-        own = errors[rows["kind"] == kind]
-        bars = panel.barh(own.index, own, left=0.0, color=colour, height=0.7, label=kind)
-        panel.bar_label(bars, [percent(each) for each in own], padding=2.0, fontsize=6.5)
-    panel.set_yticks(rows.index, labels=rows["source"] if name == "torque" else [""] * len(rows))
-    panel.set(xscale="log", xlim=(low, 200.0 * errors.max()), xlabel=f"largest error of the {name}")
+    errors, colours = rows[f"error_{name}"], rows["kind"].map(COLOURS)
+    bars = panel.barh(rows["source"], errors, left=0.0, color=colours, height=0.7, label=list(rows["kind"]))
+    panel.bar_label(bars, list(map(percent, errors)), padding=2.0, fontsize=6.5)
+    limits = 0.2 * errors.min(), 200.0 * errors.max()
+    panel.set(xscale="log", xlim=limits, xlabel=f"largest error of the {name}")
     panel.grid(visible=False, axis="y")
+    panel.tick_params(labelleft=name == "torque")
     panel.set_axisbelow(True)
 
 
-def _figure(table: str, designs: Iterable[str], tables: Tables) -> Figure:
+def _figure(designs: Iterable[str], tables: Tables) -> Figure:
     """Draw the deviations of torque and trajectory over the rotation, a row for each design."""
-    rows = tables[table]
+    rows = tables["deviations"]
     curves = {name: (Curves(rows[rows["design"] == name], LOOKS, by="model"),) for name in designs}
     grid = [[Panel(ROTATION, axis, own, title=name) for axis in DEVIATIONS] for name, own in curves.items()]
     return sheet(7.5, 1.0 + 2.4 * len(grid), grid, legend=3)
 
 
-def _parts(designs: Mapping[str, Design]) -> tuple[Part, ...]:
-    """Return the questions for the meshes and the beam models of designs."""
-    return (
-        Part(at=lambda: [(name, *each) for name in designs for each in designs[name].meshes], ask=_mesh),
-        Part(at=lambda: [(name, each) for name in designs for each in designs[name].models], ask=_beam),
-    )
-
-
 STUDY = Study(
-    parts=(*_parts({PIVOT: BENCHMARK}), Part(at=lambda: benchmark.BEAMS, ask=benchmark.beams)),
-    made={"limits": _limits, "deviations": _deviations, "budget": budget},
-    claims=(
-        Claim(
-            claim="Solids have an uncertainty of at most 0.02 % in torque from 9 degrees on",
-            formulation="{law} at {rotation_rad:.4f} rad",
-            quantity="the uncertainty of the torque",
-            rows=lambda tables: tables["limits"][tables["limits"]["rotation_rad"] > 0.15],
-            value="uncertainty",
-            most=2e-4,
-        ),
-    ),
-    figures={"budget": _budget_figure, "solid_pivot": partial(_figure, "deviations", [PIVOT])},
-)
-OTHER_DESIGNS = Study(
     cases=(TABLE_1, STEEL),
-    parts=_parts(OTHERS),
-    made={"limits": _limits, "states": _deviations},
-    figures={"solid_designs": partial(_figure, "states", OTHERS)},
+    parts=(
+        Part(at=lambda: [(name, *each) for name, own in DESIGNS.items() for each in own.meshes], ask=_mesh),
+        Part(at=lambda: [(name, each) for name, own in DESIGNS.items() for each in own.models], ask=_beam),
+        Part(at=lambda: benchmark.BEAMS, ask=benchmark.beams),
+    ),
+    made={"limits": _limits, "deviations": _deviations, "budget": budget},
+    figures={
+        "budget": _budget_figure,
+        "solid_pivot": partial(_figure, [PIVOT]),
+        "solid_designs": partial(_figure, [name for name in DESIGNS if name != PIVOT]),
+    },
 )
-"""Other pivots as three-dimensional solids: spring steel, a wide strip, and supports cut from one block."""

@@ -1,75 +1,172 @@
 """Compression and buckling: the column and the elastica, frames that snap through, the pivot pushed down.
 
-Beside the outcomes: load against deflection, critical points, and the branches of the pushed pivot.
+Beside the outcomes: the branches of the pushed pivot.
 """
 
 import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
-from typing import Any
+from operator import attrgetter
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from scipy.special import ellipk
 
-from studies.engine import Answer, Part, Row, Tables
-from studies.kinds import Array
-from studies.published.arcs import BIFURCATION, arc_of
-from studies.published.case import published
-from studies.record.marks import Level
-from studies.record.panels import Axis, Curves, Mark, Panel, sheet
+from studies.answers.settings import FeSettings, Settings
+from studies.cases.effects import Effects
+from studies.cases.problem import named_case
+from studies.engine import Answer, Part, Tables
+from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
+from studies.published.case import Frame, published
+from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.store import Digits
-from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED, Look
-from studies.stability import questions
-from studies.stability.questions import EULER, PUBLISHED, bent_column, load_ratio, pushed_pivot, tip
-from studies.stability.verdict import ARCS, DEFAULT, EIGHT, FE, PAPER, TWELVE, study
+from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, Look
+from studies.stability.verdict import (
+    ARCS,
+    CHECK,
+    DEFAULT,
+    EIGHT,
+    FE,
+    REFINED,
+    TOLERANCE,
+    TWELVE,
+    Found,
+    as_mechanism,
+    judged,
+    study,
+)
 
-ELASTICA, PRINT = "elastica", "published"
-DRAWN = (PAPER, DEFAULT, TWELVE, FE)
-PUSHED = (DEFAULT, EIGHT, TWELVE, FE)
-#: Turn of the tip of a column that is still straight [rad].
-STRAIGHT = 1e-6
-PRIMARY, OTHER = "primary", "other"
-#: Depths that only the figure has [m].
-BETWEEN = (3e-3, 7e-3, 1.5e-2)
+TOGGLE, LEE = "Williams' toggle", "Lee's frame"
+#: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].
+SLENDERNESS, BEYOND = 1e3, 4.0
+#: Depths that the pivot's body is pushed down to [m]: the first before its strips buckle.
+SHALLOW, DEPTHS = 1e-3, (2e-3, 5e-3, 1e-2, 2e-2)
+#: Elements that confirm the refined spline.
+INDEPENDENT = FeSettings(elements=40)
+#: Tilt of the body over its depth, in lengths of a strip, from which elements find the branch [rad].
+TILT = 2.0
+#: Euler load of a cantilever [EI/L^2].
+EULER = math.pi**2 / 4.0
+
+#: Tip angle [deg] -> load over the Euler load [1] as printed.
+PUBLISHED = {int(value.at): value.published for value in published("column").values}
 
 
-def _curve(part: str, model: str) -> Answer:
-    """Return a curve, a row a state, and its critical points; a column's corner where it leaves the straight
-    branch is a state as well."""
-    names = {questions.TOGGLE: "williams_toggle", questions.LEE: "lees_frame"}
-    column = part == questions.COLUMN
-    frame = bent_column(max(PUBLISHED)) if column else published(names[part]).frame()
-    arc = arc_of(frame, ARCS[model], follow_branch=column)
+def load_ratio(angle: float) -> float:
+    """Return P over the Euler load at a tip angle [rad]: (2 K / pi)^2 with modulus sin(angle / 2)."""
+    return float((2.0 * ellipk(math.sin(angle / 2.0) ** 2) / math.pi) ** 2)
 
-    def at(load: float, place: Array, **which: Any) -> Row:
-        """Return load and deflection over Euler's and the length, or in the frame's units, down."""
-        deflection = abs(float(place[1])) if column else frame.rest[1] - float(place[1])
-        scaled = load / EULER if column else load
-        return {"part": part, "model": model, **which, "load": scaled, "deflection": deflection}
 
-    states = enumerate(zip(map(float, arc.load), arc.place, arc.inertia, strict=True))
+@dataclass(frozen=True)
+class _BucklingCase:
+    """A question about a path with one number as its answer.
+
+    Attributes:
+        frame: as loaded. quantity: what is asked, with its unit. value: of a path; nan where it has none.
+        exact: in closed form, or nan. published: as printed, or nan.
+        follow_branch: whether the path is to leave the primary branch.
+    """
+
+    name: str
+    frame: Frame
+    quantity: str
+    value: Callable[[Arc], float]
+    exact: float = math.nan
+    published: float = math.nan
+    follow_branch: bool = False
+
+    def arc(self, settings: Settings) -> Arc:
+        """Return the path that is asked about."""
+        return arc_of(self.frame, settings, follow_branch=self.follow_branch)
+
+
+def _cases() -> Iterator[_BucklingCase]:
+    """Yield all questions: of columns and frames, then of the pivot."""
+    # turn of the other branch: of a column by the elastica, of the pivot beyond the buckling of its strips
+    first, turn = partial(Arc.critical_load, kind=BIFURCATION), attrgetter("turned")
+    # of a column that is shortened first: (1 - P / EA) P is Euler's
+    euler = SLENDERNESS**2 / 2.0 * (1.0 - math.sqrt(1.0 - 4.0 * EULER / SLENDERNESS**2))
+    column, shallow = published("column"), published("williams_shallow_toggle")
+    yield _BucklingCase("column: critical load", column.frame(BEYOND), "bifurcation [EI/L^2]", first, euler)
+    for degrees in PUBLISHED:
+        name, angle = f"column: elastica at {degrees} deg", float(degrees)
+        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", turn, angle, angle, True)
+    for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
+        for place, value in enumerate(published(name).values):
+            limit = partial(Arc.critical_load, kind=LIMIT, place=place)
+            which, unit = ("upper", "lower")[place], f"limit load [{value.unit}]"
+            yield _BucklingCase(
+                f"{part}: {which} limit load", published(name).frame(), unit, limit, published=value.published
+            )
+    name, known = "toggle of rise 0.32 in: limit points", shallow.values[0].published
+    points, count = "limit points [1]", lambda arc: float(len(arc.critical))
+    yield _BucklingCase(name, shallow.frame(), points, count, published=known)
+    name, directions = f"pivot pushed down {1e3 * SHALLOW:g} mm: stable", "unstable directions [1]"
+    yield _BucklingCase(name, pushed_pivot(SHALLOW), directions, lambda arc: float(arc.inertia[-1]))
+    name = "pivot pushed down: where its strips buckle"
+    yield _BucklingCase(name, pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
+    for depth in DEPTHS:
+        name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
+        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", turn, follow_branch=True)
+
+
+def bent_column(degrees: float) -> Frame:
+    """Return the column under the load at which the tip of the elastica has turned by `degrees` [deg]."""
+    return published("column").frame(EULER * load_ratio(math.radians(degrees)))
+
+
+def pushed_pivot(depth: float) -> Frame:
+    """Return the pivot of Table 1 with its body's centre displaced down by `depth` [m], free to turn."""
+    given = named_case()
+    effects = Effects(
+        names=("bending", "stretching", "driven_displacement"),
+        tables={"driven_displacement": {"displacement": (0.0, -depth)}},
+    )
+    design = replace(as_mechanism(given, 0.0), rotation=None, effects=effects)
+    return Frame(design=design, load=depth, body="body", tilt=TILT * depth / given.length)
+
+
+def _outcomes_of(case: _BucklingCase) -> Answer:
+    """Return the outcomes of all models, and the reference: in closed form, or the refined spline.
+
+    It is settled by elements, or by the published value where they do not reach it.
+    """
+    refined, check, independent = (case.value(case.arc(each)) for each in (REFINED, CHECK, INDEPENDENT))
+    reference = refined if math.isnan(case.exact) else case.exact
+    spread = max(_difference(check, refined), _difference(refined, reference))
+    gap = _difference(case.published if math.isnan(independent) else independent, reference)
+    settled = "yes" if spread <= TOLERANCE / 5.0 and gap <= TOLERANCE else "no"
+    place = {"case": case.name, "quantity": case.quantity}
+    known = {"reference": reference, "published": case.published}
+
+    def attempt(settings: Settings) -> Found:
+        arc = case.arc(settings)
+        value = case.value(arc)
+        found = Found.of(arc, _difference(value, reference), found=value)
+        # a path that says where it stopped does not claim what lies beyond
+        return replace(found, states_limit=not found.reached)
+
     rows = [
-        at(load, place, state=float(state)) | {"unstable_directions": int(inertia)}
-        for state, (load, place, inertia) in states
+        {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
+        | judged(partial(attempt, settings), TOLERANCE, model)
+        for model, settings in ARCS.items()
     ]
-    for point in arc.critical if column else ():
-        if point.kind == BIFURCATION:
-            last = int(np.argmax(np.abs(arc.place[:, 2]) > STRAIGHT)) - 0.5
-            rows.append(at(point.load, point.place, state=last) | {"unstable_directions": 0})
-    critical = [at(point.load, point.place, kind=point.kind) for point in arc.critical]
-    return {"curves": rows, "critical": critical}
+    reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
+    return {"outcomes": rows, "references": {**place, **reached, **known}}
 
 
-def _elastica() -> list[Row]:
-    """Return the closed form and the published loads at the deflection of their angles."""
-    angles = np.linspace(0.0, math.radians(max(PUBLISHED)), 177)
-    rows = []
-    for model, chosen in ((ELASTICA, angles), (PRINT, np.radians(list(PUBLISHED)))):
-        loads = list(PUBLISHED.values()) if model == PRINT else [load_ratio(one) for one in chosen]
-        for state, (load, (_, across)) in enumerate(zip(loads, tip(chosen), strict=True)):
-            at = {"load": load, "deflection": float(across)}
-            rows.append({"part": questions.COLUMN, "model": model, "state": state, **at})
-    return rows
+def _difference(found: float, reference: float) -> float:
+    """Return the difference over the reference, or as it is where that is zero [1]; nan if there is none."""
+    return abs(found - reference) / (abs(reference) or 1.0)
+
+
+#: Branches of the pushed pivot, and depths that only they have [m].
+PRIMARY, OTHER = "primary", "other"
+BETWEEN = (3e-3, 7e-3, 1.5e-2)
+#: Models that follow them.
+PUSHED = (DEFAULT, EIGHT, TWELVE, FE)
 
 
 def _branch(depth: float, model: str, branch: str) -> Answer:
@@ -91,74 +188,35 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
 
 
 LOOKS = {
-    ELASTICA: Look(label=ELASTICA, colour=BLACK),
-    PRINT: Look(label=PRINT, colour=BLACK, line="", marker="P", hollow=True),
-    PAPER: Look(label=PAPER, colour=RED),
     DEFAULT: Look(label=DEFAULT, colour=BLUE),
     EIGHT: Look(label=EIGHT, colour=PURPLE, line="", marker="v", hollow=True),
     TWELVE: Look(label=TWELVE, colour=GREEN, line="--"),
     FE: Look(label=FE, colour=GREY, line=":"),
 }
-#: Looks of critical points, and of where a path stopped, by model.
-CRITICAL, STOPPED = (
-    {
-        name: Look(label=label, colour=look.colour, line="", marker=marker, hollow=True)
-        for name, look in LOOKS.items()
-    }
-    for label, marker in (("critical point", "o"), ("stopped with a message", "x"))
-)
-AXES = {
-    questions.COLUMN: ("deflection of the tip across [L]", "load [Euler load]", (0.0, 10.0)),
-    questions.TOGGLE: ("deflection of the apex [in]", "load [lb]", (None, None)),
-    questions.LEE: ("deflection below the load [cm]", "load [t]", (None, None)),
-}
-DOWN, TURN = Axis("reached_mm", "way down [mm]"), Axis("turn_deg", "turn of the body [deg]")
-LARGE = {"markersize": 7.0}
+CRITICAL = Look(label="critical point", colour=GREEN, line="", marker="o", hollow=True)
 
 
 def _figure(tables: Tables) -> Figure:
-    """Draw the four panels of the tables outcomes, curves, critical and branches."""
-    column, toggle, lee = (_loads(tables, part) for part in AXES)
-    return sheet(8.6, 6.6, [[column, toggle], [lee, _pivot(tables["branches"])]], legend=4)
-
-
-def _loads(tables: Tables, part: str) -> Panel:
-    """Return the curves of a part with their critical points and the published limit loads."""
-    curves, critical = (tables[name][tables[name]["part"] == part] for name in ("curves", "critical"))
-    outcomes = tables["outcomes"]
-    asked = outcomes["case"].str.startswith(part) & outcomes["quantity"].str.startswith("limit load")
-    levels = sorted(set(outcomes[asked]["published"]), reverse=True)
-    along, up, limits = AXES[part]
-    marks: tuple[Mark, ...] = (
-        Curves(curves, LOOKS, by="model", along="state"),
-        Curves(critical, CRITICAL, by="model", more=LARGE),
-        *(Level(level, "" if k else "published", line=":") for k, level in enumerate(levels)),
-    )
-    return Panel(Axis("deflection", along), Axis("load", up, limits=limits), marks, title=part)
-
-
-def _pivot(branches: pd.DataFrame) -> Panel:
-    """Return the branch on which the body turns, and the one on which it does not: dotted where unstable."""
+    """Draw the branch on which the body turns, and the one on which it does not: dotted where unstable."""
+    branches = tables["branches"]
     refined = branches[(branches["model"] == TWELVE) & (branches["branch"] == PRIMARY)]
     crossing, deepest = refined["first_bifurcation_mm"].min(), refined["reached_mm"].max()
-    other = branches[branches["branch"] == OTHER]
-    stopped = other["says"].fillna("").str.startswith("stopped")
     ways = {"stable": ("-", 0.0, crossing), "unstable": (":", crossing, deepest)}
     marks = [
         Curves(pd.DataFrame({"reached_mm": ends, "turn_deg": 0.0}), Look(label=name, colour=BLACK, line=line))
         for name, (line, *ends) in ways.items()
     ]
+    point = pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0})
     marks += [
-        Curves(other[~stopped], LOOKS, by="model", along="asked_mm"),
-        Curves(other[stopped], STOPPED, by="model", more=LARGE),
-        Curves(pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0}), CRITICAL[TWELVE], more=LARGE),
+        Curves(branches[branches["branch"] == OTHER], LOOKS, by="model", along="asked_mm"),
+        Curves(point, CRITICAL, more={"markersize": 7.0}),
     ]
-    return Panel(DOWN, TURN, marks, title=questions.PIVOT)
+    axes = Axis("reached_mm", "way down [mm]"), Axis("turn_deg", "turn of the body [deg]")
+    return sheet(6.3, 3.4, [[Panel(*axes, marks, title="pivot pushed down")]], legend=3)
 
 
-#: The branch beyond 10 mm amplifies round-off, and where on a curve a state lies is up to the arc length.
+#: The branch beyond 10 mm amplifies round-off.
 DIGITS: dict[str, Digits | None] = {
-    **dict.fromkeys(("curves.load", "curves.deflection"), Digits(relative=0.1, scale=0.01)),
     **dict.fromkeys(("reached_mm", "turn_deg", "energy_J"), Digits(relative=1e-3, scale=1e-5)),
     "outcomes.found": Digits(relative=1e-5, floor=1e-5, rows="outcome == 'right'"),
     "outcomes.error": Digits(relative=0.05, floor=1e-8, rows="outcome == 'right'"),
@@ -167,10 +225,8 @@ DIGITS: dict[str, Digits | None] = {
 }
 
 STUDY = study(
-    questions.ASKED,
-    Part(ask=lambda: {"curves": _elastica()}),
-    Part(at=lambda: product((questions.COLUMN, questions.TOGGLE, questions.LEE), DRAWN), ask=_curve),
-    Part(at=lambda: product(sorted({*questions.DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
+    Part(at=_cases, ask=_outcomes_of),
+    Part(at=lambda: product(sorted({*DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
     digits=DIGITS,
     figures={"stability_buckling": _figure},
 )

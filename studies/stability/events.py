@@ -8,7 +8,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from spline_model.dynamics import solve_motion
 from spline_model.effects import DrivenRotation
@@ -17,7 +16,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.models import put
 from studies.answers.settings import Settings
 from studies.cases.problem import Problem, named_case
-from studies.engine import Answer, Part, Row
+from studies.engine import Answer, Part
 from studies.stability import verdict
 from studies.stability.verdict import DEFAULT, LOCKING_FREE, Found, judged, study
 
@@ -168,8 +167,7 @@ EVENTS_STUDY = study(
 """Sudden events: a drive reversed, a body released and re-clamped a thousand times, targets that jump."""
 
 LONG_STEP, START_DEG = 5e-5, 30.0
-#: Steps of a piece, after which a row is kept, and pieces of each column: a million steps of the default, a
-#: tenth of it of the others.
+#: Steps of a piece, and pieces of each column: a million steps of the default, a tenth of it of the others.
 PIECE = 10_000
 PIECES = {DEFAULT: 100, LOCKING_FREE: 10}
 #: Largest change of energy that is right [1], and factor by which the constraint residual of the last tenth
@@ -178,49 +176,32 @@ DRIFT, GROWTH = 1e-6, 3.0
 
 
 def _long_run(model: str, count: int) -> Answer:
-    """Return the drift of a column over so many pieces, and its outcome."""
-    drift = list(_pieces(model, count))
-    return {"outcomes": _judgement(model, pd.DataFrame(drift)), "drift": drift}
-
-
-def _pieces(model: str, count: int) -> Iterator[Row]:
-    """Yield the row of drift after each piece, until one stops early."""
+    """Return the outcome of a column over so many pieces, or up to the one that stops early: energy within
+    the tolerance, a constraint residual that does not grow."""
     begin: dict[str, Any] = {"start": math.radians(START_DEG)}
-    first, change = 0.0, 0.0
-    for number in range(1, count + 1):
+    first, change, residuals, iterations = 0.0, 0.0, [], 0
+    for _ in range(count):
         piece = _moved(model, duration=PIECE * LONG_STEP, step=LONG_STEP, records=100, **begin)
         energy = piece.kinetic_energy + piece.strain_energy
         first = first or float(energy[0])
         change = max(change, float(np.abs(energy / first - 1.0).max()))
-        yield {
-            "model": model,
-            "steps": number * PIECE,
-            "energy_change": change,
-            "constraint_residual_m": float(piece.constraint_residual.max()),
-            "amplitude_rad": float(np.abs(piece.rotation).max()),
-            "newton_iterations": piece.counters["newton_iterations"],
-            "message": piece.message,
-        }
+        residuals.append(float(piece.constraint_residual.max()))
+        iterations += piece.counters["newton_iterations"]
         if piece.message:
-            return
+            break
         begin = {"after": piece}
-
-
-def _judgement(model: str, drift: pd.DataFrame) -> Row:
-    """Return a column's outcome: energy within the tolerance, a constraint residual that does not grow."""
-    tenth, residual = max(1, len(drift) // 10), drift["constraint_residual_m"].to_numpy()
-    growth = float(residual[-tenth:].max() / residual[:tenth].max())
-    message = str(drift["message"].iloc[-1])
+    tenth = max(1, len(residuals) // 10)
+    growth = max(residuals[-tenth:]) / max(residuals[:tenth])
     found = Found(
-        error=float(drift["energy_change"].max()),
-        reached=not message,
-        reason=message,
+        error=change,
+        reached=not piece.message,
+        reason=piece.message,
         fault=f"the constraint residual grows {growth:.2g} times" if growth > GROWTH else "",
-        counters={"newton_iterations": int(drift["newton_iterations"].sum())},
+        counters={"newton_iterations": iterations},
         measured={"growth": growth},
     )
-    name = f"{int(drift['steps'].max())} steps"
-    return {"case": name, "model": model, **judged(lambda: found, DRIFT, model)}
+    row = {"case": f"{len(residuals) * PIECE} steps", "model": model}
+    return {"outcomes": row | judged(lambda: found, DRIFT, model)}
 
 
 LONG_RUN = study(Part(at=PIECES.items, ask=_long_run))

@@ -4,21 +4,16 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import chain, pairwise, product
+from itertools import chain, product
 from typing import Any
 
-import numpy as np
-import pandas as pd
-
-from studies.answers.adapters import answer_modes, answer_release, answer_static
-from studies.answers.metrics import differences, observed_order
-from studies.answers.response import Response
+from studies.answers.adapters import answer_modes
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.mechanism import Strip
 from studies.cases.problem import STRIPS, TABLE_1, Problem, named_case
 from studies.cases.section import of_moments
-from studies.engine import Part, Row
+from studies.engine import Row
 from studies.record.store import Digits
 from studies.stability import verdict
 from studies.stability.verdict import DEFAULT, FE, LOCKING_FREE, PATHS, SIX, Question, Try, family
@@ -41,8 +36,8 @@ ROTATION = family(_rotated)
 #: L/t of a rectangular section of Table 1's flexural rigidity, and rotations at which all are asked.
 SLENDER, SLENDER_ROTATIONS = (10.0, 17.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5), (10, 45, 90, 135)
 _inextensible: Any = partial(replace, stretch="inextensible")
-#: Slenderness that stands for inextensible strips, and factor between neighbours that may lose no digits.
-INEXTENSIBLE, NEIGHBOUR = 1e6, 1.001
+#: Slenderness that stands for inextensible strips.
+INEXTENSIBLE = 1e6
 
 
 def _slender_cases() -> Iterator[Question]:
@@ -54,49 +49,21 @@ def _slender_cases() -> Iterator[Question]:
     }
     for degrees in SLENDER_ROTATIONS:
         for slenderness in SLENDER:
-            design = replace(_slender(slenderness), rotation=math.radians(degrees))
+            design = replace(slender(slenderness), rotation=math.radians(degrees))
             yield verdict.of_path(f"L/t = {slenderness:g}, {degrees} deg", slenderness, degrees, design)
-        design = replace(_slender(SLENDER[-1]), rotation=math.radians(degrees))
+        design = replace(slender(SLENDER[-1]), rotation=math.radians(degrees))
         yield verdict.of_path(f"inextensible, {degrees} deg", INEXTENSIBLE, degrees, design, rigid, **far)
 
 
-def _slender(slenderness: float) -> Problem:
+def slender(slenderness: float) -> Problem:
     """Return Table 1 with strips of that L/t and the same flexural rigidity: the more slender, the wider."""
     given = named_case()
     area = 12.0 * given.second_moment_of_area * (slenderness / given.length) ** 2
     return replace(given, **of_moments(area, given.second_moment_of_area))
 
 
-def _limit() -> Iterator[Row]:
-    """Yield, slenderness by slenderness, how six control points come to the inextensible strip.
-
-    With 1/EA the axial energy and all it changes go with (L/t)^-2. `constant` is the distance times (L/t)^2;
-    `lost_digits` is what the torques of neighbouring designs differ by beyond that law.
-    """
-    rigid = answer_static(_slender(SLENDER[-1]), _inextensible(PATHS[SIX]))
-
-    def gap(one: Response, other: Response) -> float:
-        return float(differences(one, other, ("torque",))["torque"] or 0.0)
-
-    for slenderness in SLENDER:
-        here, beside = (answer_static(_slender(slenderness * f), PATHS[SIX]) for f in (1.0, NEIGHBOUR))
-        error = gap(here, rigid)
-        yield {
-            "slenderness": slenderness,
-            "error": error,
-            "constant": error * slenderness**2,
-            "iterations": here.counters["newton_iterations"],
-            "iterations_inextensible": rigid.counters["newton_iterations"],
-            "lost_digits": abs(gap(here, beside) - error * (1.0 - NEIGHBOUR**-2)),
-        }
-
-
-SLENDERNESS = family(
-    _slender_cases,
-    Part(ask=lambda: {"limit": _limit()}),
-    digits={"constant": Digits(relative=1e-4)},  # the error times the square of the slenderness
-)
-"""Slenderness L/t from 10 to 1e5 and strips that cannot stretch: errors, iterations and digits."""
+SLENDERNESS = family(_slender_cases)
+"""Slenderness L/t from 10 to 1e5 and strips that cannot stretch."""
 
 #: Distance of the crossing from the ground end over L, and angle of the strips to the ground [deg].
 RATIOS_OF_CROSSING = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
@@ -214,25 +181,8 @@ def _steps() -> Iterator[Question]:
         )
 
 
-#: Steps of the table of orders and of its limit [s], and the duration of its motions [s].
-ORDER_STEPS = (8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5, 6.25e-6, 3.125e-6)
-LIMIT_STEP, ORDER_DURATION = 5e-7, 0.004
-
-
-def _orders() -> pd.DataFrame:
-    """Return error and observed order of the default against the step, from 90 degrees, for one spline."""
-    *answers, limit = (
-        answer_release(named_case(), verdict.COLUMNS[DEFAULT], duration=ORDER_DURATION, step=step, records=5)
-        for step in (*ORDER_STEPS, LIMIT_STEP)
-    )
-    errors = [float(np.abs(answer.rotation - limit.rotation).max()) for answer in answers]
-    orders = [math.nan, *(observed_order(a, b) for a, b in pairwise(errors))]
-    resolved = ["no" if answer.resolution else "yes" for answer in answers]
-    return pd.DataFrame({"step_s": ORDER_STEPS, "error_rad": errors, "order": orders, "resolved": resolved})
-
-
-STEP_SIZE = family(_steps, Part(ask=lambda: {"order": _orders()}))
-"""Steps from 1e-7 to 1e-2 s: no gain of energy, second order, and a warning where a step is too long."""
+STEP_SIZE = family(_steps)
+"""Steps from 1e-7 to 1e-2 s: no gain of energy, and a warning where a step is too long."""
 
 #: Factors on mass and moment of inertia of Table 1's body, and on the flexural rigidity of one strip.
 FACTORS, STIFFER = (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6), (1e2, 1e4)

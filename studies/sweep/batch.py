@@ -2,8 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -24,7 +23,7 @@ from studies.cases.section import of_sides
 from studies.kinds import Array
 from studies.sweep import plan, points
 from studies.sweep.plan import Task
-from studies.sweep.points import CONVERGED, Paths
+from studies.sweep.points import CONVERGED, KNOWN, Paths
 
 #: I / (A L^2) below which a strip is for the multiplier path, a hundredth above the kernel's own limit.
 LEAST_COMPLIANCE = 1.01e-9
@@ -69,23 +68,6 @@ def solve_chunk(task: Task, start: int, columns: Mapping[str, list[Any]]) -> pa.
     return pa.Table.from_arrays(arrays, names=[*table, *found])
 
 
-class _Known(NamedTuple):
-    """What the kernel knows of paths, as an answer has it."""
-
-    torque: Any = 0.0
-    stiffness: Any = 0.0
-    strain_energy: Any = 0.0
-    max_stress: Any = 0.0
-
-    def quantities(self) -> Columns:
-        """Return the quantities that follow from it, by their key."""
-        found: dict[str, Any] = {}
-        for each in QUANTITIES:
-            with suppress(AttributeError):  # of something else
-                found[each.key] = each.of(self)
-        return {key: values for key, values in found.items() if values is not None}
-
-
 def takes(task: Task) -> bool:
     """Whether the kernel may take the designs of a sweep: plain pivots on a static path, by splines.
 
@@ -93,7 +75,7 @@ def takes(task: Task) -> bool:
     """
     own = {*_KEYS, *_PARTS, plan.SLENDERNESS} - plan.TAPER
     asked = {each.key for each in QUANTITIES if each.name_in_sweep in task.quantities}
-    if not asked <= set(_Known().quantities()):
+    if not asked <= set(KNOWN):
         return False
     if task.model != "spline" or task.kind != "static" or is_mechanism(task.case):
         return False
@@ -114,11 +96,7 @@ def takes(task: Task) -> bool:
 def _together(
     task: Task, columns: Mapping[str, list[Any]], count: int
 ) -> Iterator[tuple[NDArray[np.int64], Columns, str]]:
-    """Yield rows of designs whose compiled paths are sure, their quantities and the reason of them all.
-
-    Both sides of a plain pivot are mirror images (its strips are alike and only the couple acts, wherever the
-    body's centre lies), so that one is enough.
-    """
+    """Yield rows of designs whose compiled paths are sure, their quantities and the reason of them all."""
     given = _attributes(task, columns, count)
     stout = given["second_moment_of_area"] >= LEAST_COMPLIANCE * given["area"] * given["length"] ** 2
     keys = [key for key in columns if key == INCREMENTS or plan.is_setting(key)]
@@ -194,18 +172,17 @@ def _paths(
         **{name: given[name] for name in (*SAME_NAME, "yield_strength")},
     )
     paths = Paths(
-        rest=0,
         along={
             "rotation": batch.rotation,
             "shift": shift,
             "defect": batch.moment_defect,
             "inertia": batch.inertia.astype(float),
             "strain": strain[..., None],
-            **_Known(batch.torque, batch.stiffness, batch.energy, stress).quantities(),
+            **dict(zip(KNOWN, (batch.torque, batch.stiffness, batch.energy, stress), strict=True)),
         },
         strips=(strip,),
         effects=tuple(PLAIN),
-        iterations=(1 + task.options["both_sides"]) * batch.iterations,
+        iterations=batch.iterations,
         control_points=batch.control_points.astype(float),
         error=error,
     )

@@ -135,7 +135,7 @@ def _manifest_of(plan: Plan) -> dict[str, Any]:
     """Return what the table follows from, and what its columns are; without date or place."""
     content = json.loads(json.dumps(plan.content))
     columns = {POINT: "number of the point, from 0"}
-    columns |= {axis.key: "varied; unit as in the name of the key" for axis in plan.sample.axes}
+    columns |= dict.fromkeys(plan.columns, "varied; unit as in the name of the key")
     columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
     columns |= {name: quantity.meaning for name, quantity in stored(plan.task).items()}
     return {

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from numpy.typing import NDArray
+
 from studies.answers.settings import Settings, settings_of_model
 from studies.cases import effects, keys
 from studies.cases.design import Design, design_of
@@ -13,41 +15,9 @@ from studies.cases.document import is_mechanism, tables, values
 from studies.cases.rules import Key, Rule, not_negative, number, positive, text, whole
 from studies.cases.section import of_sides, rectangle_of
 
-METHODS = ("grid", "list", "latin-hypercube", "sobol")
 KINDS = ("static", "modes", "release")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """One key that is varied: over listed values, or from `low` to `high` in the file's unit.
-
-    Attributes:
-        key: as in DESIGNS.toml.
-        values: listed; None for a range.
-        points: of a range in a grid [1]. log: even steps of the logarithm.
-    """
-
-    key: str
-    values: tuple[Any, ...] | None = None
-    low: float = 0.0
-    high: float = 0.0
-    points: int = 0
-    log: bool = False
-
-    @property
-    def count(self) -> int:
-        """Values of the axis in a grid or list."""
-        return self.points if self.values is None else len(self.values)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sample:
-    """Which designs: a method over axes; `points` in all, `seed` of the random methods."""
-
-    method: str
-    axes: tuple[Axis, ...]
-    points: int
-    seed: int
+#: Values of a key that varies: numbers, or other values as objects.
+Column = NDArray[Any]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,8 +28,7 @@ class Task:
         where: file that refusals name. case: document of the case with what is fixed by the sweep.
         model: as on the command line. settings: keywords of its settings.
         kind: of the analysis, one of `KINDS`.
-        options: of a static path (`both_sides`: also to the opposite rotation), of modes (`rotation` [rad],
-            `held`, `count`) or of a release (`duration` [s], ...).
+        options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
         keys: that are varied. quantities: names of what is stored.
         batch: whether the compiled paths of many pivots at once take the designs.
     """
@@ -88,21 +57,31 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """A sweep: the task, the sample, designs a chunk, and all that it was made from, to be kept beside it."""
+    """A sweep: the task, the values of each key that varies, in the file's units, designs a chunk, and what
+    it was made from, to be kept beside it: DESIGNS.toml with its case."""
 
     task: Task
-    sample: Sample
+    columns: Mapping[str, Column]
     chunk: int
     content: dict[str, Any]
 
     @property
+    def points(self) -> int:
+        """Number of designs."""
+        return len(next(iter(self.columns.values())))
+
+    @property
     def chunks(self) -> int:
         """Number of chunks."""
-        return -(-self.sample.points // self.chunk)
+        return -(-self.points // self.chunk)
 
     def span(self, number: int) -> tuple[int, int]:
         """Return the first point of a chunk and the one behind its last."""
-        return number * self.chunk, min((number + 1) * self.chunk, self.sample.points)
+        return number * self.chunk, min((number + 1) * self.chunk, self.points)
+
+    def rows(self, start: int, stop: int) -> dict[str, list[Any]]:
+        """Return the designs from `start` to before `stop` as columns by key."""
+        return {key: column[start:stop].tolist() for key, column in self.columns.items()}
 
 
 def _dotted(rows: Iterable[Key]) -> dict[str, Key]:

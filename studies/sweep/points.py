@@ -5,7 +5,7 @@ designs side by side; arrays over the path have shape (D, S).
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +32,8 @@ REFUSED, FAILED = "refused", "failed"
 POINT, STATUS, REASON = "point", "status", "reason"
 #: Reason of a static row whose error nothing estimates: of elements, and of a given number of control points.
 NOT_ESTIMATED = "error not estimated"
+#: Quantities of a path that the kernel of many paths knows, by their keys in an answer.
+KNOWN = ("torque_Nm", "stiffness_Nm_per_rad", "strain_energy_J", "max_stress_Pa")
 
 
 class _Column(NamedTuple):
@@ -48,7 +50,7 @@ class _Column(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Paths:
-    """Static paths of D designs over S states in the order of the rotation; `rest` is the unloaded one.
+    """Static paths of D designs over S states, of which the first is at rest.
 
     along: by name (D, S, ...): the quantities of a path by their key, rotation [rad], shift (2) of the
     crossing point [m], defect of the moments [1], inertia, not 0 of what is not stable and nan where the
@@ -58,7 +60,6 @@ class Paths:
     estimated.
     """
 
-    rest: int
     along: Mapping[str, Array]
     strips: tuple[Strip, ...]
     effects: tuple[str, ...]
@@ -81,21 +82,6 @@ class Paths:
         """The strips with the most that happens to them."""
         most = np.moveaxis(self.along["strain"].max(axis=1), -1, 0)
         return [strip.bent(strain) for strip, strain in zip(self.strips, most, strict=True)]
-
-    def and_back(self, other: "Paths") -> "Paths":
-        """Return these paths behind those to the other side, from whose end through rest they lead on."""
-        both = {
-            name: np.concatenate((other.along[name][:, :0:-1], forth), axis=1)
-            for name, forth in self.along.items()
-        }
-        return replace(
-            self,
-            rest=both["rotation"].shape[1] - self.along["rotation"].shape[1],
-            along=both,
-            iterations=self.iterations + other.iterations,
-            control_points=np.fmax(self.control_points, other.control_points),
-            error=np.fmax(self.error, other.error),
-        )
 
 
 def _end(name: str, *place: int) -> Callable[[Paths], Array]:
@@ -128,11 +114,11 @@ def _unstable(paths: Paths) -> Any:
 PATH = {
     "rotation_rad": _Column("rotation at the end", _end("rotation")),
     **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
-    "stiffness_rest_Nm_per_rad": _Column("rotational stiffness at rest", lambda p: p.stiffness[:, p.rest]),
+    "stiffness_rest_Nm_per_rad": _Column("rotational stiffness at rest", lambda p: p.stiffness[:, 0]),
     "stiffness_end_Nm_per_rad": _Column("rotational stiffness at the end", _end("stiffness_Nm_per_rad")),
     "stiffness_variation": _Column(
         "largest less smallest stiffness of the path, over that at rest",
-        lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, p.rest]),
+        lambda p: np.ptp(p.stiffness, axis=1) / np.abs(p.stiffness[:, 0]),
     ),
     "moment_defect": _Column(
         "largest relative imbalance of the strips' moments, of a spline",
@@ -236,26 +222,17 @@ def values(found: Mapping[str, _Column], answer: Answer) -> dict[str, Array]:
     return {name: np.atleast_1d(np.asarray(each.of(answer))) for name, each in found.items()}
 
 
-def static_answer(design: Design, settings: Settings, *, both_sides: bool) -> tuple[str, str, Paths | None]:
-    """Return status, reason and static path of one design, to its rotation and, if asked, its opposite."""
-    sides = {"": design}
-    if both_sides:
-        other = replace(design, rotation=-(design.rotation or 0.0))
-        sides = {"to the one side: ": design, "to the other side: ": other}
-    answers = []
-    for words, side in sides.items():
-        answers.append(answer := answer_static(side, settings))
-        if not answer.converged:
-            return NOT_CONVERGED, words + answer.message, None
-    remarks = [each for answer in answers for each in (answer.message, answer.resolution) if each]
-    path, *back = map(_paths_of, answers)
-    for other_path in back:
-        path = path.and_back(other_path)
-    remarks += [NOT_ESTIMATED] * bool(np.isnan(path.error[0]))
-    return CONVERGED, "; ".join(dict.fromkeys(remarks)), path
+def static_answer(design: Design, settings: Settings) -> tuple[str, str, Paths | None]:
+    """Return status, reason and static path of one design."""
+    answer = answer_static(design, settings)
+    if not answer.converged:
+        return NOT_CONVERGED, answer.message, None
+    path = paths_of(answer)
+    remarks = (answer.message, answer.resolution, NOT_ESTIMATED if np.isnan(path.error[0]) else "")
+    return CONVERGED, "; ".join(filter(None, remarks)), path
 
 
-def _paths_of(answer: Response) -> Paths:
+def paths_of(answer: Response) -> Paths:
     """Return the path of one design from its answer."""
     design, result, none = answer.design, answer.solution, np.full(len(answer.load_factor), np.nan)
     moduli = np.array([strip.youngs_modulus for strip in design.strips])
@@ -268,7 +245,6 @@ def _paths_of(answer: Response) -> Paths:
         "bodies": np.stack([answer.bodies[each.name] for each in design.bodies] or [none[:, None]], axis=1),
     }
     return Paths(
-        rest=0,
         along={name: array[None] for name, array in along.items()},
         strips=tuple(strips_of(design)),
         effects=tuple(design.effects.names),
@@ -296,7 +272,7 @@ def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, flo
 
 def _answered(task: Task, design: Design, settings: Settings) -> tuple[str, str, Answer | None]:
     if task.kind == "static":
-        return static_answer(design, settings, **task.options)
+        return static_answer(design, settings)
     ask = answer_modes if task.kind == "modes" else answer_release
     answer: Spectrum | Motion = ask(design, settings, **task.options)
     status = CONVERGED if answer.converged else NOT_CONVERGED

@@ -16,7 +16,7 @@ from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Key, choice, positive, shown, text, whole
 from studies.sweep import batch, plan, points
-from studies.sweep.plan import KINDS, Plan, Sample, Task
+from studies.sweep.plan import KINDS, Column, Plan, Task
 from studies.sweep.sample import KEYS as SAMPLE
 from studies.sweep.sample import leaves, require_known, sample_of
 
@@ -29,7 +29,7 @@ CHUNKS = 16
 OPTIONS: dict[str, tuple[Key, ...]] = {
     kind: tuple(Key("analysis", *row, optional=True) for row in (("kind", "kind", choice(*KINDS)), *rows))
     for kind, rows in {
-        "static": (("both_sides", "both_sides", TRUTH),),
+        "static": (),
         "modes": (
             ("rotation_deg", "rotation", ROTATION),
             ("count", "count", whole(1, 100)),
@@ -43,7 +43,7 @@ OPTIONS: dict[str, tuple[Key, ...]] = {
     }.items()
 }
 STANDARD: dict[str, dict[str, Any]] = {
-    "static": {"both_sides": False},
+    "static": {},
     "modes": {"count": 3},
     "release": {"duration": 0.05},
 }
@@ -78,8 +78,8 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     keys = [Key(plan.SETTINGS, name, name, rule, optional=True) for name, rule in own.items()]
     settings = document.values(where, keys, tables["settings"], plan.SETTINGS)
     asked = document.values(where, SAMPLE, tables["sample"], "sample")
-    sample = sample_of(where, asked, tables["vary"], known, folder)
-    _refuse_overlaps(where, [axis.key for axis in sample.axes], case)
+    columns = sample_of(where, asked, tables["vary"], known, folder)
+    _refuse_overlaps(where, list(columns), case)
     kind, options = _analysis(where, tables["analysis"])
     found = points.known(case, kind, options.get("count", 0))
     task = Task(
@@ -87,16 +87,21 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         case=case,
         model=model,
         settings=settings,
-        keys=tuple(axis.key for axis in sample.axes),
+        keys=tuple(columns),
         kind=kind,
         options=options,
         quantities=_quantities(where, tables["store"], found),
         batch=False,
     )
-    task = _checked(task, sample)
+    task = _checked(task, columns)
     least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
-    chunk = asked.get("chunk", max(least, min(most, -(-sample.points // CHUNKS))))
-    return Plan(task=task, sample=sample, chunk=chunk, content=_content(content, task, sample, chunk))
+    count = len(next(iter(columns.values())))
+    chunk = asked.get("chunk", max(least, min(most, -(-count // CHUNKS))))
+    made_from = {**content, "case": case, "chunk": chunk}
+    if "file" in asked:
+        listed = json.dumps({key: column.tolist() for key, column in columns.items()})
+        made_from["file_sha256"] = hashlib.sha256(listed.encode()).hexdigest()
+    return Plan(task=task, columns=columns, chunk=chunk, content=copy.deepcopy(made_from))
 
 
 def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
@@ -156,33 +161,13 @@ def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) 
     return tuple(names)
 
 
-def _checked(task: Task, sample: Sample) -> Task:
-    """Return the task once its case and every combination of settings has been taken by the model.
+def _checked(task: Task, columns: Mapping[str, Column]) -> Task:
+    """Return the task once its case and every setting have been taken by the model.
 
     Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
     """
-    first = {axis.key: axis.low if axis.values is None else axis.values[0] for axis in sample.axes}
-    design = task.design(first)
-    if task.options.get("both_sides") and design.rotation is None:
-        raise CaseError(f"{task.where}: analysis.both_sides: got true, expected it with a driven rotation")
-    axes = [axis for axis in sample.axes if plan.is_setting(axis.key)]
-    for values in ({}, *({axis.key: value} for axis in axes for value in axis.values or ())):
+    design = task.design({key: column[0] for key, column in columns.items()})
+    settings = ((key, set(columns[key].tolist())) for key in columns if plan.is_setting(key))
+    for values in ({}, *({key: value} for key, every in settings for value in every)):
         put(design, task.settings_of(values), moving=task.kind != "static")
     return replace(task, batch=batch.takes(task))
-
-
-def _content(content: Mapping[str, Any], task: Task, sample: Sample, chunk: int) -> dict[str, Any]:
-    """Return all that the table follows from, for the manifest."""
-    from_file = "file" in content.get("sample", {})
-    listed = json.dumps([axis.values for axis in sample.axes]) if from_file else ""
-    found = {
-        "case": task.case,
-        "model": task.model,
-        "settings": task.settings,
-        "analysis": {"kind": task.kind, "both_sides": False, **task.options},
-        "sample": {name: getattr(sample, name) for name in ("method", "points", "seed")} | {"chunk": chunk},
-        "vary": content.get("vary", {}),
-        "file_sha256": hashlib.sha256(listed.encode()).hexdigest() if listed else "",
-        "store": list(task.quantities),
-    }
-    return copy.deepcopy(found)

@@ -24,7 +24,6 @@ from studies.record.progress import silent
 from studies.sweep.batch import solve_chunk
 from studies.sweep.parts import Folder, suite
 from studies.sweep.plan import Plan
-from studies.sweep.sample import Drawer
 
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2
@@ -68,7 +67,7 @@ def sweep(
     Raises:
         OutputError: the folder cannot be used or written. SweepError: a chunk that no worker could solve.
     """
-    folder, solved, total = Folder(out, plan), 0, plan.sample.points
+    folder, solved, total = Folder(out, plan), 0, plan.points
     with ExitStack() as stack:
         workers = None
         if folder.missing():  # asked before anything is written: a scheduler may be out of reach
@@ -119,13 +118,13 @@ def _tables(
     plan: Plan, missing: list[int], pool: _Pool, interrupted: Callable[[], None]
 ) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
-    drawer, waiting = Drawer(plan.sample), iter(missing)
+    waiting = iter(missing)
     pending: dict[futures.Future[pa.Table], int] = {}
     try:
         while True:
             while len(pending) < AHEAD * pool.workers and (number := next(waiting, None)) is not None:
                 start, stop = plan.span(number)
-                rows = drawer.rows(start, stop)
+                rows = plan.rows(start, stop)
                 pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
             if not pending:
                 return

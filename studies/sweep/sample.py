@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.stats import qmc
@@ -12,9 +12,11 @@ from studies.cases import document
 from studies.cases.document import CaseError
 from studies.cases.rules import Key, choice, shown, text, whole
 from studies.kinds import Array
-from studies.sweep.plan import METHODS, Axis, Sample
+from studies.sweep.plan import Column
 
-MOST = 100_000_000
+METHODS = ("grid", "list", "latin-hypercube", "sobol")
+#: Most points, whose varied values are all in memory.
+MOST = 10_000_000
 POINTS = whole(1, MOST)
 FIELDS = ("from", "to", "points", "scale", "values")
 SCALES = ("linear", "log")
@@ -31,11 +33,29 @@ KEYS = tuple(
 )
 
 
+class _Range(NamedTuple):
+    """Values from a low to a high end; `log`: even steps of the logarithm."""
+
+    low: float
+    high: float
+    log: bool
+
+    def at(self, share: Array) -> Column:
+        """Return the values at shares (D,) of [0, 1]; the ends are exactly those of the file."""
+        if self.log:
+            low, high = math.log(self.low), math.log(self.high)
+            values = np.exp(low + (high - low) * share)
+        else:
+            values = self.low + (self.high - self.low) * share
+        found: Column = np.clip(np.where(share == 1.0, self.high, values), self.low, self.high)
+        return found
+
+
 def sample_of(
     where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
-) -> Sample:
-    """Return the sample that the section [vary] and the values of `KEYS` describe; CaseError as of
-    `read_plan`."""
+) -> dict[str, Column]:
+    """Return the values (D,) of each key that varies, in the file's units, as the section [vary] and the
+    values of `KEYS` say; CaseError as of `read_plan`."""
     method = given.get("method", "list" if "file" in given else "grid")
     random = method in METHODS[2:]
     for name in ("points", "seed"):
@@ -44,17 +64,35 @@ def sample_of(
     if random and "points" not in given:
         raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
     if "file" in given:
-        axes = _from_file(where, given, varied, known, folder)
-    else:
-        axes = tuple(_axis(where, key, value, known, method) for key, value in leaves(varied))
-    counts = {axis.key: axis.count for axis in axes}
-    if method == "list" and len(set(counts.values())) > 1:
-        told = ", ".join(f"{key} {count}" for key, count in counts.items())
-        raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
-    points = axes[0].count if method == "list" else given.get("points", math.prod(counts.values()))
+        return _from_file(where, given, varied, known, folder)
+    axes = {key: _axis(where, key, value, known, method) for key, value in leaves(varied)}
+    if random:
+        return _drawn(axes, method, given["points"], given.get("seed", 0))
+    counts = {key: len(axis) for key, axis in axes.items()}
+    if method == "list":
+        if len(set(counts.values())) > 1:
+            told = ", ".join(f"{key} {count}" for key, count in counts.items())
+            raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
+        return axes
+    points = math.prod(counts.values())
     if points > MOST:
         raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {MOST}")
-    return Sample(method=method, axes=axes, points=points, seed=given.get("seed", 0))
+    mesh = np.meshgrid(*axes.values(), indexing="ij")  # the last axis runs fastest
+    return {key: each.ravel() for key, each in zip(axes, mesh, strict=True)}
+
+
+def _drawn(axes: Mapping[str, Any], method: str, points: int, seed: int) -> dict[str, Column]:
+    """Return the columns of a random sample over axes."""
+    if method == "sobol":
+        sobol = qmc.Sobol(d=len(axes), scramble=True, seed=seed)
+        unit = sobol.random_base2(math.ceil(math.log2(points)))[:points]
+    else:
+        unit = qmc.LatinHypercube(d=len(axes), seed=seed).random(points)
+    shares = dict(zip(axes, unit.T, strict=True))
+    return {
+        key: axis.at(shares[key]) if isinstance(axis, _Range) else axis[(shares[key] * len(axis)).astype(int)]
+        for key, axis in axes.items()
+    }
 
 
 def leaves(table: Mapping[str, Any], way: str = "") -> Iterator[tuple[str, Any]]:
@@ -78,8 +116,8 @@ def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) 
         raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}{page}")
 
 
-def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Axis:
-    """Return one axis of [vary]."""
+def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Any:
+    """Return one axis of [vary]: its values, or the range that they are drawn from."""
     require_known(where, "vary", key, known)
     label = f"vary.{key}"
     if isinstance(given, list):
@@ -91,13 +129,13 @@ def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: st
         if len(given) > 1:
             others = ", ".join(name for name in given if name != "values")
             raise CaseError(f"{where}: {label}: got values beside {others}, expected one of the two")
-        return Axis(key=key, values=_listed(where, label, known[key], given["values"]))
+        return _listed(where, label, known[key], given["values"])
     if method == "list":
         raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
     return _range(where, key, given, known[key], grid=method == "grid")
 
 
-def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
+def _listed(where: str, label: str, rule: Any, values: Any) -> Column:
     """Return listed values, each admitted by the rule; pairs as tuples."""
     if not isinstance(values, list) or not values:
         raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
@@ -108,7 +146,10 @@ def _listed(where: str, label: str, rule: Any, values: Any) -> tuple[Any, ...]:
     if len({type(value) for value in kept}) > 1:
         expected = "numbers, texts or pairs of numbers alone"
         raise CaseError(f"{where}: {label}: got values of different types, expected {expected}")
-    return tuple(kept)
+    column: Column = np.empty(len(kept), dtype=object)
+    for place, value in enumerate(kept):
+        column[place] = value
+    return column
 
 
 def _kept(value: Any) -> Any:
@@ -118,8 +159,8 @@ def _kept(value: Any) -> Any:
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Axis:
-    """Return an axis from a low to a high end."""
+def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Any:
+    """Return an axis from a low to a high end, of a grid its values."""
     label = f"vary.{key}"
     if rule.kind != "number":
         raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
@@ -135,13 +176,14 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(f"{where}: {label}: got {got}, expected from < to")
     if log and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
-    return Axis(key=key, low=float(low), high=float(high), points=found.get("points", 1), log=log)
+    whole = _Range(float(low), float(high), log)
+    return whole.at(np.linspace(0.0, 1.0, found["points"])) if grid else whole
 
 
 def _from_file(
     where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
-) -> tuple[Axis, ...]:
-    """Return the axes of a list in a CSV file, whose head names the keys."""
+) -> dict[str, Column]:
+    """Return the columns of a CSV file, whose head names the keys."""
     import pandas as pd
 
     if varied or given.get("method", "list") != "list":
@@ -154,66 +196,8 @@ def _from_file(
         raise CaseError(f"{where}: sample.file: {path}: cannot be read ({reason}), expected CSV") from None
     if table.empty:
         raise CaseError(f"{where}: sample.file: {path}: got no design, expected at least one row")
-    axes = []
+    columns = {}
     for key in map(str, table.columns):
         require_known(where, f"sample.file: {path}", key, known)
-        values = _listed(where, f"sample.file: {path}: {key}", known[key], table[key].tolist())
-        axes.append(Axis(key=key, values=values))
-    return tuple(axes)
-
-
-Columns = dict[str, list[Any]]
-
-
-class Drawer:
-    """Draws the points of a sample forwards: `rows(start, stop)` with starts that do not fall.
-
-    A grid, a list and a Sobol sequence are made where they are asked for; a Latin hypercube, whose points
-    depend on their number, is drawn whole (8 bytes a point and key).
-    """
-
-    def __init__(self, sample: Sample) -> None:
-        self._sample = sample
-        dimensions = len(sample.axes)
-        if sample.method == "sobol":
-            self._sobol = qmc.Sobol(d=dimensions, scramble=True, seed=sample.seed)
-        elif sample.method == "latin-hypercube":
-            self._cube = qmc.LatinHypercube(d=dimensions, seed=sample.seed).random(sample.points)
-
-    def rows(self, start: int, stop: int) -> Columns:
-        """Return the points from `start` to before `stop` as columns by key, in the file's units."""
-        axes, number = self._sample.axes, np.arange(start, stop)
-        if self._sample.method == "list":
-            return {axis.key: _column(axis, place=number) for axis in axes}
-        if self._sample.method == "grid":  # the last axis runs fastest
-            places = np.unravel_index(number, tuple(axis.count for axis in axes))
-            return {axis.key: _column(axis, place=place) for axis, place in zip(axes, places, strict=True)}
-        unit = self._unit(start, stop)
-        return {axis.key: _column(axis, share=unit[:, i]) for i, axis in enumerate(axes)}
-
-    def _unit(self, start: int, stop: int) -> Array:
-        """Return the points within the unit cube, (stop - start, axes)."""
-        if self._sample.method == "latin-hypercube":
-            return np.asarray(self._cube[start:stop])
-        skipped = start - self._sobol.num_generated
-        if skipped:
-            self._sobol.fast_forward(skipped)
-        if start > 0:
-            return np.asarray(self._sobol.random(stop - start))
-        # one first: scipy warns of a first draw that is no power of two
-        return np.concatenate([self._sobol.random(count) for count in (1, stop - 1) if count])
-
-
-def _column(axis: Axis, *, place: Any = None, share: Any = None) -> list[Any]:
-    """Return the values of an axis at places (D,), or at shares (D,) of [0, 1)."""
-    if axis.values is not None:
-        place = (share * len(axis.values)).astype(int) if place is None else place
-        return [axis.values[i] for i in place]
-    share = place / max(axis.points - 1, 1) if share is None else share
-    if axis.log:
-        low, high = math.log(axis.low), math.log(axis.high)
-        values = np.exp(low + (high - low) * share)
-    else:
-        values = axis.low + (axis.high - axis.low) * share
-    # the ends are exactly those of the file
-    return list(np.clip(np.where(share == 1.0, axis.high, values), axis.low, axis.high).tolist())
+        columns[key] = _listed(where, f"sample.file: {path}: {key}", known[key], table[key].tolist())
+    return columns

@@ -1,12 +1,14 @@
 """Random loaded designs by default settings: within the accuracy of refined answers, or with a remark."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
-from tests.agreement.random_scenes import scene
+from tests.agreement.random_scenes import listed, scene
 from tests.fe.cases import extrapolated
 
 #: The default promises 1e-4; the estimate may be somewhat optimistic.
@@ -94,6 +96,20 @@ def checked(seeds, **how):
 def test_a_few_random_designs_meet_their_accuracy():
     """Requirement: answers by default are within 2e-4 of refined ones, body stiffness within 3e-4."""
     assert checked(range(QUICK)) > QUICK // 2
+
+
+def test_a_search_ends_where_more_segments_bring_a_path_no_farther():
+    """Requirement: forces that turn with a body end the path of this pivot somewhere else with any
+    discretisation; it is told so in seconds, and not what was done already as a remedy."""
+    design = listed(5166)
+    forces = [each["force"] for each in design.effects.every("applied_force")]
+    tables = dict(design.effects.tables) | {
+        "applied_force": tuple({"force": each, "follower": True} for each in forces)
+    }
+    found = solved(replace(design, effects=replace(design.effects, tables=tables)))
+    assert not found.converged
+    assert found.message.startswith("not resolved with 2 segments of 11 control points: ")
+    assert found.message.endswith("; take segments = 4")
 
 
 @pytest.mark.slow

@@ -1,12 +1,15 @@
 """The design charts are those of the models, and say where they end."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings
+from studies.cases.problem import named_case
+from studies.cases.section import of_sides
 from studies.design import charts as pivot
 from tests import gates
 
@@ -15,9 +18,8 @@ RATIOS, ANGLES = np.array([0.2, 0.5, 0.8]), np.array([45.0, 45.0, 45.0])
 
 @pytest.fixture(scope="module")
 def charted():
-    """Quantities of three designs to 15 degrees, in increments of 2.5."""
-    found = pivot.turned(RATIOS, ANGLES, 15.0, pivot.SLENDER, 8)
-    return pivot.dimensionless(found, RATIOS, ANGLES, pivot.SLENDER)
+    """Quantities of three designs."""
+    return pivot.paths(RATIOS, ANGLES, pivot.SLENDER)
 
 
 def test_stiffness_at_rest_is_the_closed_form(charted):
@@ -33,18 +35,27 @@ def test_what_holds_for_a_ratio_holds_for_its_complement(charted):
 
 
 def _apart(elements=80):
-    """Largest difference of stiffness and shift of a chart from those of elements, relative."""
-    found = pivot.turned(np.array([0.3]), np.array([45.0]), 30.0, pivot.SLENDER, 10)
-    chart = pivot.dimensionless(found, np.array([0.3]), np.array([45.0]), pivot.SLENDER)
-    problem = pivot.replace(
-        pivot._at_crossing(0.3, 45.0), rotation=math.radians(30.0), increments=round(30.0 / pivot.INCREMENT)
+    """Largest difference of stiffness and shift of a chart from those of elements at 30 degrees, relative."""
+    ratio, increments = 0.3, round(30.0 / pivot.INCREMENT)
+    chart = pivot.paths(np.array([ratio]), np.array([45.0]), pivot.SLENDER)
+    case = named_case("cross_axis_pivot")
+    sides = {"width": pivot.WIDTH * case.length, "thickness": case.length / pivot.SLENDER}
+    problem = replace(
+        case,
+        **sides,
+        **of_sides(*sides.values()),
+        crossing_ratio=ratio,
+        inclination=math.radians(45.0),
+        centre_offset=(0.0, -(1.0 - ratio) * case.length * math.sin(math.radians(45.0))),
+        rotation=math.radians(30.0),
+        increments=increments,
     )
     unit = problem.youngs_modulus * problem.second_moment_of_area / problem.length
     answer = answer_static(problem, FeSettings(elements=elements))
     shift = np.hypot(*(answer.centre[-1] - answer.centre[0])) / problem.length
     apart = [
-        answer.stiffness[-1] / unit / chart["stiffness"][0, -1] - 1.0,
-        shift / chart["shift"][0, -1] - 1.0,
+        answer.stiffness[-1] / unit / chart["stiffness"][0, increments] - 1.0,
+        shift / chart["shift"][0, increments] - 1.0,
     ]
     return float(np.abs(apart).max())
 

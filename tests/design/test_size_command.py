@@ -110,8 +110,9 @@ def test_cases_that_cannot_be_sized(begin, instead, message, tmp_path, refused):
 def test_optimum_as_a_case_file_with_what_is_held(tmp_path, capsys):
     """Under a load the optimum is written as a case, with dimensions held, stiffness and stress as asked."""
     path = tmp_path / "best.toml"
-    given = ("--objective", "centre-shift", "--starts", "6", "--safety-factor", "2", "--out", str(path))
-    held = ("--length-mm", "300", "--inclination-deg", "45", "--width-mm", "50")
+    given = ("--objective", "centre-shift", "--starts", "6", "--out", str(path))
+    held = ("--free=strip.length_m=0.3", "--free=strip.inclination_deg=45", "--free=strip.width_m=0.05")
+    held += ("--max-stress-MPa", str(0.5e-6 * named_case("large_steel_pivot").yield_strength))
     assert main(["size", "large_steel_pivot", *given, *held]) == 0
     out, err = capsys.readouterr()
     assert "under applied_force" in out and "held as asked: length, inclination, width" in out

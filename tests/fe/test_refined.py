@@ -1,6 +1,7 @@
 """Errors of meshes: an accuracy that is asked for, and the level of the default."""
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from fe_reference import (
     solve_release,
     solve_statics,
 )
+from studies.answers.models import put
+from studies.answers.settings import FeSettings
+from studies.commands.arguments import read_design
 from tests.fe.cases import extrapolated, pivot
 from tests.fe.scenes import four_bar
 from tests.gates import hold
@@ -92,6 +96,19 @@ def test_an_accuracy_out_of_reach_is_told() -> None:
     pressed = pivot(elements=2, **scene(DEFAULT_EFFECTS, applied_force={"force": (0.0, -1e6)}))
     stopped = solve_mechanism(pressed, accuracy=1e-3, raise_on_failure=False)
     assert stopped.status.value == "not_converged" and stopped.estimate is None
+
+
+def test_a_mesh_that_round_off_stops_leaves_the_coarser_ones_their_answer() -> None:
+    """A chain of strips of 100, 0.2 and 100 mm: 160 elements stop at rest, with 41 bifurcations that are
+    round-off, and were the answer. 20, 40 and 80 elements agree within 1.2e-4."""
+    design = read_design(str(Path(__file__).parents[1] / "suite" / "finds" / "mixed_lengths.toml"))
+    asked = put(design, FeSettings(elements=20))
+    path = asked.static_path(raise_on_failure=False, accuracy=1e-5)
+    assert path.estimate is not None and path.estimate.meshes == (20, 40, 80)
+    assert not path.critical_points and path.load_factor[-1] == 1.0
+    assert path.status.value == "not_converged"
+    assert "round-off stops 160 elements; ask for no less" in path.message
+    assert path.estimate.largest < 1e-3
 
 
 QUANTITIES = {

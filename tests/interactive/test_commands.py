@@ -23,7 +23,8 @@ def test_without_the_extra_it_is_one_line(command, monkeypatch, refused):
     monkeypatch.setitem(sys.modules, "cv2", None)
     # where the extra is not installed at all, its other packages are named as well
     said = refused(command, says=f"studies: {command}: got no opencv-python-headless")
-    assert said.endswith(", expected the extra: run `make interactive`, or pip install -e '.[interactive]'\n")
+    remedy = "run `make interactive`, or pip install 'cross-axis-pivot-validation[interactive]'"
+    assert said.endswith(f", expected the extra: {remedy}\n")
     assert study_of("paper/fig07_interactive").missing().startswith("it needs cv2")
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from studies.errors import Unanswered
 from studies.published import calculix
-from studies.published.solids import Design
+from studies.published.solids import PIVOT, STIFF, Design
+from studies.record.store import Store
 from tests.gates import hold
 
 ccx = pytest.mark.skipif(bool(calculix.missing()), reason="ccx is not installed (calculix-ccx)")
@@ -28,9 +29,23 @@ def test_same_torque_on_the_same_mesh():
 def test_a_state_that_is_not_reached_is_an_error():
     """Where CalculiX stops, the error has the number of states that it reached."""
     strip = DESIGN.strip(1)
-    moves = np.full((1, len(strip.tip), 2), np.nan)
+    moves = np.full((1, len(strip.tip)), np.nan + 0.0j)
     with pytest.raises(Unanswered, match=r"^CalculiX: got 0 states, expected 1: "):
         calculix.end_forces(strip, moves)
+
+
+def test_stored_torque_is_that_of_the_stored_solids():
+    """The committed results of CalculiX agree with solids on the same meshes; a gate has how far."""
+
+    def error(law=STIFF):
+        key = ["fineness", "rotation_rad"]
+        solids = Store().load_tables("model_form/solid_pivot")["meshes"]
+        own = solids.query(f"design == '{PIVOT}' and element == 'serendipity' and law == '{law}'")
+        both = Store().load_tables("model_form/calculix")["states"].merge(own, on=key)
+        assert len(both) == 13 * len(calculix.MESHES)
+        return (both["torque_Nm_x"] / both["torque_Nm_y"] - 1.0).abs().max()
+
+    hold("calculix_stored", error)
 
 
 def test_without_the_program_the_study_says_what_it_needs(monkeypatch):

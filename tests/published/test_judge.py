@@ -1,16 +1,17 @@
 """The benchmark package, and the command that judges results of other codes by it."""
 
 import tomllib
-from functools import partial
 
+import numpy as np
 import pandas as pd
 import pytest
 
+from report.facts import Results
 from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import design_of, document_of
 from studies.cases.problem import named_case
-from studies.commands.findings import stored_table
 from studies.published import benchmark
 from studies.record.store import Store, read_csv
 
@@ -45,7 +46,7 @@ def judged(tmp_path, capsys):
 
 def test_package_is_of_the_stored_results():
     """The files of the package are those that the stored tables give."""
-    for name, content in benchmark.package(partial(stored_table, Store())).items():
+    for name, content in benchmark.package(Results(Store(), allow_stale=True).table).items():
         assert (benchmark.FOLDER / name).read_bytes() == content, name
 
 
@@ -55,14 +56,19 @@ def test_package_has_inputs_and_every_theory():
     known = pd.concat(beam.assign(theory=name) for name in benchmark.BEAMS)
 
     def stored(study, table):
-        return known if table == "references" else stored_table(Store(), study, table)
+        return known if table == "references" else Results(Store(), allow_stale=True).table(study, table)
 
     files = benchmark.package(stored)
     inputs = tomllib.loads(files.pop(benchmark.INPUTS).decode())
     assert inputs["quantities"] == benchmark.QUANTITIES and set(inputs["references"]) == set(
         benchmark.THEORIES
     )
-    assert inputs["pivot"]["strip_length_m"] == pytest.approx(CASE.length, rel=1e-12)
+    assert np.array(inputs["places_at_rest"]["body_clamps_m"]) == pytest.approx(
+        np.array([strip.end for strip in CASE.strips]), rel=1e-12
+    )
+    case = {name: table for name, table in inputs.items() if name in document_of(CASE)}
+    found, sides = design_of("inputs", case), ("length", "width", "thickness", "body_mass", "rotation")
+    assert [getattr(found, name) for name in sides] == pytest.approx([getattr(CASE, n) for n in sides])
     found = {name.removesuffix(".csv"): set(read_csv(content)["quantity"]) for name, content in files.items()}
     assert found == {
         name: set(benchmark.QUANTITIES)

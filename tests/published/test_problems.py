@@ -19,7 +19,7 @@ from studies.published.case import (
 )
 from studies.published.problems import ours
 from studies.record.store import Store
-from studies.stability.questions import load_ratio
+from studies.stability.buckling import load_ratio
 from tests import gates
 
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))

@@ -3,12 +3,16 @@
 import math
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import spline_model
 from spline_model import cross_axis_pivot, solve_many, solve_mechanism, solve_statics
+from spline_model.accuracy import Search
+from spline_model.accuracy import _stuck as stuck
+from spline_model.discretisation import Discretisation
 from tests import gates
 from tests.frames import one_strip
 from tests.table_one import TABLE_ONE
@@ -215,3 +219,32 @@ def test_what_a_path_lacks_has_no_error():
     assert 0.0 < estimate.energy <= ACCURACY
     batch = solve_many(loaded(), {}, rotation=0.7, increments=3)
     assert math.isnan(batch.errors["strain"][0])
+
+
+@pytest.mark.parametrize(
+    ("reached", "segments"),
+    [
+        ((1.65, 1.71), 2),  # stops at whatever the discretisation has
+        ((0.67, 0.67), 2),  # not all of the weight finds an equilibrium
+        ((0.28, 0.55, 1.1, 2.2), 16),  # rolls up: twice the segments, twice the turns
+        ((3.2, 3.4, 3.6, 3.8), 16),  # little, but enough for what is left
+        ((1.65, 2.2, 2.25), 4),
+    ],
+)
+def test_a_search_without_an_answer_goes_on_while_it_comes_farther(reached, segments):
+    """Requirement: where no discretisation has an answer, strips are cut while that brings a path on."""
+
+    def path(grid):
+        way = reached[min(int(math.log2(grid[0])), len(reached) - 1)]
+        known = {"driven": None, "grown": min(way, 1.0)}
+        return SimpleNamespace(load_factor=np.array([0.0, max(way - 1.0, 0.0)]), **known)
+
+    search = Search(
+        accuracy=1e-4,
+        grid=Discretisation(),
+        most_segments=16,
+        stuck=lambda trials: stuck(path, 3.9, trials),
+    )
+    while not search.ended:
+        search.judge(None)
+    assert search.at[0] == segments

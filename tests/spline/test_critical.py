@@ -62,6 +62,19 @@ def test_both_paths_find_the_same_critical_points(pivot, rotation, increments, k
     assert fast.message == slow.message
 
 
+@pytest.mark.parametrize("increments", [3, 7])
+@pytest.mark.parametrize("side", [1e-9, 1e-8, -1e-8])
+def test_a_small_imperfection_bends_the_column_to_its_side(side, increments):
+    """Requirement: beyond its Euler load a column with a billionth of the load aside is on the branch that
+    the perfect one has there, to the side of the load, stable, and has no critical point."""
+    perfect = solve_mechanism(column(load=4.0, control_points=8), branch="follow")
+    found = solve_mechanism(column(load=4.0, control_points=8, side=side), increments=increments)
+    assert found.critical_points == () and found.inertia[-1] == 0
+    (_, across, turn), right = found.bodies["tip"][-1], perfect.bodies["tip"][-1]
+    assert math.copysign(1.0, across) == math.copysign(1.0, side)
+    assert abs(abs(turn) - abs(right[2])) < 1e-6
+
+
 def test_printed_forces_have_no_inertia():
     """Requirement: forces without a potential have a path without inertia and critical points."""
     pivot = cross_axis_pivot(**TABLE_ONE, control_points=4, measure="published", stretch="consistent")

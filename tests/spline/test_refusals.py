@@ -79,7 +79,7 @@ def test_pivots_that_make_no_sense(given, said):
     refused(lambda: cross_axis_pivot(**SIX | given), said)
 
 
-LIKE = "got 'a load that follows its body', expected dead ones, but in statics and the motion by default"
+LIKE = "got 'a load that follows its body', expected a fixed direction"
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ LIKE = "got 'a load that follows its body', expected dead ones, but in statics a
         (lambda made: solve_many(made, {}, rotation=0.1), f"designs: {LIKE}"),
         (lambda made: sensitivities(made, solve_statics(made, rotation=0.1)), f"asked: {LIKE}"),
         (natural_frequencies, f"effects: {LIKE}"),
-        (lambda made: solve_motion(made, integrator="leapfrog"), "expected energy (fixed step)"),
+        (lambda made: solve_motion(made, integrator="leapfrog"), "expected energy (the default) for damping"),
     ],
 )
 def test_what_followers_are_refused_by(solve, said):

@@ -1,7 +1,6 @@
 """Case files as a designer writes them: sections by sides, named materials, directions, templates, scenes."""
 
 import json
-import math
 import tomllib
 from dataclasses import replace
 from types import SimpleNamespace
@@ -127,14 +126,12 @@ def test_a_strip_has_its_own_section_and_material(tmp_path):
 @pytest.mark.parametrize(
     ("table", "expected"),
     [
-        ("direction_deg = 0", (9.81, 0.0)),
-        ("direction_deg = 120\nmagnitude_m_per_s2 = 2", (-1.0, math.sqrt(3.0))),
-        ("magnitude_m_per_s2 = 1.62", (0.0, -1.62)),
+        ("acceleration_m_per_s2 = [1.62, 0]", (1.62, 0.0)),
         ("", (0.0, -9.81)),
     ],
 )
-def test_gravity_by_its_direction(table, expected, case):
-    """Gravity is given by its direction or its size as well as by its two parts, downwards if unsaid."""
+def test_gravity_by_its_parts(table, expected, case):
+    """Gravity is given by its two parts, downwards if unsaid."""
     path = case(("[drive]", f'[scene]\neffects = ["+gravity"]\n[effects.gravity]\n{table}\n[drive]'))
     found = read_design(path).effects.parameters()["gravity"]["acceleration"]
     assert found == pytest.approx(expected, abs=1e-14)

@@ -16,7 +16,6 @@ from studies.cases.design import read_design
 from studies.cases.problem import named_case
 from studies.sweep import batch
 from studies.sweep.read import plan_of
-from studies.sweep.sample import Drawer
 
 FINDS = Path(__file__).parent / "finds"
 CLAMPED = FINDS / "clamped_mechanism.toml"
@@ -133,9 +132,9 @@ def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_pa
         row = row_of(together, case=str(pivot), vary={"strip": {"crossing_ratio": [STEEP["crossing_ratio"]]}})
         assert apart(row, good) < ACCURACY
         assert row["estimated_error"] <= ACCURACY and row["reason"] == ""
-    outcome = command("export", pivot, "--out", tmp_path / "out", "--formats", "json")
+    outcome = command("export", pivot, "--out", tmp_path / "out", "--formats", "csv")
     assert "estimated error: trajectory" in outcome.out
-    (exported,) = (tmp_path / "out").glob("static.json")
+    (exported,) = (tmp_path / "out").glob("static_states.csv")
     assert f"{good['torque_Nm']:.4g}"[:4] in exported.read_text()
     first, fine = (
         answer_modes(steep(), s, count=2) for s in (SplineSettings(), SplineSettings(control_points=16))
@@ -194,7 +193,7 @@ def row_of(together=True, **content):
     given = {"case": "cross_axis_pivot", "vary": {"strip": {"crossing_ratio": [0.9]}}, **content}
     plan = plan_of("s.toml", given, Path())
     task = replace(plan.task, batch=together and plan.task.batch)
-    return batch.solve_chunk(task, 0, Drawer(plan.sample).rows(0, 1)).to_pylist()[0]
+    return batch.solve_chunk(task, 0, plan.rows(0, 1)).to_pylist()[0]
 
 
 @pytest.mark.parametrize("content", [{"model": "fe"}, {"settings": {"control_points": 8}}], ids=str)

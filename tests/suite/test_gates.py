@@ -3,6 +3,8 @@
 import datetime
 import math
 import re
+import tomllib
+from fnmatch import fnmatchcase
 
 import pytest
 
@@ -11,6 +13,8 @@ from tests import gates
 
 #: A limit is at most this many times what was last measured.
 SLACK = 20.0
+#: Rows of the verification and validation matrix.
+CLAIMS = tomllib.loads((ROOT / "tests" / "claims.toml").read_text(encoding="utf-8"))["claim"]
 
 
 def _faults(name: str, gate: dict) -> list[str]:
@@ -74,15 +78,33 @@ def test_unsound_gate_is_seen(change, fault):
     assert any(fault in line for line in _faults("unsound", SOUND | change))
 
 
-def test_every_gate_is_used():
-    """Each gate is named by a test, so that no limit stands for nothing."""
-    text = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py"))
+def _named(text: str) -> set[str]:
+    """Return the gates that a source names, whole or by a formatted text."""
     # what a formatted text such as f"fe_order_{element}" can become: words where it has values
     formatted = set(re.findall(r'f"((?:\w*\{[^{}"]+\})+\w*)"', text))
     parts = [re.split(r"\{[^{}]+\}", each) for each in formatted]
-    patterns = re.compile("|".join(r"\w+".join(each) for each in parts if max(map(len, each)) > 3))
-    unused = [name for name in gates.table() if f'"{name}"' not in text and not patterns.fullmatch(name)]
-    assert unused == []
+    patterns = re.compile("|".join(r"\w+".join(each) for each in parts if max(map(len, each)) > 3) or "-")
+    return {name for name in gates.table() if f'"{name}"' in text or patterns.fullmatch(name)}
+
+
+def test_every_gate_is_used():
+    """Each gate is named by a test, so that no limit stands for nothing."""
+    text = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("*.py"))
+    assert set(gates.table()) - _named(text) == set()
+
+
+def test_every_gate_belongs_to_one_claim():
+    """The matrix of the report counts each gate once, and every pattern of a claim finds a gate."""
+    patterns = [each for claim in CLAIMS for each in claim["gates"]]
+    belongs = {name: [each for each in patterns if fnmatchcase(name, each)] for name in gates.table()}
+    assert {name: found for name, found in belongs.items() if len(found) != 1} == {}
+    assert set(patterns) - {each for found in belongs.values() for each in found} == set()
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim["text"])
+def test_claim_names_the_test_of_its_first_gate(claim):
+    """The first gate of a claim is one gate, and the file that the claim names checks it."""
+    assert claim["gates"][0] in _named((ROOT / "tests" / claim["test"]).read_text(encoding="utf-8"))
 
 
 @pytest.fixture

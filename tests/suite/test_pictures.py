@@ -18,7 +18,7 @@ from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
 from studies.errors import BadInput
 from studies.pictures.page import picture
-from studies.pictures.shown import APART, WITHIN, Shown, apart
+from studies.pictures.shown import Shown
 from studies.record import style
 from tests.table_one import SIX, TABLE_ONE
 
@@ -37,12 +37,11 @@ def shown(kind):
         "loads": ("parallel_strip_guide", SPLINE),
         "release": (PIVOT, SPLINE),
         "modes": (FOUR_BAR, ELEMENTS),
-        "modes of splines": (FOUR_BAR, SPLINE),
     }[kind]
     design = replace(named_design(name), increments=4)
     if kind == "release":
         answer = answer_release(design, settings, duration=5e-3, records=20)
-    elif kind.startswith("modes"):
+    elif kind == "modes":
         answer = answer_modes(design, settings, count=3)
     else:
         answer = answer_static(design, settings)
@@ -54,8 +53,6 @@ SEVERAL = [
     ("mechanism",),
     ("release",),
     ("modes",),
-    ("modes", "modes of splines"),
-    ("modes",) * 5,
     ("path", "path of elements", "mechanism"),
     ("path",) * 5,
 ]
@@ -94,15 +91,6 @@ def test_curves_are_the_answer(kind):
     assert any("yield 1100" in text.get_text() for text in panels["largest stress"].texts)
 
 
-@pytest.mark.parametrize("count", [0, 1, 2, 5])
-def test_names_at_the_ends_of_curves_are_apart(count):
-    """Names of curves that end together stand apart in their order, within the axis, and others stay."""
-    found = apart(np.full(count, 0.99))
-    assert np.all(np.diff(found) >= APART - 1e-12)
-    assert np.all((found >= WITHIN - 1e-12) & (found <= 1.0 - WITHIN + 1e-12))
-    assert apart(np.array([0.8, 0.1, 0.4])) == pytest.approx([0.8, 0.1, 0.4])
-
-
 def test_an_answer_is_drawn_without_its_design():
     """An answer knows what was asked: it is drawn alone, and over another, as by model and design."""
     answer = shown("path")[1]
@@ -131,6 +119,8 @@ def test_what_does_not_go_over_one_another_is_refused():
         picture([path] * 6)
     with pytest.raises(BadInput, match="got 2 of release, static"):
         picture([path, motion])
+    with pytest.raises(BadInput, match="got 2 of modes"):
+        picture([shown("modes")[0]] * 2)
     start = replace(path, answer=replace(path.answer, solution=SimpleNamespace(load_factor=[0.0])))
     with pytest.raises(BadInput, match="too few states"):
         picture([start])

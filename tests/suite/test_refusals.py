@@ -144,7 +144,6 @@ BEYOND = {
     "increments": ("0", "100001", "2.5"),
     "model": ("fe,fe", "spline,rod", ""),
     "formats": ("vtk,vtk", "vtk,step", ""),
-    "draw-deg": ("0,ninety",),
 }
 
 

@@ -179,3 +179,43 @@ def test_a_search_ends_where_round_off_begins(answered):
     found = answered("solve", FINDS / "mixed_lengths.toml", "--rotation-deg", 60)
     assert found["estimate"]["torque"] < 1e-4
     assert len(found["estimate"]["trials"]) <= 12
+
+
+LOOP = """
+[[strips]]
+name = "loop"
+start_m = [0, 0]
+end_m = [0, 0.1]
+root = "body"
+tip = "body"
+[[bodies]]
+name = "body"
+centre_m = [0, 0.1]
+mass_kg = 0.1
+moment_of_inertia_kg_m2 = 1e-5
+[section]
+width_m = 0.01
+thickness_m = 0.0005
+[material]
+youngs_modulus_Pa = 200e9
+poisson_ratio = 0.3
+density_kg_m3 = 7800
+[drive]
+body = "body"
+increments = 4
+rotation_deg = 30
+"""
+
+
+@pytest.mark.parametrize("model", ["spline", "fe"])
+def test_a_body_that_nothing_holds_has_no_stiffness(model, answered, tmp_path):
+    """Requirement: round-off of a strip that leads from a body to itself is printed as no stiffness, without
+    an error of it and without a word on the error stream."""
+    path = tmp_path / "loop.toml"
+    path.write_text(LOOP, encoding="utf-8")
+    found = answered("solve", path, "--model", model)
+    assert {each for key, own in found.items() if key.startswith("body_stiffness_") for each in own} == {0.0}
+    assert found["off_axis_ratio_x"] == [None] * 5
+    if model == "spline":
+        assert found["resolution"] == ""
+        assert found["estimate"]["body_stiffness"] is None

@@ -58,7 +58,7 @@ def ended(process):
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_are_sweeps(path):
     """Requirement: the example files can be used as they stand."""
-    assert read_plan(path).sample.points > 1
+    assert read_plan(path).points > 1
 
 
 def test_the_help_shows_a_file_that_works(tmp_path, capsys):
@@ -70,7 +70,7 @@ def test_the_help_shows_a_file_that_works(tmp_path, capsys):
     path = tmp_path / "designs.toml"
     path.write_text(text)
     asked = read_plan(path)
-    assert asked.sample.points == 4096
+    assert asked.points == 4096
     assert len(asked.task.keys) == 4
     assert asked.task.batch
 

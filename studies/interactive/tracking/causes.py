@@ -177,5 +177,5 @@ class Causes:
         return max(now, self.variance) if own else self.variance
 
     def error(self, seen: View) -> Array:
-        """Return the systematic error (3,) of the pose, in root mean square."""
+        """Return the systematic error (3,) of the pose [m, m, rad], in root mean square."""
         return np.asarray(np.sqrt(np.einsum("ij,jk,ik->i", seen.error, self._moment, seen.error)))

@@ -45,7 +45,7 @@ class Camera:
 
     @property
     def matrix(self) -> Array:
-        """The camera matrix (3, 3)."""
+        """The camera matrix (3, 3) [px]."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
     @property
@@ -121,7 +121,7 @@ class Fit:
 
     @property
     def spread(self) -> Array:
-        """Standard deviation of the pose (3,) over that of an edge's offset."""
+        """Standard deviation of the pose (3,) [m, m, rad] over that of an edge's offset [px]."""
         return np.sqrt(np.diag(np.linalg.inv(self.jacobian.T @ self.jacobian))[-3:])
 
 

@@ -115,7 +115,7 @@ class Shrinkage:
         self._since = 0
 
     def taken_out(self, picture: Picture, corners: Array, whole: Collection[int]) -> Array:
-        """Return corners (Q, 4, 2) of markers with the offset taken out; `whole`: those that are not covered,
+        """Return corners (Q, 4, 2) [px] of markers without their offset; `whole`: those that are not covered,
         by their numbers, which are their places in Q."""
         self._since += bool(whole)
         settled = self._pictures == PICTURES
