@@ -16,6 +16,7 @@ from studies.cases.section import (
     inherited,
     out_of_scale,
     refuse_both,
+    renamed,
     too_heavy,
     without,
 )
@@ -135,7 +136,7 @@ def read_mechanism(path: str, content: Mapping[str, Any], changes: str | None = 
     """
     document.refuse_sections(path, content, keys.SECTIONS)
     shared = {
-        **document.values(path, SECTION, document.table(path, content, "section"), "section"),
+        **document.values(path, SECTION, renamed(path, document.table(path, content, "section")), "section"),
         **document.values(path, MATERIAL, document.table(path, content, "material"), "material"),
     }
     refuse_both(path, shared, "section")
@@ -181,7 +182,7 @@ def _keywords(part: Strip | Body) -> dict[str, Any]:
 
 def _strip(path: str, given: Mapping[str, Any], label: str, shared: Mapping[str, Any]) -> Strip:
     """Return one strip, its section and material its own or those of all."""
-    own = document.values(path, [*keys.STRIP, *keys.OWN], given, label)
+    own = document.values(path, [*keys.STRIP, *keys.OWN], renamed(path, given), label)
     refuse_both(path, own, label)
     found = completed(path, inherited(shared, own), label, label, shared=True)
     found["tip"] = None if found["tip"] == FREE else found["tip"]

@@ -11,7 +11,7 @@ from studies.cases.document import CaseError, is_mechanism, parsed, refuse_secti
 from studies.cases.effects import Effects, read_effects
 from studies.cases.keys import KEYS, LISTS, LOADS_FIRST
 from studies.cases.mechanism import Body, Point, Strip, read_points
-from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, too_heavy
+from studies.cases.section import Sectioned, completed, of_sides, out_of_scale, renamed, too_heavy
 
 __all__ = ["FOLDER", "TABLE_1", "CaseError", "Problem", "named_case", "read_problem"]
 
@@ -169,7 +169,7 @@ def read_problem(path: str, content: Mapping[str, Any], changes: str | None = No
     found: dict[str, Any] = {}
     for section in sections:
         keys = [key for key in KEYS if key.section == section]
-        given = table(path, content, section)
+        given = renamed(path, table(path, content, section))
         if section not in content:
             needed = ", ".join(key.name for key in [key for key in keys if not key.optional] or keys)
             raise CaseError(f"{path}: [{section}]: got no such section, expected one with {needed}")

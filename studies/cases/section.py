@@ -1,8 +1,10 @@
 """Sections of strips: sides, or area and second moment; outermost fibre; and what a case gives of them."""
 
+import logging
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from studies.cases import keys
@@ -13,6 +15,9 @@ if TYPE_CHECKING:  # a template of a case waits for no arrays
     from studies.kinds import Array
 
 Values = Mapping[str, Any]
+
+#: Older name of the key of the outermost fibre: twice its distance.
+OLD_DEPTH = "section_depth_m"
 
 #: Numbers of a strip that double precision bears: stiffness [N] or mass per length [kg/m], slenderness [1].
 SCALES, SLENDERNESS = (1e-60, 1e60), (0.1, 1e10)
@@ -200,6 +205,21 @@ def refuse_tapers(where: str, strips: Iterable[Any], what: str) -> None:
     for strip in strips:
         if strip.width_end or strip.thickness_end:
             raise CaseError(f"{where}: {strip.name}: got a taper, expected a constant section for {what}")
+
+
+def renamed(where: str, content: Values) -> Values:
+    """Return a table with the key of the outermost fibre in place of its older name, with a warning."""
+    depth = content.get(OLD_DEPTH)
+    if not isinstance(depth, int | float) or isinstance(depth, bool) or FIBRE.name in content:
+        return content
+    _warn_of_name(where)
+    return {FIBRE.name: depth / 2.0} | without(content, [OLD_DEPTH])
+
+
+@cache
+def _warn_of_name(where: str) -> None:
+    use = f"version 0.3 ends {OLD_DEPTH} (use: {FIBRE.name} = half of its value)"
+    logging.getLogger("studies").warning("warning: %s: %s", where, use)
 
 
 def inherited(shared: Values, own: Values) -> dict[str, Any]:

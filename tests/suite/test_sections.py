@@ -39,14 +39,15 @@ def test_no_stress_without_an_outermost_fibre(model, tmp_path, command):
     assert found["strength"] == {} and set(found["max_stress_Pa"]) == {None}
 
 
-def test_the_outermost_fibre_stands_in_several_places(tmp_path, command):
-    """It is named in [section] or of a strip's own."""
+def test_the_outermost_fibre_stands_in_several_places(tmp_path, command, caplog):
+    """It is named in [section] or of a strip's own, or is half the depth of a section, with a warning."""
     own, found = f"{FIBRE}\narea_m2 = {AREA}\nsecond_moment_m4 = {MOMENT}", []
-    texts = {"shared": rod(FIBRE), "own": rod(own=own)}
+    texts = {"old": rod(f"section_depth_m = {DIAMETER}"), "new": rod(FIBRE), "own": rod(own=own)}
     for name, text in texts.items():
         (tmp_path / f"{name}.toml").write_text(text)
         found.append(json.loads(command("solve", tmp_path / f"{name}.toml", "--json", "-").out)["strength"])
-    assert found[0] == found[1]
+    assert found[0] == found[1] == found[2]
+    assert "old.toml: version 0.3 ends section_depth_m (use: outer_fibre_m" in caplog.text
 
 
 TAPERED = "width_m = 0.01\nthickness_m = 1e-3\nwidth_end_m = 0.008\nthickness_end_m = 0.5e-3"
@@ -69,7 +70,8 @@ def test_stress_of_a_tapered_strip(model, tmp_path, command):
     ("given", "said"),
     [
         ("thickness_end_m = 1e-3", "section.thickness_end_m: got it beside area_m2, expected width_m and"),
-        ("section_depth_m = 1", "section.section_depth_m: got an unknown key"),
+        (f"{FIBRE}\nsection_depth_m = 1", "section.section_depth_m: got an unknown key"),
+        ("section_depth_m = -1", "section.outer_fibre_m: got -0.5, expected a positive number [m]"),
         ("outer_fibre_m = 0", "section.outer_fibre_m: got 0, expected a positive number [m]"),
     ],
 )
