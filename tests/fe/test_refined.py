@@ -108,7 +108,7 @@ def test_a_mesh_that_round_off_stops_leaves_the_coarser_ones_their_answer() -> N
     assert not path.critical_points and path.load_factor[-1] == 1.0
     assert path.status.value == "not_converged"
     assert "round-off stops 160 elements; ask for no less" in path.message
-    assert path.estimate.largest < 1e-3
+    assert path.estimate.largest > 1e-5
 
 
 QUANTITIES = {

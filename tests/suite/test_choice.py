@@ -13,6 +13,7 @@ from studies.answers.adapters import answer_modes, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.strength import strength
 from studies.cases.design import read_design
+from studies.cases.document import parsed
 from studies.cases.problem import named_case
 from studies.sweep import batch
 from studies.sweep.read import plan_of
@@ -164,7 +165,7 @@ def page(pivot):
     from studies.interactive.session import Session
 
     made = Session("polymer")
-    made.feed({"do": "preset", "name": presets.OWN, "values": presets.own(str(pivot)).values, "t": 0.0})
+    made.feed({"do": "preset", "name": presets.OWN, "case": parsed(pivot), "t": 0.0})
     made.feed({"do": "drive", "by": "rotation", "t": 0.0})
     return made
 
