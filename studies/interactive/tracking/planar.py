@@ -137,7 +137,8 @@ def project(plane: Array, points: Array) -> Array:
 
 
 def normals(p: Array, q: Array) -> Array:
-    """Return the unit normals (..., 2) of the lines from p to q (..., 2), to their right where y is up."""
+    """Return the unit normals (..., 2) of the lines from p to q (..., 2) of a picture, whose y is down: to
+    the left of the way, out of a square that is seen from the front."""
     along = (q - p) / np.sqrt(np.sum((q - p) ** 2, axis=-1, keepdims=True))
     return np.stack((along[..., 1], -along[..., 0]), axis=-1)
 

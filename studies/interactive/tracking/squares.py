@@ -60,11 +60,11 @@ def refine(picture: Picture, quads: Array, gamma: float = GAMMA) -> tuple[Array,
         end = corners[:, AFTER]
         side = np.sqrt(np.sum((end - corners) ** 2, axis=-1))
         half = np.minimum(reach, np.maximum(LEAST_REACH, SHARE * side.min(axis=1))).repeat(4)
-        normal = -_normal(corners, end, corners.mean(axis=1, keepdims=True))
+        normal = normals(corners, end)
         lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
         found = edges(picture, lines, half, gamma, first=k == 0, last=k == last).reshape(-1, 4, 5)
         for _ in range(2):
-            crossing = _meeting(corners, normal, found[..., :1], found[..., 1:2])
+            crossing = _meeting(corners, found[..., :1], found[..., 1:2])
             gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
             lost = ~(gap <= 2.0 * reach)
             # of two edges that meet far away, the one with less good stations is something else's: it stays
@@ -75,15 +75,9 @@ def refine(picture: Picture, quads: Array, gamma: float = GAMMA) -> tuple[Array,
     return corners, good
 
 
-def _normal(p: Array, q: Array, place: Array) -> Array:
-    """Unit normals (..., 2) of the lines from p to q that point to where `place` is."""
-    normal = normals(p, q)
-    return np.asarray(normal * np.sign(np.sum(normal * (place - p), axis=-1, keepdims=True)))
-
-
-def _meeting(corners: Array, normal: Array, begin: Array | float, end: Array | float) -> Array:
-    """Where the edges of squares (Q, 4, 2) meet that are moved along their normals at both ends, by (Q, 4, 1)
-    [px]."""
+def _meeting(corners: Array, begin: Array | float, end: Array | float) -> Array:
+    """Where the edges of squares (Q, 4, 2) meet that are moved outwards at both ends, by (Q, 4, 1) [px]."""
+    normal = normals(corners, corners[:, AFTER])
     r, s = corners + begin * normal, corners[:, AFTER] + end * normal
     p, e = r[:, BEFORE], s - r
     d, gap = e[:, BEFORE], r - p
@@ -125,8 +119,7 @@ class Shrinkage:
             self.offset = before + (now - before) / count
         if self.offset is None:
             return corners
-        outwards = -_normal(corners, corners[:, AFTER], corners.mean(axis=1, keepdims=True))
-        moved = _meeting(corners, outwards, self.offset, self.offset)
+        moved = _meeting(corners, self.offset, self.offset)
         gamma = min(max(self.gamma + self.offset / BY_POWER, POWERS[0]), POWERS[1])
         if abs(self.offset) > OTHER and gamma != self.gamma:
             self.offset, self.gamma, self._pictures = None, gamma, 0
@@ -142,9 +135,9 @@ def _edges_of_cells(
     for number in numbers:
         side = float(np.hypot(*(np.roll(corners[number], -1, axis=0) - corners[number]).T).min())
         across, places = _cell_edges(number)
-        p, q, lit = project(homography(corners[number]), places)
+        p, q = project(homography(corners[number]), places)
         slopes.append(2.0 * across - 1.0)
-        lines.append(np.stack((p, q, _normal(p, q, lit))))
+        lines.append(np.stack((p, q, normals(p, q))))
         half.append(np.full(len(p), min(REACHES[-1], REACH * side / BITS)))
     every, reach = np.concatenate(lines, axis=1), np.concatenate(half)
     found = edges(picture, every, reach, gamma, stations=FEW)
@@ -154,8 +147,8 @@ def _edges_of_cells(
 
 @cache
 def _cell_edges(number: int) -> tuple[Array, Array]:
-    """Return u (E,) towards the light of the edges between the cells of a marker, and both their ends and a
-    place in the light (3, E, 2), in sides."""
+    """Return u (E,) towards the light of the edges between the cells of a marker, and both their ends (2, E,
+    2), in sides: as they are seen, the light is to the left of the way from the first to the second."""
     grid, across, places = cells(number).astype(int), list[float](), list[Array]()
     for turned in (False, True):  # lines along y, then along x
         for j, kinds in enumerate(np.diff(grid.T if turned else grid, axis=1).T, start=1):
@@ -163,7 +156,7 @@ def _cell_edges(number: int) -> tuple[Array, Array]:
             for i, stop in zip(starts, np.append(starts[1:], BITS), strict=True):
                 if kinds[i]:
                     y, low = 0.5 - (i + END) / BITS, 0.5 - (stop - END) / BITS
-                    place = np.array([(at, y), (at, low), (at + 0.1 * kinds[i], 0.5 * (y + low))])
+                    ends = np.array([(at, y), (at, low)])[:: kinds[i]]
                     across.append(at * kinds[i])
-                    places.append(-place[:, ::-1] if turned else place)
+                    places.append(-ends[::-1, ::-1] if turned else ends)
     return np.array(across), np.stack(places, axis=1)
