@@ -236,8 +236,8 @@ def opened(name: str, document: Mapping[str, Any], known: Values, where: str = "
 
 #: Name of the design of one's own, which a command or the page may bring.
 OWN = "own"
-#: The first presets: title, what is said of it as long as it is not changed, case, and what the case leaves
-#: open.
+#: The first presets: title, a note as long as the design is not changed, case, and values of parameters that
+#: the case does not give.
 FIRST: dict[str, tuple[str, str, str, Values]] = {
     "polymer": (
         "soft polymer pivot",
