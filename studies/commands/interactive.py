@@ -68,7 +68,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.case is not None:
         if arguments.preset is not None:
             raise BadInput(f"--preset: got {arguments.preset} beside a case, expected one of them")
-        presets.PRESETS[presets.OWN] = presets.own(str(arguments.case))
+        presets.PRESETS[presets.OWN] = presets.own(Path(arguments.case))
     if arguments.replay is not None:
         return _replay(arguments.replay)
     _require_extra("interactive")

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from studies.answers.answer import centre_shift
 from studies.cases.design import Design
 from studies.cases.keys import GROUND
-from studies.cases.problem import Problem
 from studies.kinds import Array
 
 #: Distance of the ground's marker from the clamped plate it is glued to [m], as on the printed sheet.
@@ -115,10 +115,10 @@ class Curve:
         return turn, moment
 
 
-def turned(angle: float, vector: Array) -> Array:
-    """Return `vector` (2,) turned by `angle` [rad]."""
+def turn(angle: float) -> Array:
+    """Return the matrix (2, 2) that turns vectors by `angle` [rad]."""
     cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
+    return np.array([[cos, -sin], [sin, cos]])
 
 
 class Placing:
@@ -140,7 +140,7 @@ class Placing:
         self.centre, self.rest = self.centres[self.number], np.array(rest, dtype=float)
         self.base = self.clamps[self.ends < 0].mean(axis=0)
         self.ground = self.base - np.array([0.0, STANDOFF])
-        self._crossing = np.array(design.crossing_point) if isinstance(design, Problem) else None
+        self._crossing = design.crossing_of_chords
 
     @property
     def _arm(self) -> Array:
@@ -150,15 +150,12 @@ class Placing:
     def crossing_shift(self, body: Array) -> float | None:
         """Return the displacement [m] of the body point that lies in the strips' crossing at rest.
 
-        body: pose (3,) [m, m, rad]. None for a design without a crossing.
+        body: pose (3,) [m, m, rad]. None for a design that has not one body on two strips that cross.
         """
         if self._crossing is None:
             return None
-        return float(np.hypot(*(self.moved(body, self._crossing) - self._crossing)))
-
-    def moved(self, body: Array, place: Array) -> Array:
-        """Return where a place (2,) [m] of the body at rest is in its pose (3,) [m, m, rad]."""
-        return np.asarray(body[:2] + turned(body[2], place - self.centre))
+        (shift,) = centre_shift(self._crossing, body[2:], body[None, :2], self.centres)
+        return math.hypot(*shift)
 
     def body(self, marker: Array, near: float = 0.0) -> Array:
         """Return the body's pose (3,) [m, m, rad] for marker 1 at `marker` (3,) in marker 0's frame.
@@ -166,14 +163,14 @@ class Placing:
         Its rotation is counted on from `near` [rad].
         """
         angle = near + math.remainder(marker[2] - self.rest[2] - near, math.tau)
-        return np.array([*(self.ground + marker[:2] + turned(angle, self._arm)), angle])
+        return np.array([*(self.ground + marker[:2] + turn(angle) @ self._arm), angle])
 
     def marker(self, body: Array) -> Array:
         """Return the pose (3,) of marker 1 in marker 0's frame for the body's pose (3,) [m, m, rad]."""
-        return np.array([*(body[:2] - self.ground - turned(body[2], self._arm)), body[2] + self.rest[2]])
+        return np.array([*(body[:2] - self.ground - turn(body[2]) @ self._arm), body[2] + self.rest[2]])
 
-    def spread(self, sd: Array, turn: float) -> Array:
+    def spread(self, sd: Array, angle: float) -> Array:
         """Return the body's pose over those of the marker's x, y and turn (3, 3), in standard deviations, at
         the body's turn [rad]."""
-        arm = turned(turn, self._arm)
+        arm = turn(angle) @ self._arm
         return np.array([[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]], [0.0, 0.0, 1.0]]) * sd

@@ -166,20 +166,11 @@ POSES = 5
 
 
 class Hand:
-    """Poses (3,) with their times [s], the newest last."""
+    """The last poses (3,) [m, m, rad] of the hand with their times [s], the newest last."""
 
     def __init__(self) -> None:
-        self._poses: deque[tuple[float, Array]] = deque(maxlen=POSES)
+        self.poses: deque[tuple[float, Array]] = deque(maxlen=POSES)
         self._odd: Array | None = None
-
-    def add(self, time: float, pose: Array) -> None:
-        """Add the pose (3,) [m, m, rad] of the hand at an instant [s]."""
-        self._poses.append((time, pose))
-
-    def forget(self) -> None:
-        """Forget the poses of the hand: the next pose is no jump."""
-        self._poses.clear()
-        self._odd = None
 
     def believes(self, time: float, pose: Array) -> bool:
         """Return whether a pose (3,) [m, m, rad] at an instant [s] may be taken.
@@ -187,9 +178,9 @@ class Hand:
         It may if it is as near the last one as a hand moves in that time, or seen twice.
         """
         known, self._odd = self._odd, None
-        if not self._poses or (known is not None and _close(pose, known, 1.0)):
+        if not self.poses or (known is not None and _close(pose, known, 1.0)):
             return True
-        last, before = self._poses[-1]
+        last, before = self.poses[-1]
         if _close(pose, before, max(1.0, (time - last) / FRAME)):
             return True
         self._odd = pose
@@ -198,10 +189,10 @@ class Hand:
     @property
     def velocity(self) -> Array:
         """Slope (3,) of the last poses [m/s, rad/s], zero where there are none at different times."""
-        times = np.array([time for time, _ in self._poses])
+        times = np.array([time for time, _ in self.poses])
         if len(times) < 2 or np.ptp(times) == 0.0:
             return np.zeros(3)
-        poses = np.array([pose for _, pose in self._poses])
+        poses = np.array([pose for _, pose in self.poses])
         return np.asarray(np.polyfit(times - times.mean(), poses, 1)[0])
 
 

@@ -52,14 +52,14 @@ class Mechanics:
         self.piece, self._body = piece, piece.body.name
         self.placed(rest)
         self._load = np.array([0.0, -(piece.values["load"] or 0.0), 0.0])
-        self.control_points, self.doubt = self._chosen()
-        free = piece.modelled(self.control_points, loaded=False)
-        self._held = HeldPivot(free, self._body)
         bending, strips = flexural_scale(piece.design), piece.design.strips
         self.length = max(strip.length for strip in strips)
         self.scale = {"moment": bending, "force": bending / self.length, "energy": bending}
         self.scale["stress"] = max(strip.youngs_modulus * strip.depth for strip in strips) / self.length
-        self._acting = piece.modelled(self.control_points) if self._load.any() else free
+        self.control_points, self.doubt = self._chosen()
+        self._free = piece.modelled(self.control_points, loaded=False)
+        self._held = HeldPivot(self._free, self._body)
+        self._acting = piece.modelled(self.control_points) if self._load.any() else self._free
         self._system = compile_scene(self._acting.released())
         self._motion: Motion | None = None
         self.begun = 0.0
@@ -81,9 +81,7 @@ class Mechanics:
         design = self.piece.design
         if design.rotation is None and len(design.bodies) > 1:  # a path to so stiff a rotation takes a minute
             return FIRST, "not estimated: the case turns another body"
-        heavy = abs(float(self._load[1])) * max(s.length for s in design.strips) > HEAVY * flexural_scale(
-            design
-        )
+        heavy = bool(abs(self._load[1]) > HEAVY * self.scale["force"])
         how: dict[str, Any] = {"body": self._body, "increments": INCREMENTS, "raise_on_failure": False}
         path = solve_mechanism(self.piece.modelled(loaded=not heavy), rotation=self._reach, **how)
         if path.status is not Status.CONVERGED or path.segments != 1:
@@ -94,8 +92,7 @@ class Mechanics:
     @cached_property
     def longest_step(self) -> float:
         """Longest step [s] that resolves a swing about rest in phase and amplitude."""
-        free = self.piece.modelled(self.control_points, loaded=False)
-        lowest = natural_frequencies(free, body=self._body).frequency[0]
+        lowest = natural_frequencies(self._free, body=self._body).frequency[0]
         return 1.0 / (STEPS_PER_PERIOD * float(lowest)) if lowest > 0.0 else math.inf
 
     def pace(self, piece: Piece) -> None:

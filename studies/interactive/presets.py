@@ -259,10 +259,9 @@ PRESETS = {
 SHIPPED = sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
-def own(case: str) -> Piece:
-    """Return the design of a case file, or of a case of that name; BadInput as of `opened`."""
-    path = FOLDER / f"{case}.toml" if case in SHIPPED else Path(case)
-    return opened(OWN, parsed(path), {}, str(path))
+def own(case: Path) -> Piece:
+    """Return the design of a case file; BadInput as of `opened`."""
+    return opened(OWN, parsed(case), {}, str(case))
 
 
 def preset(name: str) -> Piece:

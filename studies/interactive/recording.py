@@ -19,12 +19,13 @@ def mark(state: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:MARK]
 
 
-def _events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
-    """Yield the events of a session file.
+def replay(lines: Iterable[str]) -> Iterator[tuple[dict[str, Any], bool]]:
+    """Feed a session file to a session; yield each state, and whether it equals the recorded one.
 
     Raises:
         BadInput: a line that is no event, or a first one that is no setup; one line with its number.
     """
+    session = Session()
     for number, text in enumerate(lines, start=1):
         try:
             event = json.loads(text)
@@ -32,13 +33,6 @@ def _events(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
             raise BadInput(f"line {number}: got no JSON, expected an event") from None
         if not isinstance(event, dict) or (number == 1 and event.get("do") != "setup"):
             raise BadInput(f"line {number}: got {text.strip()[:40]!r}, expected an event, the first a setup")
-        yield event
-
-
-def replay(lines: Iterable[str]) -> Iterator[tuple[dict[str, Any], bool]]:
-    """Feed a session file to a session; yield each state, and whether it equals the recorded one."""
-    session = Session()
-    for event in _events(lines):
         known = event.pop("mark", None)
         state = session.feed(event)
         yield state, known == mark(state)
@@ -67,16 +61,11 @@ class Recorder:
         start = _setup(session)
         self.write(start, session.feed(start))
 
-    @property
-    def full(self) -> bool:
-        """Whether nothing more is kept."""
-        return self._size >= self.MOST
-
     def write(self, event: Mapping[str, Any], state: Mapping[str, Any]) -> None:
         """Keep one event and the mark of the state after it."""
         text = json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n"
         if self._keep is not None:
             self._keep(text)
-        elif not self.full:
+        elif self._size < self.MOST:
             self.lines.append(text)
             self._size += len(text)

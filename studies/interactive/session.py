@@ -156,7 +156,7 @@ class Session:
         if far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN:
             self.wanted = pose
             self._hold()
-            self.hand.add(time, self.wanted)
+            self.hand.poses.append((time, self.wanted))
         else:
             self._warn("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
 
@@ -205,7 +205,7 @@ class Session:
             return
         if not self.mechanics.catch():
             return self._warn("no-catch")
-        self.hand.forget()
+        self.hand = Hand()  # whose next pose is no jump
         turn = float(self.mechanics.snapshot.pose[2])
         self._hand_is_here(turn)
         self.wanted[2] = turn + math.remainder(self.wanted[2] - turn, math.tau)
@@ -240,7 +240,7 @@ class Session:
         self.mechanics.reset()
         self.wanted, self.paused = np.zeros(3), False
         self.clock.begin(None)
-        self.hand.forget()
+        self.hand = Hand()
         self._settle()
 
     def _parameter(self, event: dict[str, Any]) -> None:

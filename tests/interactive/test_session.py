@@ -93,7 +93,7 @@ def swung(solver, load, degrees=90, frames=25, finer=1):
     made.feed({"do": "release", "t": 1.0})
     for k in range(frames * finer):
         state = made.feed({"do": "tick", "t": 1.0 + (k + 1) * FRAME})
-    return {name: value / state["energy"]["start"] for name, value in state["energy"].items()}
+    return {name: value / made.mechanics.begun for name, value in state["energy"].items()}
 
 
 @pytest.mark.parametrize("load", [0.0, 0.1])

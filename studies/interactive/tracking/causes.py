@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from studies.interactive.design import turn
 from studies.interactive.tracking.edges import INSET
-from studies.interactive.tracking.planar import CORNERS, SPREAD, Camera, Fit, turn
+from studies.interactive.tracking.planar import CORNERS, SPREAD, Camera, Fit, normals
 from studies.kinds import Array
 
 #: Parameters of the causes and their expected sizes, at which their patterns are computed: k1 of the lens;
@@ -73,12 +74,7 @@ def view(fit: Fit, size: tuple[int, ...], velocity: Array, camera: Camera | None
     sizes = np.vstack((np.zeros(len(EXPECTED)), np.diag(EXPECTED)))
     seen = _seen(fit, size, velocity, camera, sizes).reshape(len(sizes), 2, 4, 3, 2)
     moved = (seen[1:] - seen[0]) / EXPECTED[:, None, None, None, None]
-    ends = seen[0][:, :, [0, 2]]
-    along = ends[:, :, 1] - ends[:, :, 0]
-    normal = np.stack((along[..., 1], -along[..., 0]), axis=-1) / np.linalg.norm(
-        along, axis=-1, keepdims=True
-    )
-    across = np.einsum("ksepi,sei->sepk", moved, normal)
+    across = np.einsum("ksepi,sei->sepk", moved, normals(seen[0][:, :, 0], seen[0][:, :, 2]))
     tables = np.stack((_WEIGHTS, _WEIGHTS * _NODES / SPREAD))
     pattern = (fit.trust @ np.einsum("sepk,tp->setk", across, tables).reshape(8, 2, -1)).reshape(16, -1)
     taken = np.linalg.lstsq(fit.jacobian, pattern)[0]

@@ -104,10 +104,8 @@ def _by_step(share: Array, good: Mask, half: Array, near: Array, gamma: float) -
     those of lines, near (E, S), infinite where a profile has none."""
     r = half[:, None] * np.linspace(-1.0, 1.0, share.shape[-1])
     spacing = r[:, 1] - r[:, 0]
-    slope, at = (
-        np.maximum(np.diff(np.sum(share * good[..., None], axis=1)), 0.0),
-        r[:, :-1] + spacing[:, None] / 2,
-    )
+    slope, at = np.diff(np.sum(share * good[..., None], axis=1)), r[:, :-1] + spacing[:, None] / 2
+    slope = np.maximum(slope, 0.0)
     total = slope.sum(axis=1) + 1e-9
     mean = np.sum(slope * at, axis=1) / total
     blur = np.sqrt(np.maximum(np.sum(slope * at**2, axis=1) / total - mean**2, LEAST_BLUR**2))

@@ -12,11 +12,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from studies.errors import BadInput
-from studies.interactive.design import SIDE
+from studies.interactive.design import SIDE, turn
 from studies.interactive.mechanics import Mechanics
 from studies.interactive.presets import PRESETS
 from studies.interactive.tracking.edges import Picture
-from studies.interactive.tracking.planar import BITS, cells, turn
+from studies.interactive.tracking.planar import BITS, cells
 from studies.interactive.tracking.squares import GAMMA
 from studies.kinds import Array
 
@@ -33,12 +33,6 @@ WIDTH, HEIGHT, FOCAL, DISTANCE, TILT, ROLL, FINE = 640, 480, 600.0, 0.48, math.r
 #: Texels of a bit of a marker: about one for a fine pixel, so that edges between them have no steps.
 TEXELS = 16
 TABLE, BLACK, WHITE = 0.31, 0.006, 0.76
-
-
-def _decoded(data: bytes) -> Picture:
-    """Return the grey picture of a JPEG."""
-    picture = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
-    return np.asarray(picture, dtype=np.uint8)
 
 
 def encoded(picture: Picture, quality: int = 90) -> bytes:
@@ -75,7 +69,8 @@ class Film:
         for k in cycle(range(self.frames)):
             if k not in self._kept:
                 self._kept[k] = encoded(self.picture(k))
-            yield _decoded(self._kept[k]), self._kept[k]
+            kept = np.frombuffer(self._kept[k], dtype=np.uint8)
+            yield np.asarray(cv2.imdecode(kept, cv2.IMREAD_GRAYSCALE), dtype=np.uint8), self._kept[k]
 
 
 def demo_film() -> Film:

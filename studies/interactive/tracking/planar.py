@@ -87,13 +87,15 @@ class Fit:
 
     Attributes:
         known (K,): the unknowns, those of the pose last.
-        plane: homography (3, 3) from the first square's frame, in sides, to pixels.
+        plane: homography (3, 3) from the first square's frame, in sides, to pixels; corners (2, 4, 2): where
+            it has those of both squares [px], without the lens.
         gap (16,): residuals of the edges' offsets and turns [px], by their trust; jacobian (16, K): by the
             unknowns; trust (8, 2, 2): in an edge's offset and turn, see `trusted`.
     """
 
     known: Array
     plane: Array
+    corners: Array
     gap: Array
     jacobian: Array
     trust: Array
@@ -107,12 +109,6 @@ class Fit:
     def rms(self) -> float:
         """Of the corners' residuals [px]."""
         return rms(self.gap)
-
-    @property
-    def corners(self) -> Array:
-        """Where the plane has the corners of both squares (2, 4, 2) [px], without the lens."""
-        places = np.stack((CORNERS, CORNERS @ turn(self.pose[2]).T + self.pose[:2]))
-        return project(self.plane, places)
 
     @property
     def spare(self) -> int:
@@ -134,10 +130,17 @@ def cells(number: int) -> NDArray[np.bool_]:
 
 
 def project(plane: Array, points: Array) -> Array:
-    """Return the pictures (..., 2) [px] of points (..., 2) [m] of the plane by the homography `plane` (3,
-    3)."""
-    image = points @ plane[:, :2].T + plane[:, 2]
+    """Return the pictures (..., N, 2) [px] of points (..., N, 2) [m] of the plane by the homographies `plane`
+    (..., 3, 3)."""
+    image = points @ plane[..., :2].swapaxes(-1, -2) + plane[..., None, :, 2]
     return np.asarray(image[..., :2] / image[..., 2:])
+
+
+def normals(p: Array, q: Array) -> Array:
+    """Return the unit normals (..., 2) of the lines from p to q (..., 2) of a picture, whose y is down: to
+    the left of the way, out of a square that is seen from the front."""
+    along = (q - p) / np.sqrt(np.sum((q - p) ** 2, axis=-1, keepdims=True))
+    return np.stack((along[..., 1], -along[..., 0]), axis=-1)
 
 
 def homography(picture: Array) -> Array:
@@ -185,8 +188,8 @@ def fit(
     known, _ = leastsq(gap, known, Dfun=slope)
     if start is not None and rms(gap(known)) > 1.0:
         return fit(corners, camera, trust=trust)
-    plane = _plane(known[:-3], camera)
-    return Fit(known=known, plane=plane, gap=gap(known), jacobian=slope(known), trust=trust)
+    seen = {"plane": _plane(known[:-3], camera), "corners": _drawn(known, camera)}
+    return Fit(known=known, **seen, gap=gap(known), jacobian=slope(known), trust=trust)
 
 
 def rms(gap: Array) -> float:
@@ -226,14 +229,7 @@ def _drawn(known: Array, camera: Camera | None) -> Array:
     cos, sin, (right, up) = np.cos(angle), np.sin(angle), CORNERS.T
     moving = np.stack((x + cos * right - sin * up, y + sin * right + cos * up), axis=-1)
     places = np.stack((np.broadcast_to(CORNERS, moving.shape), moving), axis=-3)
-    image = places @ plane[..., None, :, :2].swapaxes(-1, -2) + plane[..., None, None, :, 2]
-    return np.asarray(image[..., :2] / image[..., 2:])
-
-
-def turn(angle: float) -> Array:
-    """Return the matrix (2, 2) that turns by an angle [rad]."""
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]])
+    return project(plane[..., None, :, :], places)
 
 
 def _independent(corners: Array) -> Array:
@@ -243,8 +239,7 @@ def _independent(corners: Array) -> Array:
     A line through stations spread evenly over an edge has a mean offset and a slope with errors of their
     own, so that those of its ends, and with them of neighbouring corners, are not.
     """
-    along = (np.roll(corners, -1, axis=1) - corners).reshape(8, 2)
-    normal = along @ [[0.0, -1.0], [1.0, 0.0]] / np.linalg.norm(along, axis=1, keepdims=True)
+    normal = normals(corners, np.roll(corners, -1, axis=1)).reshape(8, 2)
     matrix, edge = np.zeros((8, 2, 8, 2)), np.arange(8)
     after = np.roll(edge.reshape(2, 4), -1, axis=1).ravel()
     matrix[edge, 0, edge] = matrix[edge, 0, after] = normal / 2.0

@@ -54,7 +54,13 @@ def page() -> Figure:
     _marker(axes, 0, ground, "GROUND (marker 0): glue to what stands still", -1)
     _marker(axes, 1, moving, "MOVING (marker 1): glue to the body that turns", 1)
     _ruler(axes, 30.0, 24.0)
-    _words(axes)
+    lines = (
+        "Markers of the interactive pivot",
+        f"Print at 100 %. If the ruler measures L mm, the side is {1e3 * SIDE:.0f} L / 100 mm: type it in.",
+        "Glue both flat, upright and in one plane, so far apart as they stand here; dashed: the strips.",
+    )
+    for k, line in enumerate(lines):
+        axes.text(20, PAGE[1] - 12 - 5.5 * k, line, fontsize=11 if k == 0 else 8)
     return figure
 
 
@@ -69,10 +75,9 @@ def _marker(axes: Axes, number: int, centre: np.ndarray, words: str, side: int) 
     half = size / 2 + MARGIN * bit
     corners = centre + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
     axes.plot(*corners.T, color="#888888", linewidth=0.6, linestyle=(0, (2, 2)))
-    axes.text(centre[0] + half + 4, centre[1], words, rotation=90, ha="center", va="center", fontsize=8)
-    axes.vlines(
-        centre[0], centre[1] + side * (half - 3), centre[1] + side * half, color="black", linewidth=0.8
-    )
+    x, y = centre
+    axes.text(x + half + 4, y, words, rotation=90, ha="center", va="center", fontsize=8)
+    axes.vlines(x, y + side * (half - 3), y + side * half, color="black", linewidth=0.8)
 
 
 def _ruler(axes: Axes, x: float, y: float) -> None:
@@ -84,16 +89,6 @@ def _ruler(axes: Axes, x: float, y: float) -> None:
     for k in marks[::10]:
         axes.text(x + k, y + 6, f"{k:.0f}", ha="center", fontsize=7)
     axes.text(x + RULER + 3, y, "mm", fontsize=8)
-
-
-def _words(axes: Axes) -> None:
-    lines = (
-        "Markers of the interactive pivot",
-        f"Print at 100 %. If the ruler measures L mm, the side is {1e3 * SIDE:.0f} L / 100 mm: type it in.",
-        "Glue both flat, upright and in one plane, so far apart as they stand here; dashed: the strips.",
-    )
-    for k, line in enumerate(lines):
-        axes.text(20, PAGE[1] - 12 - 5.5 * k, line, fontsize=11 if k == 0 else 8)
 
 
 def views(pictures: Iterable[Picture], count: int) -> Iterator[tuple[Array, tuple[int, int]]]:

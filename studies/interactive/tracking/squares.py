@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 
 from studies.interactive.tracking.edges import Picture, edges
-from studies.interactive.tracking.planar import BITS, cells, homography, project
+from studies.interactive.tracking.planar import BITS, cells, homography, normals, project
 from studies.kinds import Array
 
 #: Half length of the profiles in successive passes [px], and the share of the side that keeps them inside the
@@ -55,47 +55,33 @@ def refine(picture: Picture, quads: Array, gamma: float = GAMMA) -> tuple[Array,
     Args:
         gamma: power of the picture's values that light is.
     """
-    corners = np.array(quads, dtype=float)
-    good, last = np.zeros((*corners.shape[:2], 3)), len(REACHES) - 1
+    corners, last = np.array(quads, dtype=float), len(REACHES) - 1
     for k, reach in enumerate(REACHES):
-        corners, good = _pass(picture, corners, reach, k == 0, k == last, gamma)
+        end = corners[:, AFTER]
+        side = np.sqrt(np.sum((end - corners) ** 2, axis=-1))
+        half = np.minimum(reach, np.maximum(LEAST_REACH, SHARE * side.min(axis=1))).repeat(4)
+        normal = normals(corners, end)
+        lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
+        found = edges(picture, lines, half, gamma, first=k == 0, last=k == last).reshape(-1, 4, 5)
+        for _ in range(2):
+            crossing = _meeting(corners, found[..., :1], found[..., 1:2])
+            gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
+            lost = ~(gap <= 2.0 * reach)
+            # of two edges that meet far away, the one with less good stations is something else's: it stays
+            weaker = found[..., 2] <= found[:, BEFORE, 2]
+            found[(lost & weaker) | (lost & ~weaker)[:, AFTER]] = 0.0
+        good = np.where((lost | lost[:, AFTER])[..., None], 0.0, found[..., 2:])
+        corners = np.where(lost[..., None], corners, crossing)
     return corners, good
 
 
-def _pass(
-    picture: Picture, corners: Array, reach: float, first: bool, last: bool, gamma: float
-) -> tuple[Array, Array]:
-    """One pass over the edges of squares (Q, 4, 2)."""
-    end = corners[:, AFTER]
-    side = np.sqrt(np.sum((end - corners) ** 2, axis=-1))
-    half = np.minimum(reach, np.maximum(LEAST_REACH, SHARE * side.min(axis=1)))
-    normal = -_normal(corners, end, corners.mean(axis=1, keepdims=True))
-    lines = np.stack((corners, end, normal)).reshape(3, -1, 2)
-    found = edges(picture, lines, half.repeat(4), gamma, first=first, last=last).reshape(-1, 4, 5)
-    for _ in range(2):
-        p, q = corners + found[..., :1] * normal, end + found[..., 1:2] * normal
-        crossing = _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
-        gap = np.sqrt(np.sum((crossing - corners) ** 2, axis=-1))
-        lost = ~(gap <= 2.0 * reach)
-        # of two edges that meet far away, the one with less good stations is something else's: it stays
-        weaker = found[..., 2] <= found[:, BEFORE, 2]
-        found[(lost & weaker) | (lost & ~weaker)[:, AFTER]] = 0.0
-    good = np.where((lost | lost[:, AFTER])[..., None], 0.0, found[..., 2:])
-    return np.where(lost[..., None], corners, crossing), good
-
-
-def _normal(p: Array, q: Array, place: Array) -> Array:
-    """Unit normals (..., 2) of the lines from p to q that point to where `place` is."""
-    along = (q - p) / np.sqrt(np.sum((q - p) ** 2, axis=-1, keepdims=True))
-    normal = np.stack((along[..., 1], -along[..., 0]), axis=-1)
-    return np.asarray(normal * np.sign(np.sum(normal * (place - p), axis=-1, keepdims=True)))
-
-
-def _crossings(p: Array, q: Array, r: Array, s: Array) -> Array:
-    """Where the lines p q and r s meet, each (Q, 4, 2)."""
-    d, e = q - p, s - r
+def _meeting(corners: Array, begin: Array | float, end: Array | float) -> Array:
+    """Where the edges of squares (Q, 4, 2) meet that are moved outwards at both ends, by (Q, 4, 1) [px]."""
+    normal = normals(corners, corners[:, AFTER])
+    r, s = corners + begin * normal, corners[:, AFTER] + end * normal
+    p, e = r[:, BEFORE], s - r
+    d, gap = e[:, BEFORE], r - p
     cross = d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0]
-    gap = r - p
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (gap[..., 0] * e[..., 1] - gap[..., 1] * e[..., 0]) / cross
         return np.asarray(p + t[..., None] * d)
@@ -133,19 +119,11 @@ class Shrinkage:
             self.offset = before + (now - before) / count
         if self.offset is None:
             return corners
-        moved = _grown(corners, self.offset)
+        moved = _meeting(corners, self.offset, self.offset)
         gamma = min(max(self.gamma + self.offset / BY_POWER, POWERS[0]), POWERS[1])
         if abs(self.offset) > OTHER and gamma != self.gamma:
             self.offset, self.gamma, self._pictures = None, gamma, 0
         return moved
-
-
-def _grown(corners: Array, offset: float) -> Array:
-    """Return squares (Q, 4, 2) whose edges lie further out by `offset` [px]."""
-    end = corners[:, AFTER]
-    moved = -offset * _normal(corners, end, corners.mean(axis=1, keepdims=True))
-    p, q = corners + moved, end + moved
-    return _crossings(p[:, BEFORE], q[:, BEFORE], p, q)
 
 
 def _edges_of_cells(
@@ -157,9 +135,9 @@ def _edges_of_cells(
     for number in numbers:
         side = float(np.hypot(*(np.roll(corners[number], -1, axis=0) - corners[number]).T).min())
         across, places = _cell_edges(number)
-        p, q, lit = project(homography(corners[number]), places)
+        p, q = project(homography(corners[number]), places)
         slopes.append(2.0 * across - 1.0)
-        lines.append(np.stack((p, q, _normal(p, q, lit))))
+        lines.append(np.stack((p, q, normals(p, q))))
         half.append(np.full(len(p), min(REACHES[-1], REACH * side / BITS)))
     every, reach = np.concatenate(lines, axis=1), np.concatenate(half)
     found = edges(picture, every, reach, gamma, stations=FEW)
@@ -169,8 +147,8 @@ def _edges_of_cells(
 
 @cache
 def _cell_edges(number: int) -> tuple[Array, Array]:
-    """Return u (E,) towards the light of the edges between the cells of a marker, and both their ends and a
-    place in the light (3, E, 2), in sides."""
+    """Return u (E,) towards the light of the edges between the cells of a marker, and both their ends (2, E,
+    2), in sides: as they are seen, the light is to the left of the way from the first to the second."""
     grid, across, places = cells(number).astype(int), list[float](), list[Array]()
     for turned in (False, True):  # lines along y, then along x
         for j, kinds in enumerate(np.diff(grid.T if turned else grid, axis=1).T, start=1):
@@ -178,7 +156,7 @@ def _cell_edges(number: int) -> tuple[Array, Array]:
             for i, stop in zip(starts, np.append(starts[1:], BITS), strict=True):
                 if kinds[i]:
                     y, low = 0.5 - (i + END) / BITS, 0.5 - (stop - END) / BITS
-                    place = np.array([(at, y), (at, low), (at + 0.1 * kinds[i], 0.5 * (y + low))])
+                    ends = np.array([(at, y), (at, low)])[:: kinds[i]]
                     across.append(at * kinds[i])
-                    places.append(-place[:, ::-1] if turned else place)
+                    places.append(-ends[::-1, ::-1] if turned else ends)
     return np.array(across), np.stack(places, axis=1)

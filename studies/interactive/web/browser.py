@@ -57,7 +57,8 @@ class Browser:
                 words.append("--no-sandbox")  # its sandbox refuses to run for root
             silent = subprocess.DEVNULL
             self._process = subprocess.Popen([*words, "about:blank"], stdout=silent, stderr=silent)
-            stack.callback(self._end)
+            stack.callback(self._process.wait)
+            stack.callback(self._process.kill)
             socket = connect(self._page_address(), max_size=None, compression=None)
             self._socket = stack.enter_context(socket)
             for name in ("Page", "Runtime", "Log"):
@@ -135,8 +136,3 @@ class Browser:
 
     def __exit__(self, *raised: object) -> None:
         self._stack.close()
-
-    def _end(self) -> None:
-        """End the process."""
-        self._process.kill()
-        self._process.wait()

@@ -54,14 +54,13 @@ class Connection:
         self._offset: float | None = None
         self._curved: Mechanics | None = None
         self._weighed: Mechanics | None = None
-        self._costs, self._send_ms = deque[float](maxlen=3), 0.0
+        self._costs = deque[float](maxlen=3)
 
     async def serve(self) -> None:
         """Answer until the socket closes; raises BadInput for a message that is none."""
         await self._say(
             {
                 "kind": "welcome",
-                "version": protocol.VERSION,
                 "camera": self._settings.camera,
                 "shared": self._settings.share is not None,
                 "drives": list(DRIVES),
@@ -128,27 +127,21 @@ class Connection:
         elif name == "size":
             side = checked(event, protocol.PAGE_EVENTS["size"])["side_mm"] / 1e3
             self._tracker = Tracker(side=side, camera=self._settings.calibration)
-        elif name == "hello":
-            raise BadInput("do: got a second hello, expected one")
         else:
             await self._feed(event, seq)
             await self._show_curve()
 
     async def _say(self, content: dict[str, Any]) -> None:
-        begin = time.perf_counter()
         await self._socket.send_text(protocol.text(content))
-        self._send_ms = 1e3 * (time.perf_counter() - begin)
 
     async def _open(self, text: str) -> None:
         """Open the text of a case file as a design."""
         try:
             document = tomllib.loads(text)
-            piece = await asyncio.to_thread(presets.opened, presets.OWN, document, {})
-        except (tomllib.TOMLDecodeError, BadInput) as error:
-            said = str(error).removeprefix("design.toml: ")
-            await self._say({"kind": "error", "text": f"design.toml: {said}"})
+        except tomllib.TOMLDecodeError as error:
+            await self._say({"kind": "error", "text": f"design.toml: {error}"})
         else:
-            await self._text({"do": "preset", "name": piece.name, "case": document, "values": piece.values})
+            await self._text({"do": "preset", "name": presets.OWN, "case": document})
 
     async def _show_curve(self) -> None:
         """Send what a moment alone does to a design that is another one than the last."""
@@ -178,8 +171,8 @@ class Connection:
             await self._say({"kind": "recording", "on": False, "lines": ended.lines})
 
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
-        """Give one event to the session and send its state, with how long sending the one before took."""
-        await self._say({**await self._state_after(event), **more, "seq": seq, "send_ms": self._send_ms})
+        """Give one event to the session and send its state."""
+        await self._say({**await self._state_after(event), **more, "seq": seq})
 
     async def _state_after(self, event: dict[str, Any]) -> dict[str, Any]:
         async with self._lock:

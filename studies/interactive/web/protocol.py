@@ -76,16 +76,13 @@ def sent_picture(data: bytes) -> tuple[int, float, NDArray[np.uint8]]:
     if not HEADER.size < len(data) <= LARGEST_PICTURE:
         raise BadInput(f"picture: got {len(data)} bytes, expected {HEADER.size} to {LARGEST_PICTURE}")
     kind, version, seq, width, height, time = HEADER.unpack_from(data)
-    size, sent = f"{width} x {height}", len(data) - HEADER.size
-    fits = LEAST_SIDE <= width <= MOST_WIDTH and LEAST_SIDE <= height <= MOST_HEIGHT
-    for good, got, expected in (
-        ((kind, version) == (PICTURE, VERSION), f"kind {kind}, version {version}", f"{PICTURE}, {VERSION}"),
-        (fits, size, f"at most {MOST_WIDTH} x {MOST_HEIGHT}"),
-        (sent == width * height, f"{sent} grey levels", size),
-        (0.0 <= time < 1e15, f"time {time}", "milliseconds"),
-    ):
-        if not good:
-            raise BadInput(f"picture: got {got}, expected {expected}")
+    if (kind, version) != (PICTURE, VERSION) or not 0.0 <= time < 1e15:
+        got = f"kind {kind}, version {version}, time {time}"
+        raise BadInput(f"picture: got {got}, expected {PICTURE}, {VERSION}, milliseconds")
+    sent, fits = len(data) - HEADER.size, LEAST_SIDE <= width <= MOST_WIDTH
+    if sent != width * height or not fits or not LEAST_SIDE <= height <= MOST_HEIGHT:
+        got = f"{sent} grey levels for {width} x {height}"
+        raise BadInput(f"picture: got {got}, expected one for each, at most {MOST_WIDTH} x {MOST_HEIGHT}")
     levels = np.frombuffer(data, dtype=np.uint8, offset=HEADER.size)
     return seq, time / 1e3, levels.reshape(height, width)
 

@@ -41,7 +41,6 @@ mimetypes.add_type("text/javascript", ".js")
 PAGE = Path(__file__).parent / "page"
 #: Closing codes: bad message, no right, too many.
 BAD, FORBIDDEN, FULL = 4400, 4403, 4429
-LAST_PORT = 65535
 #: Bytes of the token behind the # of the address; sockets at a time, one of them of this machine; its names.
 TOKEN_BYTES, MOST_SOCKETS, HOSTS = 24, 4, ("127.0.0.1", "localhost")
 #: How long a socket may take to say hello [s].
@@ -60,7 +59,7 @@ class Server:
         self._uvicorn: uvicorn.Server | None = None
         self._app = Starlette(
             routes=[
-                Route("/", self._index),
+                Route("/", lambda _: FileResponse(PAGE / "index.html")),
                 Mount("/page", StaticFiles(directory=PAGE)),
                 Route("/markers.pdf", self._sheet),
                 WebSocketRoute("/ws", self._socket),
@@ -98,8 +97,6 @@ class Server:
 
     def bind(self) -> None:
         """Take the port, on the loopback and the address that is shared; BadInput if it is taken."""
-        if not 0 <= self.settings.port <= LAST_PORT:
-            raise BadInput(f"--port: got {self.settings.port}, expected 0 (any) to {LAST_PORT}")
         refusal = f"--share: got {self.settings.share}, expected this machine's address in its own network"
         if (share := self.settings.share) is not None and not _is_private(share):
             raise BadInput(refusal)
@@ -115,10 +112,10 @@ class Server:
         try:
             listener.bind((name, self.port))
             listener.listen(16)
-        except OSError as error:
+        except (OSError, OverflowError) as error:  # the latter of a port beyond 65535
             for each in (listener, *self._listeners):
                 each.close()
-            raise BadInput(f"{refusal} ({error.strerror})") from None
+            raise BadInput(f"{refusal} ({error})") from None
         self._listeners.append(listener)
         self.port = listener.getsockname()[1]
 
@@ -150,9 +147,6 @@ class Server:
         if self._uvicorn is not None:
             self._uvicorn.should_exit = True
         self._thread.join(10.0)
-
-    async def _index(self, request: Request) -> Response:
-        return FileResponse(PAGE / "index.html")
 
     async def _sheet(self, request: Request) -> Response:
         from studies.interactive.tracking.sheet import sheet  # matplotlib, for who asks for it
@@ -221,7 +215,6 @@ def _enter_kernels() -> None:
         events = (
             {"do": "solver", "name": name},
             {"do": "pose", "pose": [0.0, -0.002, 0.1]},
-            {"do": "pause"},
             {"do": "release"},
             {"do": "step"},
             {"do": "reset"},
