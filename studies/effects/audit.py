@@ -1,21 +1,31 @@
-"""Audit of a design: what each effect is worth, in its scene or beyond it, and which are sufficient."""
+"""Audit of a design: what each effect is worth, in its scene or beyond it, and the cheapest scene."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from operator import attrgetter
+from itertools import combinations, compress
 from typing import Any, TypeVar
 
 import numpy as np
 
+from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import OF_SIDES
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.effects.scenes import Answer, Outcome, Run, Variant, strayed, tried
+from studies.effects.scenes import SIZES, Answer, Outcome, Run, Variant, strayed, tried
 from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
+
+#: Timed rounds of all scenes, one after the other; and of the cheapest against the full one.
+ROUNDS, DUELS = 3, 5
+#: A scene that took so many times as long as the full one is not timed again.
+SLOW = 3.0
+#: Times closer than this are not told apart: fewer effects and degrees of freedom are then the cheaper.
+SAME_TIME = 0.1
+#: Effects that are tried in all combinations; of more the least important go in every one of them.
+MOST_COMBINED = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,21 +35,45 @@ class Audit:
     Attributes:
         tolerance: allowed change [1]. run: what every scene was asked.
         full: the full scene, with no change. rows: one effect removed or simplified each.
+        tried: scenes without several effects, for the cheapest.
         beyond: effects that planar beams neglect, and the scene too, with their cost.
-        sufficient: the scene without all that can go together within the tolerance; the full one if nothing
-            can.
+        cheapest: the cheapest scene within the tolerance, answered once more; the full one if there is none.
+        seconds: median times of the full and of the cheapest scene, in turn in one run [s].
     """
 
     tolerance: float
     run: Run
     full: Outcome
     rows: tuple[Outcome, ...]
+    tried: tuple[Outcome, ...]
     beyond: list[dict[str, Any]]
-    sufficient: Outcome
+    cheapest: Outcome
+    seconds: tuple[float, float]
+
+    @property
+    def ratio(self) -> float:
+        """Time of the full over that of the cheapest scene [1]."""
+        return self.seconds[0] / self.seconds[1]
+
+    def row(self, of: Outcome) -> dict[str, Any]:
+        """Return a scene as columns of a table: what it is, how it ended, changes and the largest of them,
+        time, time_ratio (of the full scene over its own: above 1 it is faster) and size; NaN for none."""
+        return {
+            "scene": of.variant.label,
+            "dropped": of.variant.dropped,
+            "effects": of.variant.effects.names,
+            "status": of.status,
+            "reason": of.reason,
+            **of.changes,
+            "largest": of.largest if np.isfinite(of.largest) else np.nan,
+            "time_ratio": self.full.wall_s / of.wall_s,
+            "wall_s": of.wall_s,
+            **(of.size or dict.fromkeys(SIZES, np.nan)),
+        }
 
 
 def audit(design: Design, settings: SplineSettings, tolerance: float, progress: Progress = silent) -> Audit:
-    """Return the answers of the full scene and of scenes that neglect effects, and the least sufficient
+    """Return the answers of the full scene and of scenes that neglect effects, and the cheapest sufficient
     scene.
 
     The full scene is that of the design, with weight and rotary inertia of the sections. If one of these two
@@ -56,27 +90,27 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])
     run = Run.of(scene.of(design), settings)
     base = run.answer(run.design)
+    full = run.outcome(scene, base)
     names = scene.effects.names
     rows = []
     for done, name in enumerate(names):
-        progress(done, len(names) + 1)
+        progress(done, len(names) + 2)
         rows.append(run.outcome(scene.without([name]), base))
-    progress(len(names), len(names) + 1)
-    full = sufficient = run.outcome(scene, base)
-    spare = sorted((row for row in rows if row.largest <= tolerance), key=attrgetter("largest"))
-    while spare:
-        found = run.outcome(scene.without(row.variant.dropped[0] for row in spare), base)
-        if found.largest <= tolerance:
-            sufficient = found
-            break
-        spare.pop()
+    tried = [run.outcome(scene.without(those), base) for those in _combined(rows, tolerance)]
+    progress(len(names), len(names) + 2)
+    full, *others = _timed([full, *rows, *tried], run)
+    progress(len(names) + 1, len(names) + 2)
+    cheapest = _cheapest([full, *others], tolerance)
+    one, other = _in_turn((full, cheapest), run, DUELS)
     return Audit(
         tolerance=tolerance,
         run=run,
         full=full,
-        rows=(*rows, *upset),
+        rows=(*others[: len(rows)], *upset),
+        tried=tuple(others[len(rows) :]),
         beyond=prices(run.design),
-        sufficient=sufficient,
+        cheapest=replace(run.outcome(cheapest.variant, base), wall_s=other),
+        seconds=(one, other),
     )
 
 
@@ -90,6 +124,53 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
             Run.of(design, settings)  # refused for its own sake, if it is
             rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
     return rows
+
+
+def _combined(rows: Sequence[Outcome], tolerance: float) -> Iterator[list[str]]:
+    """Yield two and more of the effects that can each be removed."""
+    within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
+    names = [row.variant.dropped[0] for row in within]
+    always, free = names[:-MOST_COMBINED], names[-MOST_COMBINED:]
+    for count in range(len(free) + 1):
+        if len(always) + count >= 2:
+            yield from ([*always, *chosen] for chosen in combinations(free, count))
+
+
+def _in_turn(outcomes: Sequence[Outcome], run: Run, rounds: int) -> list[float]:
+    """Return the median times of static path and motion of scenes, taken round by round [s]."""
+    scenes = [each.variant.of(run.design) for each in outcomes]
+
+    def wall_s(scene: Design) -> float:
+        motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
+        return answer_static(scene, run.settings).wall_s + motion.wall_s
+
+    walls = [[wall_s(scene) for scene in scenes] for _ in range(rounds)]
+    return [float(each) for each in np.median(walls, axis=0)]
+
+
+def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
+    """Return the scenes with their median times, taken round by round in turn, but for slow ones."""
+    again = [each.wall_s <= SLOW * outcomes[0].wall_s for each in outcomes]
+    walls = iter(_in_turn([*compress(outcomes, again)], run, ROUNDS))
+    return [
+        replace(each, wall_s=next(walls)) if timed else each
+        for each, timed in zip(outcomes, again, strict=True)
+    ]
+
+
+def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
+    """Return the fastest scene within the tolerance, of those not told apart the one with least in it.
+
+    The full scene, which is the first, is one of them even where its motion has nothing to compare.
+    """
+    within = [outcomes[0], *(each for each in outcomes[1:] if each.largest <= tolerance)]
+    fastest = min(each.wall_s for each in within)
+    near = [each for each in within if each.wall_s <= (1.0 + SAME_TIME) * fastest]
+
+    def extent(each: Outcome) -> tuple[int, float, float]:
+        return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
+
+    return min(near, key=extent)
 
 
 Either = TypeVar("Either", bound=Problem | Mechanism)

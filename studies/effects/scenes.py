@@ -1,16 +1,24 @@
-"""The scenes that an audit compares: effects, answers, and how far these are from the full one's."""
+"""The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Self, TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
+from spline_model.compile import compile_scene
+from spline_model.mechanism import Mechanism
+from spline_model.modes import linear_modes
+from spline_model.motion.leapfrog import highest_frequency, stability_limit
+from spline_model.motion.start import set_in_motion
+from spline_model.statics import static_state
 from studies.answers.adapters import answer_modes, answer_release, answer_static
+from studies.answers.models import put
 from studies.answers.settings import Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import Effects
+from studies.cases.mechanism import Mechanism as MechanismData
 from studies.cases.problem import Problem
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
@@ -70,8 +78,34 @@ class Variant:
         return replace(self, dropped=chosen, effects=self.effects.renamed([name for name in names if name]))
 
 
-#: What the change of a scene against the full one is told by.
+#: What says how large a scene is, and what its change against the full one is told by.
+SIZES = ("unknowns", "degrees_of_freedom", "highest_frequency_Hz", "explicit_step_s")
 CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
+
+
+def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
+    """Return the size of the design's scene in motion, released from the end of its path, by name.
+
+    Unknowns [1] are coordinates, axial forces and multipliers of a step's equations; degrees of freedom [1]
+    are independent coordinates with inertia. The highest frequency [rad/s] is the larger one of the scene at
+    rest and at the start; it gives the largest stable step [s] of the leapfrog.
+
+    Raises:
+        BadInput: a setting that the model rejects. spline_model.errors.ConvergenceError: no start is reached.
+    """
+    asked = put(design, settings, moving=True)
+    mechanism: Mechanism = asked.modelled
+    body = design.body if isinstance(design, MechanismData) else None
+    with asked.refusals():
+        system = compile_scene(mechanism.released())
+        motion = set_in_motion(system)
+        start = static_state(mechanism.at_start(), design.rotation, body=body)[: system.layout.size]
+        highest = highest_frequency(motion, start)
+        modes = linear_modes(system, system.rest, motion.mass)[0]
+    step = stability_limit(motion) / highest
+    return dict(zip(SIZES, (system.layout.size, len(modes), highest / (2.0 * math.pi), step), strict=True))
+
+
 #: Duration of the motion and its steps, in swings of the first mode: within 1e-4 of that of Table 1.
 SWINGS, STEPS_A_SWING = 3.0, 240
 #: A scene whose first mode is off by more than this is not followed in motion: it is another machine.
@@ -91,6 +125,7 @@ class Answer:
         mode: first natural frequency at rest [Hz], NaN without one.
         swing: frequency of the swing after the release [Hz], NaN where none is driven or none is whole.
         loss: energy dissipated in the motion over the largest kinetic and strain energy [1].
+        static_s: of the static path, wall_s: of it and the motion [s]; NaN without a whole motion.
         stopped: whether the motion stopped early; note: why there is no whole motion.
     """
 
@@ -99,8 +134,10 @@ class Answer:
     stiffness: Array
     stress: Array
     mode: float
+    static_s: float
     swing: float = math.nan
     loss: float = math.nan
+    wall_s: float = math.nan
     stopped: bool = False
     note: str = ""
 
@@ -119,6 +156,7 @@ class Answer:
             stiffness=static.stiffness[turned],
             stress=static.max_stress[turned],
             mode=float(modes[0]) if len(modes) else math.nan,
+            static_s=static.wall_s,
         )
 
 
@@ -141,12 +179,15 @@ class Outcome:
             also why there was no motion.
         changes: each of `CHANGES` [1], NaN where there is none; trajectory and torque are the largest along
             the path, over the largest travel and torque.
+        size: of `size_of`; empty where the scene has no answer. wall_s: the median of its times [s].
     """
 
     variant: Variant
     status: str = "converged"
     reason: str = ""
     changes: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CHANGES, math.nan))
+    size: Mapping[str, float] = field(default_factory=dict)
+    wall_s: float = math.nan
 
     @property
     def largest(self) -> float:
@@ -155,18 +196,6 @@ class Outcome:
             return math.inf
         known = (abs(each) for each in self.changes.values() if not math.isnan(each))
         return max(known, default=math.inf)
-
-    def row(self) -> dict[str, Any]:
-        """Return the scene as columns of a table: what it is, how it ended, and its changes; NaN for none."""
-        return {
-            "scene": self.variant.label,
-            "dropped": self.variant.dropped,
-            "effects": self.variant.effects.names,
-            "status": self.status,
-            "reason": self.reason,
-            **self.changes,
-            "largest": self.largest if math.isfinite(self.largest) else math.nan,
-        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -210,14 +239,16 @@ class Run:
             answer,
             swing=motion.frequency if design.rotation else math.nan,
             loss=float(motion.dissipated[-1]) / largest if largest > 0.0 else 0.0,
+            wall_s=answer.static_s + motion.wall_s,
         )
 
     def outcome(self, variant: Variant, full: Answer) -> Outcome:
         """Return how far a scene is from the full one's answer; one without keeps its reason."""
         scene = variant.of(self.design)
-        answer, status, reason = tried(lambda: self.answer(scene, full))
-        if answer is None:
+        found, status, reason = tried(lambda: (self.answer(scene, full), size_of(scene, self.settings)))
+        if found is None:
             return Outcome(variant=variant, status=status, reason=reason)
+        answer, size = found
         torque = float(np.abs(full.torque).max())
         change = float(np.abs(answer.torque - full.torque).max())
         changes = (
@@ -232,6 +263,8 @@ class Run:
             status="not_converged" if answer.stopped else status,
             reason=answer.note,
             changes=dict(zip(CHANGES, changes, strict=True)),
+            size=size,
+            wall_s=answer.wall_s,
         )
 
 

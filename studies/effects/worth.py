@@ -1,9 +1,11 @@
 """What each effect is worth for four designs."""
 
 import textwrap
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -11,16 +13,16 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
 from studies.effects.audit import audit
-from studies.effects.scenes import CHANGES
-from studies.engine import Answer, Claim, Part, Study, Tables
-from studies.record.marks import Level
+from studies.effects.scenes import CHANGES, SIZES
+from studies.engine import Answer, Claim, Part, Study, Tables, records
+from studies.record.marks import Level, Words
 from studies.record.panels import Axis, Curves, Mark, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREEN, ORANGE, RED, Look
 
 SETTINGS = SplineSettings(control_points=6)
 TOLERANCE = 1e-3
 
-WORTH = ("design", "scene", "dropped", "status", *CHANGES, "largest", "reason")
+WORTH = ("design", "scene", "dropped", "status", *CHANGES, "largest", *SIZES, "reason")
 #: Looks of the changes.
 SHOWN = {
     "trajectory": Look(label="path", colour=BLACK, line="", marker="o", hollow=True),
@@ -45,10 +47,18 @@ def _designs() -> dict[str, Problem]:
 
 
 def _audited(name: str) -> Answer:
-    """Return the worth of a design's effects: a row a scene, its changes, or why there is no answer."""
+    """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
+    times (of the full scene over the scene's) and the cheapest scene."""
     found = audit(_designs()[name], SETTINGS, TOLERANCE)
-    rows = [{"design": name, **each.row(), "dropped": each.variant.dropped[0]} for each in found.rows]
-    return {"worth": pd.DataFrame(rows)[list(WORTH)]}
+    full, *rows = ({"design": name, **found.row(each)} for each in (found.full, *found.rows))
+    best = found.row(found.cheapest) | {"design": name, "tolerance": found.tolerance}
+    timed = best | {"scene": "cheapest", "time_ratio": found.ratio, "wall_s": found.seconds[1]}
+    best["effects"] = " ".join(best["effects"])
+    return {
+        "worth": pd.DataFrame([row | {"dropped": row["dropped"][0]} for row in rows])[list(WORTH)],
+        "timings": pd.DataFrame([full, *rows, timed])[["design", "scene", "time_ratio", "wall_s"]],
+        "cheapest": pd.DataFrame([best])[["design", "tolerance", "scene", "effects", "largest"]],
+    }
 
 
 def _worth(tables: Tables) -> Figure:
@@ -56,20 +66,32 @@ def _worth(tables: Tables) -> Figure:
     rows = tables["worth"].query("status != 'refused'")
     largest = rows.set_index("scene")[list(SHOWN)].abs().groupby("scene").max().max(axis=1)
     order = list(largest.sort_values(ascending=False).index)
+    times = tables["timings"].set_index(["design", "scene"])["time_ratio"]
     panels = []
     for design in _designs():
         mine = rows[rows["design"] == design]
         changes = mine.melt(id_vars="scene", value_vars=list(SHOWN), var_name="what", value_name="change")
         curves = Curves(changes, SHOWN, by="what", more={"markersize": 5.5, "clip_on": False})
-        marks: list[Mark] = [curves, Level(TOLERANCE, colour=RED, upright=True)]
+        words = _times(mine, times[design], order)
+        marks: list[Mark] = [curves, Level(TOLERANCE, colour=RED, upright=True), *words]
         y = Axis("scene", "", names=order)
         panels.append(Panel(CHANGE, y, marks, title=textwrap.fill(design, 16)))
     title = f"Change by leaving out one effect of the full scene; line: {TOLERANCE:g}; left edge: no more"
     return sheet(9.5, 3.9, [panels], title=title, legend=len(SHOWN))
 
 
+def _times(rows: pd.DataFrame, ratios: pd.Series, order: Sequence[str]) -> Iterator[Words]:
+    """Yield how many times faster every scene is, or what there is of it without a motion."""
+    for row in records(rows):
+        ratio = float(ratios[row["scene"]])
+        alone = "motion stops" if row["status"] == "not_converged" else "no motion"
+        text = f"time x {1.0 / ratio:.2g}" if np.isfinite(ratio) else alone
+        place = (MOST, order.index(row["scene"]))
+        yield Words(text, place, by=(-2, 7), colour="#666666", side="right")
+
+
 STUDY = Study(
-    parts=(Part(at=_designs, ask=_audited),),
+    parts=(Part(at=_designs, ask=_audited, alone=True),),
     claims=(
         Claim(
             claim=f"The answer is within {TOLERANCE:g} without it",
@@ -80,5 +102,6 @@ STUDY = Study(
             most=TOLERANCE,
         ),
     ),
+    varying=("cheapest",),
     figures={"effects_worth": _worth},
 )

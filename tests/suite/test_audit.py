@@ -1,4 +1,7 @@
-"""`python -m studies audit`: what effects are worth, and which are sufficient."""
+"""`python -m studies audit`: what effects are worth, and a cheapest scene that is right and solves less.
+
+What a scene costs is counted here, not timed: an audit is told Newton iterations in place of seconds.
+"""
 
 import dataclasses
 import json
@@ -14,7 +17,7 @@ from studies.cases.problem import FOLDER
 from studies.effects import audit as module
 from studies.effects import scenes
 from studies.effects.audit import prices
-from studies.effects.scenes import CHANGES, Outcome, Variant
+from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
 
 TOLERANCE = 1e-3
 FINDS = Path(__file__).with_name("finds")
@@ -22,8 +25,10 @@ FINDS = Path(__file__).with_name("finds")
 
 @pytest.fixture
 def brief(monkeypatch):
-    """Audits of a part of a swing."""
+    """Audits of a part of a swing, timed once."""
     monkeypatch.setattr(scenes, "SWINGS", 0.2)
+    monkeypatch.setattr(module, "ROUNDS", 1)
+    monkeypatch.setattr(module, "DUELS", 1)
 
 
 @pytest.mark.slow
@@ -36,9 +41,9 @@ def test_audit_of_a_mechanism_without_a_drive(command):
     assert rows["applied_force"]["trajectory"] == pytest.approx(1.0, rel=0.05)
     assert rows["gravity"]["trajectory"] > 1e-2
     assert all(row["torque"] is None and row["swing_frequency"] is None for row in found["rows"])
-    assert "applied_force" in found["sufficient"]["effects"]
+    assert "applied_force" in found["cheapest"]["effects"]
     for name in ("cantilever_with_body", "polymer_pivot"):  # which have no golden, as they hang on round-off
-        assert " within 0.001" in command("audit", FOLDER / f"{name}.toml").out
+        assert "cheape" in command("audit", FOLDER / f"{name}.toml").out
 
 
 @pytest.mark.slow
@@ -47,7 +52,7 @@ def test_audit_of_what_rests(command):
     """A mechanism that rests under its loads, so that nothing moves after its release, is audited by path."""
     case = FINDS / "clamped_mechanism.toml"
     found = json.loads(command("audit", case, "--json", "-").out)
-    assert found["rows"] and found["sufficient"]["effects"]
+    assert found["rows"] and found["cheapest"]["effects"]
 
 
 def test_audit_of_what_is_not_stable(command, tmp_path):
@@ -102,23 +107,23 @@ def test_what_has_no_price_says_why():
     assert math.isnan(rows["shear"]["largest"])
 
 
-@pytest.mark.usefixtures("brief")
-def test_sufficient_scene_is_within_the_tolerance():
-    """Requirement: the sufficient scene lacks what can go together, and no change of it is beyond the
-    tolerance."""
-    design, settings = named_design("cross_axis_pivot"), SplineSettings(control_points=5)
-    for tolerance in (1e-2, 1e-12):
-        found = module.audit(design, settings, tolerance)
-        gone = found.sufficient.variant.dropped
-        assert found.sufficient.largest <= tolerance
-        assert set(gone) <= {row.variant.dropped[0] for row in found.rows if row.largest <= tolerance}
-        assert ("gravity" in gone) == (tolerance == 1e-2)
+WITHIN = dict.fromkeys(CHANGES, 1e-4)
+SIZE = dict.fromkeys(SIZES, 1)
 
 
-@pytest.mark.parametrize("change", CHANGES)
+def scene(wall_s, *names, **changes):
+    """A scene of the audit with these effects, changes and time."""
+    variant = Variant(dropped=(), effects=Effects(names=names))
+    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, changes=WITHIN | changes)
+
+
+@pytest.mark.parametrize("change", WITHIN)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_every_change_counts(change, sign):
-    """Requirement: the largest change is that of any quantity, to either side."""
-    changes = dict.fromkeys(CHANGES, 1e-4) | {change: sign * 2.0 * TOLERANCE}
-    variant = Variant(dropped=(), effects=Effects(names=("bending",)))
-    assert Outcome(variant=variant, changes=changes).largest == pytest.approx(2.0 * TOLERANCE)
+    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it."""
+    full = scene(2.0, "bending", "stretching", **dict.fromkeys(WITHIN, 0.0))
+    far = scene(1.0, "bending", **{change: sign * 2.0 * TOLERANCE})
+    near = scene(1.0, "bending", **{change: sign * 0.5 * TOLERANCE})
+    assert far.largest == pytest.approx(2.0 * TOLERANCE)
+    assert module._cheapest([full, far], TOLERANCE) is full
+    assert module._cheapest([full, near], TOLERANCE) is near

@@ -159,7 +159,7 @@ def test_what_a_converged_path_passed_is_told(command, tmp_path):
 @pytest.mark.slow
 def test_a_mesh_that_is_lost_in_round_off_is_told_shortly(command):
     """Requirement: of the dozens of critical points that round-off makes, a message names the first few."""
-    words = ("--model", "fe", "--accuracy", 1e-4)
+    words = ("--model", "fe", "--elements", 80, "--accuracy", 1e-5)
     outcome = command("solve", FINDS / "mixed_lengths.toml", *words)
     assert outcome.code == 3
     assert "not resolved with" in outcome.err and " more, stops at" in outcome.err

@@ -34,12 +34,13 @@ quantities = ["torque_Nm", "clamp_moment_Nm"]
 def test_a_quantity_is_one_entry(tmp_path):
     """Table, JSON, CSV, export, comparison, sweep, picture and docs have a quantity that one entry adds."""
     copy = tmp_path / "copy"
-    for name in ("spline_model", "fe_reference", "studies", "docs"):
+    for name in ("spline_model", "fe_reference", "studies", "docs", "report"):
         shutil.copytree(ROOT / name, copy / name)
     for name in ("README.md", "pyproject.toml"):
         shutil.copy(ROOT / name, copy)
     (copy / "results" / "reference").mkdir(parents=True)
-    (copy / "results" / "data").symlink_to(ROOT / "results" / "data")
+    for name in ("data", "figures"):
+        (copy / "results" / name).symlink_to(ROOT / "results" / name)
     place = copy / "studies" / "answers" / "quantities.py"
     text = place.read_text(encoding="utf-8")
     place.write_text(text.replace("QUANTITIES = (\n", ENTRY, 1), encoding="utf-8")
