@@ -104,6 +104,11 @@ def _outcome(answer: Response, against: Reference) -> Row:
     }
 
 
+def known(limit: Reference) -> tuple[str, ...]:
+    """Return the quantities of a reference: without a section's outermost fibre there is no stress."""
+    return tuple(name for name in QUANTITIES if np.isfinite(limit.uncertainty[name]))
+
+
 def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Figure:
     """Return the figure of the largest errors over the number of control points (above) and elements (below).
 
@@ -112,7 +117,7 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
         limit: the reference, for its uncertainty.
     """
     above, below = [], []
-    for quantity in QUANTITIES:
+    for quantity in known(limit):
         y = Axis(f"error_{quantity}", f"error of the {quantity} [1]", log=True)
         doubt = Doubt(limit.uncertainty[quantity])
         above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))

@@ -1,6 +1,7 @@
 """Convergence: the command's errors, orders and counts, and the study of the error estimate."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -13,6 +14,15 @@ from studies.convergence import error_estimate
 from studies.convergence.sweep import reaching
 from studies.record.store import Store
 from tests import gates
+
+
+def test_a_section_without_stress_is_refined(command, tmp_path):
+    """Requirement: where no stress is known, neither its error nor that of its reference is drawn."""
+    case = Path(__file__).parent / "finds" / "half_circle.toml"
+    words = ["converge", case, "--control-points", "4:8", "--elements", "5:40", "--out", tmp_path / "out"]
+    outcome = command(*words)
+    assert outcome.code == 0 and "stress nan" not in outcome.out
+    assert (tmp_path / "out" / "convergence.png").is_file()
 
 
 def test_table_folder_orders_and_counts(command, case, tmp_path):
