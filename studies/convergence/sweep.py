@@ -118,8 +118,10 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
     """
     above, below = [], []
     for quantity in known(limit):
-        y = Axis(f"error_{quantity}", f"error of the {quantity} [1]", log=True)
-        doubt = Doubt(limit.uncertainty[quantity])
+        column, least = f"error_{quantity}", limit.uncertainty[quantity]
+        most = np.fmax(splines[column].max(), elements[column].max())
+        y = Axis(column, f"error of the {quantity} [1]", log=True, limits=(least / 10.0, 2.0 * most))
+        doubt = Doubt(least)
         above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))
         below.append(Panel(MESH, y, (Curves(elements, LOOKS[FE]), doubt)))
     above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
