@@ -81,12 +81,13 @@ def demo_film() -> Film:
     place = np.array([0.0, 0.0, DISTANCE]) - 0.075 * axes[:, 1]
     lens = np.array([[FOCAL, 0.0, WIDTH / 2], [0.0, FOCAL, HEIGHT / 2], [0.0, 0.0, 1.0 / FINE]])
     plane = FINE * lens @ np.column_stack((axes[:, :2], place))
-    shade = 1.0 - 0.4 * np.arange(WIDTH) / WIDTH
+    shade = (1.0 - 0.4 * np.arange(WIDTH) / WIDTH).astype(np.float32)
+    ground = np.full((FINE * HEIGHT, FINE * WIDTH), TABLE, dtype=np.float32)
+    _lay(ground, plane, 0, np.zeros(3))
 
     def draw(k: int) -> Picture:
-        light = np.full((FINE * HEIGHT, FINE * WIDTH), TABLE)
-        for number, pose in enumerate((np.zeros(3), poses[k])):
-            _lay(light, plane, number, pose)
+        light = ground.copy()
+        _lay(light, plane, 1, poses[k])
         light = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
         seen = 255.0 * (shade * cv2.GaussianBlur(light, (0, 0), 0.8)) ** (1.0 / GAMMA)
         noise = np.random.default_rng(k).standard_normal(seen.shape, dtype=np.float32)
@@ -96,9 +97,9 @@ def demo_film() -> Film:
 
 
 def _lay(light: Array, plane: Array, number: int, pose: Array) -> None:
-    """Lay a marker with its white margin at `pose` (3,) into the picture of the plane."""
+    """Lay a marker with its white margin at `pose` (3,) into the picture of the plane, float32."""
     bits = cells(number).repeat(TEXELS, axis=0).repeat(TEXELS, axis=1)
-    paper = np.where(np.pad(bits, 3 * TEXELS // 2, constant_values=True), WHITE, BLACK)
+    paper = np.where(np.pad(bits, 3 * TEXELS // 2, constant_values=True), WHITE, BLACK).astype(np.float32)
     size, middle = SIDE / (TEXELS * BITS), (paper.shape[0] - 1) / 2
     own = size * np.array([[1.0, 0.0, -middle], [0.0, -1.0, middle], [0.0, 0.0, 1.0 / size]])
     laid = np.column_stack((np.vstack((turn(pose[2]), np.zeros(2))), (*pose[:2], 1.0)))
