@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, compress
+from itertools import combinations, product
 from typing import Any, TypeVar
 
 import numpy as np
@@ -18,12 +18,10 @@ from studies.errors import Unanswered
 from studies.kinds import Progress
 from studies.record.progress import silent
 
-#: Timed rounds of all scenes, one after the other; and of the cheapest against the full one.
-ROUNDS, DUELS = 3, 5
+#: Timed rounds of all scenes, one after the other.
+ROUNDS = 3
 #: A scene that took so many times as long as the full one is not timed again.
 SLOW = 3.0
-#: Times closer than this are not told apart: fewer effects and degrees of freedom are then the cheaper.
-SAME_TIME = 0.1
 #: Effects that are tried in all combinations; of more the least important go in every one of them.
 MOST_COMBINED = 4
 
@@ -37,8 +35,8 @@ class Audit:
         full: the full scene, with no change. rows: one effect removed or simplified each.
         tried: scenes without several effects, for the cheapest.
         beyond: effects that planar beams neglect, and the scene too, with their cost.
-        cheapest: the cheapest scene within the tolerance, answered once more; the full one if there is none.
-        seconds: median times of the full and of the cheapest scene, in turn in one run [s].
+        cheapest: the scene within the tolerance with the fewest degrees of freedom; the full one if there is
+            none.
     """
 
     tolerance: float
@@ -48,12 +46,6 @@ class Audit:
     tried: tuple[Outcome, ...]
     beyond: list[dict[str, Any]]
     cheapest: Outcome
-    seconds: tuple[float, float]
-
-    @property
-    def ratio(self) -> float:
-        """Time of the full over that of the cheapest scene [1]."""
-        return self.seconds[0] / self.seconds[1]
 
     def row(self, of: Outcome) -> dict[str, Any]:
         """Return a scene as columns of a table: what it is, how it ended, changes and the largest of them,
@@ -100,8 +92,6 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     progress(len(names), len(names) + 2)
     full, *others = _timed([full, *rows, *tried], run)
     progress(len(names) + 1, len(names) + 2)
-    cheapest = _cheapest([full, *others], tolerance)
-    one, other = _in_turn((full, cheapest), run, DUELS)
     return Audit(
         tolerance=tolerance,
         run=run,
@@ -109,8 +99,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
         beyond=prices(run.design),
-        cheapest=replace(run.outcome(cheapest.variant, base), wall_s=other),
-        seconds=(one, other),
+        cheapest=_cheapest([full, *others], tolerance),
     )
 
 
@@ -136,41 +125,28 @@ def _combined(rows: Sequence[Outcome], tolerance: float) -> Iterator[list[str]]:
             yield from ([*always, *chosen] for chosen in combinations(free, count))
 
 
-def _in_turn(outcomes: Sequence[Outcome], run: Run, rounds: int) -> list[float]:
-    """Return the median times of static path and motion of scenes, taken round by round [s]."""
-    scenes = [each.variant.of(run.design) for each in outcomes]
-
-    def wall_s(scene: Design) -> float:
-        motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
-        return answer_static(scene, run.settings).wall_s + motion.wall_s
-
-    walls = [[wall_s(scene) for scene in scenes] for _ in range(rounds)]
-    return [float(each) for each in np.median(walls, axis=0)]
-
-
 def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
-    """Return the scenes with their median times, taken round by round in turn, but for slow ones."""
-    again = [each.wall_s <= SLOW * outcomes[0].wall_s for each in outcomes]
-    walls = iter(_in_turn([*compress(outcomes, again)], run, ROUNDS))
-    return [
-        replace(each, wall_s=next(walls)) if timed else each
-        for each, timed in zip(outcomes, again, strict=True)
-    ]
+    """Return the scenes with their median times of path and motion, taken round by round in turn; slow ones
+    keep their first time."""
+    walls: dict[int, list[float]] = {
+        id(each): [] for each in outcomes if each.wall_s <= SLOW * outcomes[0].wall_s
+    }
+    for _, each in product(range(ROUNDS), outcomes):
+        if id(each) in walls:
+            scene = each.variant.of(run.design)
+            motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
+            walls[id(each)].append(answer_static(scene, run.settings).wall_s + motion.wall_s)
+    return [replace(each, wall_s=float(np.median(walls.get(id(each), each.wall_s)))) for each in outcomes]
 
 
 def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
-    """Return the fastest scene within the tolerance, of those not told apart the one with least in it.
+    """Return the scene within the tolerance with the fewest degrees of freedom, unknowns and effects.
 
     The full scene, which is the first, is one of them even where its motion has nothing to compare.
     """
     within = [outcomes[0], *(each for each in outcomes[1:] if each.largest <= tolerance)]
-    fastest = min(each.wall_s for each in within)
-    near = [each for each in within if each.wall_s <= (1.0 + SAME_TIME) * fastest]
-
-    def extent(each: Outcome) -> tuple[int, float, float]:
-        return len(each.variant.effects.names), each.size.get("degrees_of_freedom", 0), each.wall_s
-
-    return min(near, key=extent)
+    sizes = ("degrees_of_freedom", "unknowns")
+    return min(within, key=lambda each: (*map(each.size.get, sizes), len(each.variant.effects.names)))
 
 
 Either = TypeVar("Either", bound=Problem | Mechanism)

@@ -28,7 +28,6 @@ def brief(monkeypatch):
     """Audits of a part of a swing, timed once."""
     monkeypatch.setattr(scenes, "SWINGS", 0.2)
     monkeypatch.setattr(module, "ROUNDS", 1)
-    monkeypatch.setattr(module, "DUELS", 1)
 
 
 @pytest.mark.slow
