@@ -95,15 +95,6 @@ LISTINGS |= {
         },
         by="gauss_points",
     ),
-    "readings": Stored("paper/readings", "readings").table(
-        {
-            "centre of mass, or what is added": ("reading", str),
-            "travel of the centre": ("travel_m", unit("mm", 3, 1e3)),
-            "frequency": ("frequency_Hz", unit("Hz", 4)),
-            "rotation changes by": ("rotation_rad", unit("rad")),
-        },
-        by="rotation_rad",
-    ),
 }
 
 
@@ -197,7 +188,6 @@ CRITERIA = {
     "long_run": "energy within 10⁻⁶ over 100\u202f000 steps",
     "ratios": "rotation within 5 % of the amplitude over the first period",
     "axial_modes": "torque within 5 % of a refined spline",
-    "fuzz": "path within 5 % of the same spline with 17 points; energy balance to 10⁻⁸",
     "events": "rotation and energy within 5 %; energy balance",
 }
 DEFAULT, FE, AS_PAPER = "spline, default", "FE, 20 elements", "spline n = 4, as the paper"
@@ -243,7 +233,6 @@ FACTS |= {
     "hard.steps.default": STEPS.at("right", count, model=DEFAULT),
     "hard.steps.fe": STEPS.at("right", count, model=FE),
     "hard.steps.tried": STEPS.at("tried", count, model=FE),
-    "hard.random": Stored("stability/fuzz", "elements").largest("error", percent),
     "buckling.column": Fact(made=_column, form=digits(6)),
     "buckling.pivot": BRANCHES.largest("first_bifurcation_mm", unit("mm", 3), model="spline n = 12"),
 }

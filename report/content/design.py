@@ -11,7 +11,7 @@ from report.forms import angle, dash, degrees, digits, percent, seconds, signifi
 
 CODES = "cost/codes"
 #: Groups of the comparison in addition to the spline, in the order of the table.
-GROUPS = ("spline, by itself", "finite elements", "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates")
+GROUPS = ("spline, by itself", "finite elements", "Exudyn", "OpenSees", "surrogates")
 
 #: Task -> its stored table, and how an error is written.
 TASKS = {
@@ -24,6 +24,8 @@ SIMPLE = ("linear pivot", "pin joint", "four-bar", "beam constraint model")
 SPLINES = ("n = 4, as the paper", "n = 4, locking-free", "n = 6")
 QUANTITIES = ("trajectory", "torque", "stiffness")
 SURROGATES = Stored("cost/surrogates", "findings")
+#: Error that models are to keep [1].
+KEPT = 0.01
 
 
 @listing("cost")
@@ -47,13 +49,14 @@ def _peer(groups: Any, group: str) -> str:
 
 @listing("surrogates")
 def _surrogates(results: Results) -> Table:
-    """Return up to which rotation each simple model, and each spline beside them, keeps one percent."""
-    reached = Stored("cost/surrogates", "thresholds", level=0.01).rows(results)
-    ends: Any = reached.pivot(index="model", columns="quantity", values="rotation_deg")
+    """Return the last whole degree up to which each simple model, and each spline beside them, keeps one
+    percent."""
+    rows = Stored("cost/surrogates", "errors").rows(results).sort_values("rotation_rad")
+    kept = rows[list(QUANTITIES)].abs().groupby(rows["model"]).cummax() <= KEPT
+    ends: Any = kept.mul(rows["rotation_rad"], axis=0).groupby(rows["model"]).max()
     yield ["error below 1 % up to", *QUANTITIES]
     for model in (*SIMPLE, *SPLINES):
-        own = (ends.loc[model, quantity] for quantity in QUANTITIES)
-        yield [model, *("the end" if pd.isna(end) else angle(end) for end in own)]
+        yield [model, *(degrees(end) for end in ends.loc[model])]
 
 
 def _nearer(results: Results) -> float:
@@ -81,7 +84,6 @@ FACTS |= {
     "cost.path.whole": TASKS["path"][0].at("spline_s", seconds, group="Exudyn", level=2e-4),
     "cost.command.spline": WAITS.at("whole_s", seconds, model="spline, n = 6"),
     "cost.command.fe": WAITS.at("whole_s", seconds, model="80 elements"),
-    "cost.independent": Stored(CODES, "finest").at("torque", percent, model="exudyn ancf"),
     "surrogates.nearer": Fact(made=_nearer, form=percent),
     "surrogates.torque": SURROGATES.at(
         "value",
@@ -100,11 +102,14 @@ WORTH = Stored("effects/worth", "worth", status="converged")
 
 @listing("effects")
 def _effects(results: Results) -> Table:
-    """Return the largest change by leaving out each effect, a column a design."""
-    rows = WORTH.rows(results)
-    largest = rows.pivot(index="scene", columns="design", values="largest")[list(rows["design"].unique())]
-    yield ["neglected effect", *largest.columns]
-    yield from ([str(scene), *map(dash(percent), own)] for scene, own in largest.iterrows())
+    """Return the largest change by leaving out each effect and the ratio of the times, a column a design."""
+    times_of = Stored("effects/worth", "timings").rows(results)[["design", "scene", "time_ratio"]]
+    rows = WORTH.rows(results).merge(times_of, on=["design", "scene"])
+    designs = list(rows["design"].unique())
+    yield ["neglected effect", *designs]
+    for scene, own in rows.set_index("design").groupby("scene"):
+        pairs: Any = own.reindex(designs)[["largest", "time_ratio"]].to_numpy()
+        yield [str(scene), *(f"{dash(percent)(change)}, {dash(times)(ratio)}" for change, ratio in pairs)]
 
 
 LISTINGS["validity"] = VALIDITY.table(

@@ -58,7 +58,7 @@ def _of_report(name: str) -> Made:
 
 
 #: Tables of the page of findings, in its order, as the report calls them.
-FINDINGS = ("claims", "agreement", "cost", "families", "solids", "sizing", "published")
+FINDINGS = ("claims", "agreement", "cost", "families", "effects", "solids", "sizing", "published")
 #: File -> block -> the lines that stand between its marks.
 BLOCKS: dict[Path, Mapping[str, Made]] = {
     ROOT / "README.md": {"agreement": _of_report("agreement")},

@@ -12,7 +12,6 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -23,8 +22,7 @@ from studies.answers.reference import Reference, SwingReference, largest_errors
 from studies.cases.design import Design
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cost import tried
-from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
-from studies.cost.model import Model
+from studies.cost.exudyn_strips import exudyn_ancf
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
@@ -34,12 +32,6 @@ from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
 
-#: Finest settings of the other codes, for the limits that they tend to by themselves.
-FINEST: dict[Model, dict[str, Any]] = {
-    exudyn_ancf: {"elements": 64, "relative_tolerance": 1e-9},
-    exudyn_exact: {"elements": 64, "relative_tolerance": 1e-10},
-    openseespy_frame: {"elements": 320, "tolerance": 1e-14},
-}
 #: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].
 JUDGED = {"paths": tried.PATH_JUDGED, "swings": ("rotation_rad",)}
 LEVELS = {"paths": (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6), "swings": (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)}
@@ -74,14 +66,8 @@ def _paths() -> Answer:
     """Return limits, errors and times of the static path."""
     design = named_case()
     limits, rows = _path_limits(design)
-    finest = []
-    for model, settings in FINEST.items():
-        if model.installed():
-            theory = tried.SHEAR if model.sheared else tried.MATERIAL
-            apart = largest_errors(model.path(design, **settings), limits[theory])
-            finest.append({"model": model.name, "elements": settings["elements"], "theory": theory, **apart})
     found = tried.compared(paths(), design, limits)
-    return {"path_limits": rows, "finest": finest, **_apart("paths", found)}
+    return {"path_limits": rows, **_apart("paths", found)}
 
 
 def _swings() -> Answer:

@@ -42,8 +42,6 @@ EVERY_STEP = 1e-12
 #: Reduction of the residual below which a static iteration keeps its Jacobian.
 CONTRACTION = 0.1
 
-SOLVERS = ("tuned", "as delivered")
-
 
 @dataclass(frozen=True, kw_only=True)
 class System:
@@ -78,17 +76,15 @@ class Exudyn(Model):
         problem: Problem,
         *,
         relative_tolerance: float = 1e-8,
-        solver: str = "tuned",
         **settings: Any,
     ) -> SolvedPath:
         """Return the path, one load step an increment.
 
         Args:
             relative_tolerance: of Newton's residual against that at the step's start [1].
-            solver: "tuned", or "as delivered" for Exudyn's own defaults but for files and messages.
         """
         system, turns = self.system_of(problem, **settings), turns_of(problem)
-        asked = _static(system, len(turns) - 1, relative_tolerance, tuned=solver == SOLVERS[0])
+        asked = _static(system, len(turns) - 1, relative_tolerance)
         solved, seconds = _driven(system, asked, turns)
         moved, torque = (system.stored(sensor) for sensor in (system.place, system.reaction))
         rest = np.array(system.mbs.GetNode(system.body)["referenceCoordinates"][:2])
@@ -136,7 +132,7 @@ class Exudyn(Model):
 def _hold_at(system: System, start: float) -> None:
     """Drive the body to `start` [rad] and release it there, at rest."""
     count = max(1, int(np.ceil(abs(start) / INCREMENT)))
-    asked = _static(system, count, START_TOLERANCE, tuned=True)
+    asked = _static(system, count, START_TOLERANCE)
     asked.staticSolver.newton.useModifiedNewton = False
     _driven(system, asked, np.linspace(0.0, start, count + 1))
     data = system.mbs.systemData
@@ -173,16 +169,15 @@ def _run(system: System, solver: Any, asked: Any) -> float:
     return seconds
 
 
-def _static(system: System, steps: int, tolerance: float, *, tuned: bool) -> Any:
+def _static(system: System, steps: int, tolerance: float) -> Any:
     """Return the settings of the static solver."""
     asked = _quiet(system)
     static = asked.staticSolver
     static.numberOfLoadSteps = steps
     static.verboseMode = 0
-    if tuned:
-        static.computeLoadsJacobian = 0
-        static.newton.modifiedNewtonContractivity = CONTRACTION
-        _tune(system, asked, static, tolerance)
+    static.computeLoadsJacobian = 0
+    static.newton.modifiedNewtonContractivity = CONTRACTION
+    _tune(system, asked, static, tolerance)
     return asked
 
 

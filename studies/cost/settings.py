@@ -27,15 +27,14 @@ PEERS: dict[str, Model] = {each.name: each for each in (exudyn_ancf, exudyn_exac
 
 #: What models are compared under, the spline first.
 SPLINE, ITSELF, ELEMENTS, SHEAR = "spline", "spline, by itself", "finite elements", "elements with shear"
-EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE = "Exudyn", "Exudyn as delivered", "OpenSees", "surrogates"
-GROUPS = (ITSELF, ELEMENTS, SHEAR, EXUDYN, AS_DELIVERED, OPENSEES, SURROGATE)
+EXUDYN, OPENSEES, SURROGATE = "Exudyn", "OpenSees", "surrogates"
+GROUPS = (ITSELF, ELEMENTS, SHEAR, EXUDYN, OPENSEES, SURROGATE)
 #: Looks of those that are drawn: a colour a code.
 LOOKS = {
     SPLINE: Look(label="spline", colour=BLUE, marker="x"),
     ITSELF: Look(label="spline, by itself", colour=SKY, line="--", marker="D"),
     ELEMENTS: Look(label="finite elements", colour=BLACK, marker="s"),
-    EXUDYN: Look(label="Exudyn, tuned", colour=PURPLE, marker="^"),
-    AS_DELIVERED: Look(label="Exudyn as delivered", colour=PURPLE, line=":", marker="v"),
+    EXUDYN: Look(label="Exudyn", colour=PURPLE, marker="^"),
     OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
 }
 
@@ -48,7 +47,6 @@ WORDS = {
     "accuracy": "accuracy {:g}",
     "integrator": "{}",
     "element": "{}",
-    "solver": "{}",
 }
 #: What makes a setting finer: more of it, or less.
 FINER = {"step": -1.0, "accuracy": -1.0, "control_points": 1.0, "elements": 1.0}
@@ -131,8 +129,6 @@ def paths() -> list[Setting]:
         *(each for model in SURROGATES.values() for each in grid(model, SURROGATE)),
         *grid(exudyn_ancf, EXUDYN, elements=(2, 4, 6, 8, 12, 16, 24, 40), relative_tolerance=tolerances),
         *grid(exudyn_exact, EXUDYN, elements=exact, relative_tolerance=tolerances),
-        *grid(exudyn_ancf, AS_DELIVERED, elements=(4, 8, 16, 40), solver=("as delivered",)),
-        *grid(exudyn_exact, AS_DELIVERED, elements=(2, 4, 8, 20), solver=("as delivered",)),
         *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40, 80, 160), tolerance=(1e-8, 1e-10)),
     ]
 

@@ -5,10 +5,8 @@ not found.
 """
 
 from dataclasses import replace
-from itertools import product
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from studies.answers.adapters import answer_static
@@ -18,7 +16,6 @@ from studies.cases.problem import named_case
 from studies.cost.model import spline
 from studies.cost.settings import PSEUDO_RIGID, SURROGATES
 from studies.engine import Answer, Claim, Part, Study, Tables
-from studies.kinds import Array
 from studies.paper import formulations
 
 #: Splines beside them: what the paper wrote, the same count without locking, and the default.
@@ -29,7 +26,6 @@ REFINED, CHECK = 12, 10
 #: States of a path: one a degree.
 STATES = 91
 QUANTITIES = ("trajectory", "torque", "stiffness")
-LEVELS = (0.01, 0.05)
 
 
 def _paths() -> Answer:
@@ -53,34 +49,6 @@ def _errors(name: str, path: SolvedPath | Response, limit: Response) -> pd.DataF
     return pd.DataFrame({"model": name, "rotation_rad": path.rotation, **columns})
 
 
-def _thresholds(tables: Tables) -> list[dict[str, Any]]:
-    """Return the smallest rotation from which each error is above each level, by linear interpolation."""
-    found = []
-    for name, rows in tables["errors"].groupby("model", sort=False):
-        for quantity, level in product(QUANTITIES, LEVELS):
-            angle = _first_above(rows["rotation_rad"].to_numpy(), rows[quantity].abs().to_numpy(), level)
-            row = {"model": name, "quantity": quantity, "level": level, "rotation_deg": np.degrees(angle)}
-            found.append({**row, "status": "never" if np.isnan(angle) else "passed"})
-    return found
-
-
-def _first_above(rotation: Array, error: Array, level: float) -> float:
-    """Return the rotation at which an error first passes a level [rad]; NaN if it never does.
-
-    An error that is above the level at rest, or at the first state that has one, passes it there. Torque has
-    no error at rest, where there is none.
-    """
-    above = np.flatnonzero(error > level)
-    if not len(above):
-        return float("nan")
-    after = int(above[0])
-    if after == 0 or (after == 1 and error[0] == 0.0 and error[1] > error[2]):
-        return 0.0
-    before = after - 1
-    part = (level - error[before]) / (error[after] - error[before])
-    return float(rotation[before] + part * (rotation[after] - rotation[before]))
-
-
 def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
     """Return the largest error of each spline and quantity over that of the best pseudo-rigid body."""
     largest = tables["errors"].set_index("model")[list(QUANTITIES)].abs().groupby("model").max().T
@@ -94,7 +62,6 @@ def _over_the_best(tables: Tables) -> list[dict[str, Any]]:
 
 STUDY = Study(
     parts=(Part(ask=_paths),),
-    made={"thresholds": _thresholds},
     claims=(
         Claim(
             claim="Dynamic splines are more accurate than pseudo-rigid-body models",

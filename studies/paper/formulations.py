@@ -1,22 +1,18 @@
-"""The formulations that figures compare, each named once, their paths and swings, and other readings."""
+"""The formulations that figures compare, each named once, their paths and swings, and other quadratures."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
-from math import pi, sin
 from typing import Any
 
 import numpy as np
 
 from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
-from studies.answers.metrics import swing_frequency
 from studies.answers.motion import Motion
 from studies.answers.reference import MESHES, RECORDS, Reference, SwingReference, errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.problem import Problem, named_case
+from studies.cases.problem import named_case
 from studies.engine import Answer, Part, Study
-from studies.kinds import Array
 from studies.record.style import BLACK, BLUE, GREY, ORANGE, PURPLE, RED, SKY, Look
 
 PAPER, LOCKING_FREE, SIX = "n = 4, as the paper", "n = 4, locking-free", "n = 6"
@@ -110,11 +106,6 @@ def refined_swing() -> SwingReference:
 
 #: Gauss points of the paper's four control points: two do not see every stretch, the last are all but exact.
 GAUSS = (3, 4, 5, 6, 8, 12)
-#: Control points of what the assumptions are weighed with.
-POINTS = 8
-#: Share of critical damping of the swing.
-DAMPING = 0.01
-AS_READ = "midway between the upper clamps"
 
 
 def _integrated(points: int) -> Answer:
@@ -130,52 +121,7 @@ def _integrated(points: int) -> Answer:
     return {"quadrature": row}
 
 
-def _readings() -> Iterator[tuple[str, Problem]]:
-    """Yield other readings of the case, that of the suite first."""
-    case = named_case()
-    yield AS_READ, case
-    rise = (1.0 - case.crossing_ratio) * case.length * sin(case.inclination)
-    for name, offset in (("at the crossing", -rise), ("as far above the upper clamps", rise)):
-        yield f"centre of mass {name}", replace(case, centre_offset=(0.0, offset))
-    yield "gravity, the ground below", replace(case, effects=case.effects.plus("gravity"))
-    frequency = swing_frequency(INSTANTS, _swing(case)).value
-    lost = 2.0 * DAMPING * 2.0 * pi * frequency * case.body_moment_of_inertia
-    damped = case.effects.plus(body_damping={"translation": 0.0, "rotation": lost})
-    yield f"damping, {DAMPING:.0%} of critical in the swing", replace(case, effects=damped)
-
-
-def _swing(problem: Problem) -> Array:
-    motion = answer_release(
-        problem, SplineSettings(control_points=POINTS), duration=DURATION, records=len(INSTANTS) - 1,
-        integrator="energy", step=DURATION / (10 * (len(INSTANTS) - 1)),
-    )  # fmt: skip
-    return np.interp(INSTANTS, motion.time, motion.rotation)
-
-
-def _read() -> Answer:
-    """Return a row a reading: travel of the centre [mm], frequency, and the rotation's largest difference."""
-    rows, first = [], None
-    for name, problem in _readings():
-        path, swing = answer_static(problem, SplineSettings(control_points=POINTS)), _swing(problem)
-        first = swing if first is None else first
-        rows.append(
-            {
-                "reading": name,
-                "travel_m": float(np.hypot(*(path.centre[-1] - path.centre[0]))),
-                "torque_end_Nm": float(path.torque[-1]),
-                "frequency_Hz": swing_frequency(INSTANTS, swing).value,
-                "rotation_rad": float(np.abs(swing - first).max()),
-            }
-        )
-    return {"readings": rows}
-
-
 READINGS = Study(
-    parts=(Part(at=lambda: GAUSS, ask=_integrated), Part(ask=_read)),
+    parts=(Part(at=lambda: GAUSS, ask=_integrated),),
 )
-"""Assumptions that the paper does not state: quadrature, centre of mass, gravity and damping.
-
-Coarser and finer quadratures of four control points as the paper has them, and what each open assumption
-changes of its Figs 4 and 6: the travel of the body's centre, the frequency after the release and the
-rotation itself.
-"""
+"""Coarser and finer quadratures of four control points as the paper has them, which it does not state."""

@@ -1,7 +1,6 @@
 """Read a published problem: its design and its published values, each with source and uncertainty.
 
-A case file has [problem], [[values]] and a design as any case file has one. A table has published rows that
-belong to no problem.
+A case file has [problem], [[values]] and a design as any case file has one.
 """
 
 from collections.abc import Mapping
@@ -17,7 +16,6 @@ from studies.cases.mechanism import Mechanism
 from studies.cases.rules import Key, Rule, choice, finite, not_negative, positive, shown, text
 
 FOLDER = Path(__file__).parent / "cases"
-TABLES = Path(__file__).parent / "tables"
 
 DISPLACEMENT_X, DISPLACEMENT_Y, ROTATION = "displacement_x", "displacement_y", "rotation"
 LIMIT_LOAD, LIMIT_POINTS, LOAD_AT_ROTATION = "limit_load", "limit_points", "load_at_rotation"
@@ -177,11 +175,6 @@ class _Published:
         assert isinstance(self.design, Mechanism)
         acting = self.design.effects.grown(load, WEIGHT).plus(*(() if answer == BEAM else answer.split(", ")))
         return Frame(design=replace(self.design, effects=acting), load=load, body=self.body)
-
-
-def printed(name: str) -> list[tuple[Any, ...]]:
-    """Return the rows of a published table; its file describes the columns."""
-    return [tuple(row) for row in document.parsed(TABLES / f"{name}.toml")["rows"]]
 
 
 @cache

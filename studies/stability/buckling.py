@@ -10,19 +10,15 @@ from functools import partial
 from itertools import product
 from operator import attrgetter
 
-import pandas as pd
-from matplotlib.figure import Figure
 from scipy.special import ellipk
 
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.effects import Effects
 from studies.cases.problem import named_case
-from studies.engine import Answer, Part, Tables
+from studies.engine import Answer, Part
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
-from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.store import Digits
-from studies.record.style import BLACK, BLUE, GREEN, GREY, PURPLE, Look
 from studies.stability.verdict import (
     ARCS,
     CHECK,
@@ -187,34 +183,6 @@ def _branch(depth: float, model: str, branch: str) -> Answer:
     return {"branches": found}
 
 
-LOOKS = {
-    DEFAULT: Look(label=DEFAULT, colour=BLUE),
-    EIGHT: Look(label=EIGHT, colour=PURPLE, line="", marker="v", hollow=True),
-    TWELVE: Look(label=TWELVE, colour=GREEN, line="--"),
-    FE: Look(label=FE, colour=GREY, line=":"),
-}
-CRITICAL = Look(label="critical point", colour=GREEN, line="", marker="o", hollow=True)
-
-
-def _figure(tables: Tables) -> Figure:
-    """Draw the branch on which the body turns, and the one on which it does not: dotted where unstable."""
-    branches = tables["branches"]
-    refined = branches[(branches["model"] == TWELVE) & (branches["branch"] == PRIMARY)]
-    crossing, deepest = refined["first_bifurcation_mm"].min(), refined["reached_mm"].max()
-    ways = {"stable": ("-", 0.0, crossing), "unstable": (":", crossing, deepest)}
-    marks = [
-        Curves(pd.DataFrame({"reached_mm": ends, "turn_deg": 0.0}), Look(label=name, colour=BLACK, line=line))
-        for name, (line, *ends) in ways.items()
-    ]
-    point = pd.DataFrame({"reached_mm": [crossing], "turn_deg": 0.0})
-    marks += [
-        Curves(branches[branches["branch"] == OTHER], LOOKS, by="model", along="asked_mm"),
-        Curves(point, CRITICAL, more={"markersize": 7.0}),
-    ]
-    axes = Axis("reached_mm", "way down [mm]"), Axis("turn_deg", "turn of the body [deg]")
-    return sheet(6.3, 3.4, [[Panel(*axes, marks, title="pivot pushed down")]], legend=3)
-
-
 #: The branch beyond 10 mm amplifies round-off.
 DIGITS: dict[str, Digits | None] = {
     **dict.fromkeys(("reached_mm", "turn_deg", "energy_J"), Digits(relative=1e-3, scale=1e-5)),
@@ -228,5 +196,4 @@ STUDY = study(
     Part(at=_cases, ask=_outcomes_of),
     Part(at=lambda: product(sorted({*DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
     digits=DIGITS,
-    figures={"stability_buckling": _figure},
 )
