@@ -1,14 +1,13 @@
 """Say which setting of each model meets an error at the least cost, on one pivot or mechanism.
 
     python -m studies advise cross_axis_pivot --accuracy 1e-3
-    python -m studies advise my_pivot.toml --accuracy 1e-2 --dynamic --json -
+    python -m studies advise my_pivot.toml --accuracy 1e-2 --json -
 
 Every setting of every model is tried on the case itself: the spline, also by itself as in `solve` (whose
 stress is by balance of moments, far more accurate than that by its curvature), the finite elements without
 and with shear, and of a pivot the surrogate models in closed form and the other codes that are installed.
-Without --dynamic the error is that of path and torque over the static path, and those of stiffness and
-largest stress are told beside it; with it, that of the rotation (over the rotation at the start) and of the
-frequency in the first four periods after the release. Each model is held against the limit of its own theory,
+The error is that of path and torque over the static path; those of stiffness and largest stress are told
+beside it. Each model is held against the limit of its own theory,
 whose own error is printed. A setting counts when finer ones keep the error. Times are measured here, on one
 thread, once all is compiled and loaded: of whole calls, from the design to the answer, set-up included, and
 of the increments or steps alone. Exit code 0: done; 2: bad input; 3: there is no reference, or no
@@ -17,7 +16,7 @@ model meets the error.
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pandas as pd
@@ -28,19 +27,17 @@ from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
-from studies.commands.parser import Argument, command
-from studies.cost.tried import PATH_ERRORS, PATH_JUDGED, advise_path, advise_swing
+from studies.commands.parser import command
+from studies.cost.tried import PATH_ERRORS, PATH_JUDGED, advise
 from studies.record.progress import Bar
 
-#: What is tried, the errors that it is judged by, and those that are told.
-STATIC = (advise_path, PATH_JUDGED, PATH_ERRORS)
-DYNAMIC = (advise_swing, ("rotation", "frequency"), ("rotation", "frequency"))
+#: Errors that are reported beside those that a setting is judged by.
+BESIDE = tuple(name for name in PATH_ERRORS if name not in PATH_JUDGED)
 
 
 @command(
     take.CASE,
     take.ACCURACY.but("wanted relative error, default 1e-3", default=1e-3),
-    Argument("--dynamic", "advise on the motion after the release"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -48,53 +45,48 @@ def main(arguments: argparse.Namespace) -> int:
     problem = take.turned_design(arguments, "rotation to relate errors to")
     if problem.crossing_point is not None:  # of pivots codes and surrogates that know no taper are tried
         refuse_tapers(arguments.case, problem.strips, "the models that are tried")
-    advise, judged, told = STATIC if not arguments.dynamic else DYNAMIC
     try:
         with Bar("advise") as bar:
             found = advise(problem, arguments.accuracy, bar)
     except NoReference as error:
         return not_converged(error)
     failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
-    table = _readable(problem, found, told, judged, arguments.accuracy)
-    return deliver(arguments, _document(found, told, judged, arguments.accuracy), table, failure=failure)
+    table = _readable(problem, found, arguments.accuracy)
+    return deliver(arguments, _document(found, arguments.accuracy), table, failure=failure)
 
 
-def _document(
-    found: pd.DataFrame, told: Sequence[str], judged: Sequence[str], error: float
-) -> dict[str, Any]:
+def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
     """Return the advice as the JSON object of the command."""
     named = {
         **{"group": "model", "setting": "setting", "meets": "meets"},
-        **{name: f"error_{name}" for name in told},
+        **{name: f"error_{name}" for name in PATH_ERRORS},
         "largest": "reference_uncertainty",
-        **{f"uncertainty_{name}": f"reference_uncertainty_{name}" for name in told[2:]},
+        **{f"uncertainty_{name}": f"reference_uncertainty_{name}" for name in BESIDE},
         **{name: name for name in ("whole_s", "solve_s", "message")},
     }
-    largest = [_uncertainty(row, judged) for row in found.to_dict("records")]
+    largest = [_uncertainty(row) for row in found.to_dict("records")]
     table = found.assign(largest=largest).reindex(columns=list(named)).rename(columns=named)
     return {"accuracy": error, "models": table.to_dict("records")}
 
 
-def _uncertainty(row: Mapping[Any, Any], judged: Sequence[str]) -> float:
+def _uncertainty(row: Mapping[Any, Any]) -> float:
     """Return the largest uncertainty of the limits that a model is judged by [1]."""
-    return max(float(row[f"uncertainty_{name}"]) for name in judged)
+    return max(float(row[f"uncertainty_{name}"]) for name in PATH_JUDGED)
 
 
-def _readable(
-    problem: Design, found: pd.DataFrame, told: Sequence[str], judged: Sequence[str], error: float
-) -> Iterator[str]:
+def _readable(problem: Design, found: pd.DataFrame, error: float) -> Iterator[str]:
     """Yield the lines of a table, the cheapest model that meets the error first."""
     turned = math.degrees(problem.rotation or 0.0)
-    yield f"error {error:g} in {' and '.join(judged)}, from 0 to {turned:.4g} deg"
+    yield f"error {error:g} in {' and '.join(PATH_JUDGED)}, from 0 to {turned:.4g} deg"
     rows = found.sort_values(["meets", "whole_s"], ascending=[False, True]).to_dict("records")
-    unsure = max(_uncertainty(row, judged) for row in rows)
-    beside = (f"of the {name} {found[f'uncertainty_{name}'].max():.1e}" for name in told[2:])
+    unsure = max(_uncertainty(row) for row in rows)
+    beside = (f"of the {name} {found[f'uncertainty_{name}'].max():.1e}" for name in BESIDE)
     yield ", ".join((f"error of the references: at most {unsure:.1e}", *beside))
-    head = "".join(f"{name:>12}" for name in told)
+    head = "".join(f"{name:>12}" for name in PATH_ERRORS)
     width = max(len(row["setting"]) for row in rows) + 2
     yield f"{'model':<22}{'setting':<{width}}{head}{'whole call':>13}{'x fastest':>11}{'alone':>13}"
     for row in rows:
-        errors = "".join(cell(row.get(name, math.nan), 12) for name in told)
+        errors = "".join(cell(row.get(name, math.nan), 12) for name in PATH_ERRORS)
         line = f"{row['group']:<22}{row['setting']:<{width}}{errors}"
         if row["message"]:
             yield f"{line}  {row['message']}"

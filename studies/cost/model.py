@@ -1,86 +1,77 @@
 """The models that are compared: what each answers, what all check alike, the pivot as it is given."""
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.motion import Motion
-from studies.answers.reference import RECORDS, SolvedPath
+from studies.answers.reference import RECORDS
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.problem import Problem
-from studies.errors import BadInput
+from studies.errors import BadInput, Unanswered
 from studies.kinds import Array
+
+
+def _unanswered(*_: Any, **__: Any) -> Any:
+    """Stand for the swing of a model of statics alone."""
+    raise Unanswered("a model of statics alone")
 
 
 @dataclass(eq=False, kw_only=True)
 class Model:
-    """A model that is compared; keywords in `settings` are its own.
+    """A model that is compared.
 
     Attributes:
         name: of the model. sheared: whether its strips shear.
+        path: of a design and settings of the model, the path on which the body is driven from rest to its
+            rotation in its increments. swing: of these and a duration [s], the motion of the body, which is
+            released from rest at its rotation. Both raise BadInput for a design or setting out of range, and
+            Unanswered where the end is not reached.
+        installed: whether the model can be asked.
     """
 
     name: str
+    path: Callable[..., Any]
+    swing: Callable[..., Any] = _unanswered
     sheared: bool = False
-
-    def installed(self) -> bool:
-        """Return whether it can be asked, as all that need no other code."""
-        return True
-
-    def path(self, *args: Any, **settings: Any) -> Any:
-        """Drive the body of a design, `args`, from rest to its rotation in its increments; return the path.
-
-        Raises:
-            BadInput: a design or setting out of range. Unanswered: the path is not reached.
-        """
-        raise NotImplementedError
-
-    def swing(self, *args: Any, **settings: Any) -> Any:
-        """Release the body of a design from rest at its rotation, for a duration [s]; return the motion.
-
-        Raises: as of `path`.
-        """
-        raise NotImplementedError
+    installed: Callable[[], bool] = lambda: True
 
 
 #: Schemes whose steps are far shorter than what happens between two records.
 EXPLICIT = ("leapfrog", "central-difference")
 
 
-@dataclass(eq=False, kw_only=True)
-class _Own(Model):
-    """A model of the suite; keywords in `settings` are those of its discretisation and its integrator."""
-
-    discretised: Callable[..., Settings]
-
-    def path(self, design: Design, *, accuracy: float | None = None, **settings: Any) -> Response:
-        """Return the path; `accuracy`: that a spline chooses its own control points for [1]."""
-        return answer_static(design, self.discretised(**settings), accuracy=accuracy).whole()
-
-    def swing(
-        self,
-        design: Design,
-        duration: float,
-        *,
-        integrator: str | None = None,
-        step: float | None = None,
-        **settings: Any,
-    ) -> Motion:
-        """Return the motion; the step [s] of an explicit scheme is its own, near the largest stable one."""
-        records = RECORDS if integrator in EXPLICIT else None
-        how: dict[str, Any] = {"records": records, "integrator": integrator, "step": step}
-        return answer_release(design, self.discretised(**settings), duration=duration, **how).whole()
+def _path(
+    kind: Callable[..., Settings], design: Design, *, accuracy: float | None = None, **settings: Any
+) -> Response:
+    """Return the path; `accuracy`: that a spline chooses its control points for [1]."""
+    return answer_static(design, kind(**settings), accuracy=accuracy).whole()
 
 
-spline = _Own(name="spline", discretised=SplineSettings)
-elements = _Own(name="finite elements", discretised=FeSettings)
+def _swing(
+    kind: Callable[..., Settings],
+    design: Design,
+    duration: float,
+    *,
+    integrator: str | None = None,
+    step: float | None = None,
+    **settings: Any,
+) -> Motion:
+    """Return the motion; the step [s] of an explicit scheme is its own, near the largest stable one."""
+    records = RECORDS if integrator in EXPLICIT else None
+    how: dict[str, Any] = {"records": records, "integrator": integrator, "step": step}
+    return answer_release(design, kind(**settings), duration=duration, **how).whole()
+
+
+spline = Model(name="spline", path=partial(_path, SplineSettings), swing=partial(_swing, SplineSettings))
+elements = Model(name="finite elements", path=partial(_path, FeSettings), swing=partial(_swing, FeSettings))
 
 
 def turns_of(problem: Problem) -> Array:
@@ -138,32 +129,3 @@ def geometry_of(problem: Problem) -> Geometry:
         crossing=np.array(problem.crossing_point),
         centre=np.array(problem.bodies[0].centre),
     )
-
-
-class State(NamedTuple):
-    """A surrogate of one pivot at S rotations: centre of mass of the body (S, 2) [m], driving torque (S,)
-    [N m] and its derivative by the rotation (S,) [N m / rad]."""
-
-    centre: Array
-    torque: Array
-    stiffness: Array
-
-
-@dataclass(eq=False, kw_only=True)
-class Surrogate(Model):
-    """A model of statics alone; `law`: what a pivot is at rotations (S,) [rad]."""
-
-    law: Callable[[Problem, Array], State]
-
-    def path(self, problem: Problem) -> SolvedPath:
-        """Return the path."""
-        turns, begin = turns_of(problem), time.perf_counter()
-        found = self.law(problem, turns)
-        return SolvedPath(
-            rotation=turns,
-            centre=found.centre,
-            torque=found.torque,
-            stiffness=found.stiffness,
-            solve_s=time.perf_counter() - begin,
-            counters={"unknowns": 1},
-        )

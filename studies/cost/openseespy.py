@@ -21,7 +21,6 @@ import ctypes
 import importlib.util
 import os
 import time
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -57,75 +56,47 @@ def _loaded() -> Any:
     return commands
 
 
-@dataclass(eq=False, kw_only=True)
-class _OpenSees(Model):
-    """OpenSees as a model."""
-
-    def installed(self) -> bool:
-        """Return whether OpenSees can be imported."""
-        try:
-            _loaded()
-        except (ImportError, OSError, RuntimeError):
-            return False
-        return True
-
-    def path(self, problem: Problem, *, elements: int = 20, tolerance: float = 1e-8) -> SolvedPath:
-        """Return the path.
-
-        Args:
-            elements: a strip [1].
-            tolerance: of the energy of Newton's last iteration, in EI/L [1].
-        """
-        turns = turns_of(problem)
-        ops = _driven(problem, elements, tolerance, float(turns[1]), moving=False)
-        begin, states, iterations = time.perf_counter(), [np.zeros(3)], 0
-        for turn in turns[1:]:
-            if ops.analyze(1) != 0:
-                raise Unanswered(f"OpenSees: no convergence at {turn:g} rad")
-            iterations += ops.testIter()
-            states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
-        seconds, answer = time.perf_counter() - begin, np.array(states)
-        return SolvedPath(
-            rotation=turns,
-            centre=geometry_of(problem).centre + answer[:, :2],
-            torque=answer[:, 2],
-            solve_s=seconds,
-            counters=_counters(ops, iterations),
-        )
-
-    def swing(
-        self,
-        problem: Problem,
-        duration: float,
-        *,
-        step: float,
-        elements: int = 20,
-        tolerance: float = 1e-8,
-    ) -> SolvedMotion:
-        """Return the motion by Hilber, Hughes and Taylor's method in steps of `step` [s]; others as of
-        `path`."""
-        steps = steps_of(duration, step)
-        ops = _let_go(problem, elements, tolerance, problem.rotation)
-        begin, rotation, iterations = time.perf_counter(), np.full(steps + 1, problem.rotation), 0
-        for row in range(1, steps + 1):
-            if ops.analyze(1, duration / steps) != 0:
-                raise Unanswered(f"OpenSees: no convergence at {ops.getTime():g} s")
-            iterations += ops.testIter()
-            rotation[row] = ops.nodeDisp(BODY)[2]
-        return SolvedMotion(
-            time=np.linspace(0.0, duration, steps + 1),
-            rotation=rotation,
-            solve_s=time.perf_counter() - begin,
-            counters=_counters(ops, iterations) | {"steps": steps},
-        )
+def _installed() -> bool:
+    """Return whether OpenSees can be imported."""
+    try:
+        _loaded()
+    except (ImportError, OSError, RuntimeError):
+        return False
+    return True
 
 
-def _counters(ops: Any, iterations: int) -> dict[str, int]:
-    return {
-        "unknowns": ops.systemSize(),
-        "newton_iterations": iterations,
-        "factorisations": iterations,
-    }
+def _path(problem: Problem, *, elements: int = 20, tolerance: float = 1e-8) -> SolvedPath:
+    """Return the path.
+
+    Args:
+        elements: a strip [1].
+        tolerance: of the energy of Newton's last iteration, in EI/L [1].
+    """
+    turns = turns_of(problem)
+    ops = _driven(problem, elements, tolerance, float(turns[1]), moving=False)
+    begin, states = time.perf_counter(), [np.zeros(3)]
+    for turn in turns[1:]:
+        if ops.analyze(1) != 0:
+            raise Unanswered(f"OpenSees: no convergence at {turn:g} rad")
+        states.append(np.array([*ops.nodeDisp(BODY)[:2], ops.getTime()]))
+    seconds, answer = time.perf_counter() - begin, np.array(states)
+    centre = geometry_of(problem).centre + answer[:, :2]
+    return SolvedPath(rotation=turns, centre=centre, torque=answer[:, 2], solve_s=seconds)
+
+
+def _swing(
+    problem: Problem, duration: float, *, step: float, elements: int = 20, tolerance: float = 1e-8
+) -> SolvedMotion:
+    """Return the motion by the method of Hilber, Hughes and Taylor; `step` [s], the others as of `_path`."""
+    steps = steps_of(duration, step)
+    ops = _let_go(problem, elements, tolerance, problem.rotation)
+    begin, rotation = time.perf_counter(), np.full(steps + 1, problem.rotation)
+    for row in range(1, steps + 1):
+        if ops.analyze(1, duration / steps) != 0:
+            raise Unanswered(f"OpenSees: no convergence at {ops.getTime():g} s")
+        rotation[row] = ops.nodeDisp(BODY)[2]
+    seconds = time.perf_counter() - begin
+    return SolvedMotion(time=np.linspace(0.0, duration, steps + 1), rotation=rotation, solve_s=seconds)
 
 
 def _build(problem: Problem, elements: int, *, moving: bool) -> Any:
@@ -194,4 +165,4 @@ def _solver(ops: Any, problem: Problem, tolerance: float) -> None:
     ops.algorithm("Newton")
 
 
-openseespy_frame = _OpenSees(name="openseespy frame")
+openseespy_frame = Model(name="openseespy frame", path=_path, swing=_swing, installed=_installed)

@@ -11,18 +11,14 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from studies.cost.constraint_model import constraint_model
-from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.cost.exudyn import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements, spline
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.pseudo_rigid import four_bar, linear_pivot, pin_joint
+from studies.cost.surrogates import SURROGATES
 from studies.engine import lacking
 from studies.record.style import BLACK, BLUE, ORANGE, PURPLE, SKY, Look
 
-#: Models of which the rotation is the only coordinate, the one whose beams have others that are eliminated,
-#: and other codes.
-PSEUDO_RIGID: dict[str, Model] = {each.name: each for each in (linear_pivot, pin_joint, four_bar)}
-SURROGATES: dict[str, Model] = PSEUDO_RIGID | {constraint_model.name: constraint_model}
+#: Other codes.
 PEERS: dict[str, Model] = {each.name: each for each in (exudyn_ancf, exudyn_exact, openseespy_frame)}
 
 #: What models are compared under, the spline first.
@@ -97,10 +93,9 @@ class Setting:
 
     @staticmethod
     def _told(settings: Mapping[str, Any]) -> list[str]:
+        words = {name: WORDS.get(name, name.replace("_", " ") + " {:g}") for name in settings}
         return [
-            f"{1e6 * value:.3g} µs"
-            if name == "step"
-            else WORDS.get(name, name.replace("_", " ") + " {:g}").format(value)
+            f"{1e6 * value:.3g} µs" if name == "step" else words[name].format(value)
             for name, value in settings.items()
         ]
 
@@ -133,26 +128,28 @@ def paths() -> list[Setting]:
     ]
 
 
-#: Steps of all implicit schemes [s], for a pivot whose first mode has the paper's frequency [Hz].
-STEPS, FREQUENCY = (5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5), 76.0
+#: Steps of all implicit schemes [s].
+STEPS = (5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
 #: Exudyn's spectral radius, and the tolerance of its iterations.
 DAMPED = ((0.9, 1e-3), (0.6, 1e-3), (0.9, 1e-5))
 
 
-def swings(frequency: float = FREQUENCY) -> list[Setting]:
-    """Return the settings of the motion after a release of a design with that first frequency [Hz]."""
-    step = [FREQUENCY / frequency * each for each in STEPS]
-    damped = (
-        (model, meshes, {"spectral_radius": (radius,), "relative_tolerance": (tolerance,)})
-        for radius, tolerance in DAMPED
-        for model, meshes in ((exudyn_ancf, (3, 4, 6, 8, 12)), (exudyn_exact, (2, 3, 4, 6)))
-    )
+def swings() -> list[Setting]:
+    """Return the settings of the motion after the release of the paper's pivot."""
+    exudyn = {exudyn_ancf: (3, 4, 6, 8, 12), exudyn_exact: (2, 3, 4, 6)}
     explicit, implicit = ("central-difference",), ("generalised-alpha",)
     return [
         *grid(spline, SPLINE, control_points=range(4, 11), integrator=("leapfrog",)),
-        *grid(spline, SPLINE, control_points=(4, 5, 6, 7, 8), integrator=("energy",), step=step),
+        *grid(spline, SPLINE, control_points=(4, 5, 6, 7, 8), integrator=("energy",), step=STEPS),
         *grid(elements, ELEMENTS, elements=(5, 10, 16, 24, 36), integrator=explicit),
-        *grid(elements, ELEMENTS, elements=(5, 10, 16, 24), integrator=implicit, step=step),
-        *(s for model, meshes, how in damped for s in grid(model, EXUDYN, elements=meshes, step=step, **how)),
-        *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40), step=step),
+        *grid(elements, ELEMENTS, elements=(5, 10, 16, 24), integrator=implicit, step=STEPS),
+        *(each for way in product(exudyn.items(), DAMPED) for each in _of_exudyn(*way)),
+        *grid(openseespy_frame, OPENSEES, elements=(5, 10, 20, 40), step=STEPS),
     ]
+
+
+def _of_exudyn(code: tuple[Model, Sequence[int]], damped: tuple[float, float]) -> list[Setting]:
+    """Return the settings of motions of a kind of strips with its meshes, at one damping."""
+    (model, meshes), (radius, tolerance) = code, damped
+    how = {"spectral_radius": (radius,), "relative_tolerance": (tolerance,)}
+    return grid(model, EXUDYN, elements=meshes, step=STEPS, **how)

@@ -7,7 +7,6 @@ increments or steps alone stands beside it. An advice is the cheapest setting of
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from operator import attrgetter
 from typing import Any
@@ -16,9 +15,7 @@ import numpy as np
 import pandas as pd
 
 from studies.answers import reference
-from studies.answers.adapters import answer_modes, answer_release
-from studies.answers.reference import Reference, SwingReference, sampled
-from studies.answers.settings import SplineSettings
+from studies.answers.reference import Reference
 from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.cost import settings as listed
@@ -31,9 +28,6 @@ from studies.record.progress import measure, silent
 
 #: Theories of a strip, both with bending per reference length: without and with shear.
 THEORIES = MATERIAL, SHEAR = "material", "shear"
-#: Records of these: the strips' own oscillations are some 40 times as fast as the swing, and cubic
-#: interpolation between so many errs by less than 1e-6 rad.
-RECORDS = 4000
 
 
 def path_limit(design: Design, theory: str) -> Reference:
@@ -46,38 +40,11 @@ def path_limit(design: Design, theory: str) -> Reference:
     return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
 
 
-def swing_limit(
-    design: Design, instants: Array, integrator: str, steps: Mapping[int, float | None]
-) -> SwingReference:
-    """Return the free vibration without shear at `instants` (T,) [s] by the finest splines.
-
-    steps: step [s] of each number of control points, the finer discretisation first; None: the default step.
-
-    Raises:
-        NoReference: a motion stopped early.
-    """
-    found = []
-    for n, step in steps.items():
-        motion = answer_release(
-            *(design, SplineSettings(control_points=n)),
-            duration=float(instants[-1]), records=RECORDS, integrator=integrator, step=step,
-        )  # fmt: skip
-        if not motion.converged:
-            raise reference.NoReference(f"reference with {n} control points: {motion.message}")
-        found.append(sampled(motion, instants))
-    fine, coarse = found
-    told = (f"n = {n}" + (f" at {1e6 * step:g} µs" if step else "") for n, step in steps.items())
-    uncertainty = reference.swing_errors(coarse, fine)
-    return SwingReference(**vars(fine), uncertainty=uncertainty, source=" and ".join(told))
-
-
 #: Passes through all settings, far apart in time: what else the machine does lasts longer than one setting.
 PASSES = 3
 #: Time that the runs of a setting may take in a pass [s], and their largest number; what takes longer than
 #: that time at once is timed in one pass alone.
 AFFORDED, RUNS = 0.2, 5
-#: Counters that stand beside the errors.
-WORK = ("unknowns", "steps", "newton_iterations", "factorisations")
 
 #: Errors of a path, and those that it is judged by first.
 PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
@@ -92,7 +59,7 @@ def compared(
     passes: int = PASSES,
     progress: Progress = silent,
 ) -> pd.DataFrame:
-    """Return errors [1, rad], work and times [s] of the path of a design, or of its motion up to `instants`
+    """Return errors [1, rad] and times [s] of the path of a design, or of its motion up to `instants`
     (T,) [s].
 
     One row per setting; a model that is not installed has one row. Such a model, and a failed setting, have
@@ -120,9 +87,8 @@ def compared(
         except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
             continue
-        work = {name: answer.counters.get(name, np.nan) for name in WORK}
         found = errors(answer, limits[each.theory])
-        rows.append(row | {"status": "converged", "message": "", "solver": each} | found | work)
+        rows.append(row | {"status": "converged", "message": "", "solver": each} | found)
     seconds = _times([row["solver"] for row in rows if "solver" in row], solve, passes)
     progress(len(settings), len(settings))
     return pd.DataFrame([row | spread(*seconds.get(row.pop("solver", None), ((), ()))) for row in rows])
@@ -181,15 +147,11 @@ def cheapest(rows: pd.DataFrame, judged: Sequence[str], error: float) -> pd.Data
     return pd.DataFrame(found)
 
 
-#: A motion is followed for this many periods of the first mode at rest, and compared at so many instants.
-PERIODS, INSTANTS = 4.0, 501
-#: Control points of the spline that motions are held against, and of the one that says how uncertain it is.
-REFERENCE = (16, 14)
 #: Passes of timing of an advice.
 ADVISED = 2
 
 
-def advise_path(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
+def advise(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
     """Return the advice for the static path of a design, each model against the limit of its own theory.
 
     Args:
@@ -205,57 +167,13 @@ def advise_path(design: Design, error: float, progress: Progress = silent) -> pd
     Raises:
         NoReference: the finite elements do not reach the end of the path.
     """
-    asked = _askable(listed.paths(), design)
+    pivot, own = isinstance(design, Problem), (spline, elements)
+    asked = [each for each in listed.paths() if each.model.installed() and (pivot or each.model in own)]
     limits = {theory: path_limit(design, theory) for theory in {each.theory for each in asked}}
     rows = compared(asked, design, limits, passes=ADVISED, progress=progress)
-    return _uncertain(cheapest(rows, PATH_JUDGED, error), limits)
-
-
-def advise_swing(design: Design, error: float, progress: Progress = silent) -> pd.DataFrame:
-    """Return the advice for the motion of a design after its release from the end of its path.
-
-    Columns as of `advise_path`, with the errors [1] of rotation (largest over the motion, over the rotation
-    at the start) and of frequency, for a wanted `error` [1]. The reference is a spline of `REFERENCE` control
-    points.
-
-    Raises:
-        NoReference: the motion of this spline stops early.
-    """
-    frequency = float(answer_modes(design, SplineSettings(control_points=6), count=1).frequency[0])
-    instants, start = np.linspace(0.0, PERIODS / frequency, INSTANTS), abs(design.rotation or 0.0)
-    steps: dict[int, float | None] = dict.fromkeys(REFERENCE)
-    limit = swing_limit(design, instants, _integrator(design, 0.1 * PERIODS / frequency), steps)
-    limits = {MATERIAL: limit}
-    asked = [each for each in _askable(listed.swings(frequency), design) if each.theory in limits]
-    rows = compared(asked, design, limits, instants, passes=ADVISED, progress=progress)
-    rows["rotation"] = rows.pop("rotation_rad") / start
-    known = limit.uncertainty
-    uncertainty = {"rotation": known["rotation_rad"] / start, "frequency": known["frequency"]}
-    best = cheapest(rows, ("rotation", "frequency"), error)
-    return _uncertain(best, {MATERIAL: replace(limit, uncertainty=uncertainty)})
-
-
-def _askable(given: list[Setting], design: Design) -> list[Setting]:
-    """Return the settings of installed models; of a mechanism those of the suite's own."""
-    own = (spline, elements)
-    pivot = isinstance(design, Problem)
-    return [each for each in given if each.model.installed() and (pivot or each.model in own)]
-
-
-def _integrator(design: Design, duration: float) -> str:
-    """Return the spline's most accurate integrator that the scene allows, by trying."""
-    try:
-        spline.swing(design, duration, integrator="leapfrog", control_points=4)
-    except Unanswered:
-        return "energy"
-    return "leapfrog"
-
-
-def _uncertain(found: pd.DataFrame, limits: Mapping[str, Any]) -> pd.DataFrame:
-    """Return the advice with how uncertain the limit of each quantity is."""
-    names = next(iter(limits.values())).uncertainty
+    found = cheapest(rows, PATH_JUDGED, error)
     columns: dict[str, list[Any]] = {
         f"uncertainty_{name}": [limits[theory].uncertainty[name] for theory in found["theory"]]
-        for name in names
+        for name in PATH_ERRORS
     }
     return found.assign(**columns)

@@ -9,7 +9,7 @@ from studies.answers.adapters import answer_static
 from studies.answers.reference import largest_errors, reference
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
-from studies.cost.exudyn_strips import exudyn_ancf, exudyn_exact
+from studies.cost.exudyn import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements
 from studies.cost.openseespy import openseespy_frame
 from studies.cost.settings import PEERS, grid
@@ -90,12 +90,11 @@ def test_failed_setting_keeps_its_row():
     """Requirement: a setting that fails is a row with the reason; one that does not has errors and times of
     whole calls, of which the increments are a part."""
 
-    class Failing(Model):
-        def path(self, *_, **__):
-            raise Unanswered("stopped at 0.1 rad")
+    def stopping(*_, **__):
+        raise Unanswered("stopped at 0.1 rad")
 
     limits = {"material": reference(CASE)}
-    asked = [*grid(Failing(name="failing"), "x"), *grid(elements, "y", elements=(5, 20))]
+    asked = [*grid(Model(name="failing", path=stopping), "x"), *grid(elements, "y", elements=(5, 20))]
     failed, coarse, fine = compared(asked, CASE, limits, passes=1).to_dict("records")
     assert (failed["status"], failed["message"], failed["runs"]) == ("failed", "stopped at 0.1 rad", 0)
     assert math.isnan(failed["torque"])
