@@ -12,7 +12,7 @@ from studies.answers.reference import SolvedMotion, SwingReference, sampled
 from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
-from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, MEANING, PAPER, REFINED, SETTINGS, SIX
+from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, PAPER, REFINED, SETTINGS, SIX
 from studies.record.marks import Doubt
 from studies.record.panels import TIME, Axis, Curves, Panel, sheet
 from studies.record.style import GREEN, Look
@@ -111,16 +111,9 @@ def _trace(name: str, swing: SolvedMotion, limit: SolvedMotion) -> pd.DataFrame:
 def _summary(name: str, motion: Motion, trace: SolvedMotion, limit: SwingReference) -> Row:
     return {
         "formulation": name,
-        "meaning": MEANING.get(name, "material measure, mixed stretch: refined, a check of the reference"),
         "status": motion.status,
-        "frequency_Hz": motion.frequency,
         "frequency_shift": motion.frequency / limit.frequency - 1.0,
         "error_rotation_rad": float(np.abs(trace.rotation - limit.rotation).max()),
-        "error_centre_m": float(np.linalg.norm(trace.centre - limit.centre, axis=1).max()),
-        "energy_error": motion.energy_error,
-        "constraint_residual_m": float(motion.constraint_residual.max()),
-        "integrator": motion.settings["integrator"],
-        "step_s": motion.settings["step_s"],
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from studies.answers import reference
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.motion import Motion
-from studies.answers.reference import MESHES, RECORDS, Reference, SwingReference, errors
+from studies.answers.reference import RECORDS, Reference, SwingReference, errors
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.problem import named_case
 from studies.engine import Answer, Part, Study
@@ -20,47 +20,33 @@ REFINED, FE = "FE refined", "FE, 20 elements"
 PRINTED = "n = 4, printed forces"
 
 _AS_PAPER = SplineSettings(control_points=4, measure="spatial", stretch="consistent")
-#: Settings of each formulation, none of the limit of refinement; how it is drawn; and what it is.
-NAMED: dict[str, tuple[Settings | None, Look, str]] = {
-    REFINED: (
-        None,
-        Look(label="FE, refined", colour=BLACK),
-        f"the same elements in the limit of refinement, from {', '.join(map(str, MESHES))} a strip",
-    ),
-    FE: (
-        FeSettings(elements=20),
-        Look(label="FE, 20 elements", colour=GREY, line="--", marker="s"),
-        "corotational Euler-Bernoulli elements, 20 a strip, as the paper",
-    ),
-    PAPER: (
-        _AS_PAPER,
-        Look(label="spline n = 4, as the paper", colour=RED, marker="o"),
-        "Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch",
-    ),
+#: Settings of each formulation, none of the limit of refinement, and how it is drawn.
+NAMED: dict[str, tuple[Settings | None, Look]] = {
+    # the same elements in the limit of refinement
+    REFINED: (None, Look(label="FE, refined", colour=BLACK)),
+    # corotational Euler-Bernoulli elements, as many a strip as the paper has
+    FE: (FeSettings(elements=20), Look(label="FE, 20 elements", colour=GREY, line="--", marker="s")),
+    # Eqs 10 and 13 integrated exactly: spatial measure, consistent stretch
+    PAPER: (_AS_PAPER, Look(label="spline n = 4, as the paper", colour=RED, marker="o")),
+    # the forces of Eqs 12 and 15 as printed, not the gradient of an energy
     PRINTED: (
         replace(_AS_PAPER, measure="published"),
         Look(label="spline n = 4, printed forces", colour=PURPLE, line=":", marker="v"),
-        "the forces of Eqs 12 and 15 as printed, not the gradient of an energy",
     ),
+    # Eqs 10 and 13 with three Gauss points, too few to see the locking
     "n = 4, 3 Gauss points": (
         replace(_AS_PAPER, gauss_points=3),
         Look(label="spline n = 4, 3 Gauss points", colour=ORANGE, line="-.", marker="^"),
-        "Eqs 10 and 13 with three Gauss points, too few to see the locking",
     ),
+    # material measure, mixed stretch with two axial-force modes a strip; with four
     LOCKING_FREE: (
         SplineSettings(control_points=4, axial_modes=2),
         Look(label="spline n = 4, locking-free", colour=SKY, marker="D"),
-        "material measure, mixed stretch with two axial-force modes a strip",
     ),
-    SIX: (
-        SplineSettings(control_points=6),
-        Look(label="spline n = 6", colour=BLUE, marker="x"),
-        "material measure, mixed stretch with four axial-force modes a strip",
-    ),
+    SIX: (SplineSettings(control_points=6), Look(label="spline n = 6", colour=BLUE, marker="x")),
 }
-SETTINGS = {name: settings for name, (settings, _, _) in NAMED.items() if settings is not None}
-LOOKS = {name: look for name, (_, look, _) in NAMED.items()}
-MEANING = {name: meaning for name, (_, _, meaning) in NAMED.items()}
+SETTINGS = {name: settings for name, (settings, _) in NAMED.items() if settings is not None}
+LOOKS = {name: look for name, (_, look) in NAMED.items()}
 
 
 @cache

@@ -1,8 +1,7 @@
 """Figs 3 to 5 of the paper: snapshots, path of the body's centre, torque, stiffness, and errors of each."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ from studies.cases.problem import named_case
 from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
-from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, MEANING, PAPER, REFINED, path_of, refined
+from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, PAPER, REFINED, path_of, refined
 from studies.record.marks import Doubt, Level, Words
 from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
 from studies.record.style import Look
@@ -129,38 +128,25 @@ FIG03 = Study(
 """Fig 3 of the paper: snapshots of the pivot, both models superposed, and the distance of their strips."""
 
 
-def _along(
-    name: str, table: str, quantities: Iterable[str], columns: Row, summary: Callable[[Any, Any], Row]
-) -> Answer:
-    """Return a formulation's path with the errors of quantities and a summary of both; of the refined
-    elements the uncertainties."""
+def _along(name: str, table: str, quantities: Iterable[str], columns: Row, summary: Row) -> Answer:
+    """Return a formulation's path with the errors of quantities, and a summary; of the refined elements the
+    uncertainties."""
     path, limit = path_of(name), refined()
     found = errors(path, limit)
     known = {"formulation": name, "rotation_rad": path.rotation, **columns}
     rows = pd.DataFrame(known | {f"error_{of}": found[of] for of in quantities})
     if name == REFINED:
-        return {
-            table: rows,
-            "reference": [{"quantity": q, "uncertainty": limit.uncertainty[q]} for q in quantities],
-        }
-    told = {"formulation": name, "meaning": MEANING[name], "status": path.status}
-    return {table: rows, "summary": told | summary(path, found)}
+        unsure = [{"quantity": q, "uncertainty": limit.uncertainty[q]} for q in quantities]
+        return {table: rows, "reference": unsure}
+    return {table: rows, "summary": {"formulation": name, "status": path.status, **summary}}
 
 
 def _centres(name: str) -> Answer:
     """Return the way of the body's centre."""
     centre = path_of(name).centre
     columns = {"com_x_m": centre[:, 0], "com_y_m": centre[:, 1]}
-    return _along(name, "paths", ["trajectory"], columns, _of_centre)
-
-
-def _of_centre(path: Response, error: Mapping[str, Array]) -> Row:
-    return {
-        "error_end": error["trajectory"][-1],
-        "error_largest": error["trajectory"].max(),
-        "difference_to_fe20_end": trajectory_error(path.centre, path_of(FE).centre)[-1],
-        "centre_shift_end_m": float(np.linalg.norm(path.centre_shift[-1])),
-    }
+    end = trajectory_error(centre, path_of(FE).centre)[-1]
+    return _along(name, "paths", ["trajectory"], columns, {"difference_to_fe20_end": end})
 
 
 def _trajectories(tables: Tables) -> Figure:
@@ -214,22 +200,9 @@ OF_FIG05 = {
 
 def _curves(name: str) -> Answer:
     """Return torque and stiffness."""
-    columns = {column: getattr(path_of(name), of) for of, (column, _) in OF_FIG05.items()}
-    return _along(name, "curves", OF_FIG05, columns, _of_curves)
-
-
-def _of_curves(path: Response, error: Mapping[str, Array]) -> Row:
-    half, torque, stiffness = len(refined().rotation) // 2, error["torque"], error["stiffness"]
-    return {
-        "error_torque_half": torque[half] if half < len(torque) else np.nan,
-        "error_torque_end": torque[-1],
-        "error_torque_largest": float(np.abs(torque).max()),
-        "error_stiffness_end": stiffness[-1],
-        "error_stiffness_largest": float(np.abs(stiffness).max()),
-        "axial_energy_end_J": path.axial_energy[-1],
-        "bending_energy_end_J": path.bending_energy[-1],
-        "max_stress_end_Pa": path.max_stress[-1],
-    }
+    path = path_of(name)
+    columns = {column: getattr(path, of) for of, (column, _) in OF_FIG05.items()}
+    return _along(name, "curves", OF_FIG05, columns, {"max_stress_end_Pa": path.max_stress[-1]})
 
 
 def _stiffnesses(tables: Tables) -> Figure:
