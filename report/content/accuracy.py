@@ -71,7 +71,7 @@ FACTS |= {
     "fig07.rate": Fact(made=_rate, form=unit("Hz", 3)),
     "fig07.loop": Fact(made=_loop, form=_asked(unit("ms", 3), 40.0)),
     "fig07.alone": Fact(made=_alone, form=_asked(unit("ms", 3), 1.0)),
-    "impulses.limit": LIMITS.at("measured_s", seconds, design="Table 1", group="axial", sweeps=0),
+    "impulses.limit": LIMITS.at("measured_s", seconds, design="Table 1", group="axial"),
     "impulses.over": IMPULSES.at(
         "value", times, claim="Section 4.1: h = 1/100 s", formulation="Table 1, axial modes, as printed"
     ),

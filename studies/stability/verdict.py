@@ -74,7 +74,7 @@ class Found:
             is off a refusal, provided `states_limit` is set.
         warning: what the model's own check of its resolution finds; it states a limit, where it counts.
         fault: an invariant that the answer breaks, in words; what the model says does not excuse it.
-        counters: work done, by kind. measured: what else the table has of the answer, by column.
+        measured: what else the table has of the answer, by column.
     """
 
     error: float
@@ -83,13 +83,7 @@ class Found:
     states_limit: bool = False
     warning: str = ""
     fault: str = ""
-    counters: Mapping[str, int] = field(default_factory=dict)
     measured: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def iterations(self) -> int:
-        """Newton iterations."""
-        return self.counters.get("newton_iterations", self.counters.get("iterations", 0))
 
     @classmethod
     def of(cls, answer: Any, error: float, *, fault: str = "", **measured: float) -> Self:
@@ -100,7 +94,6 @@ class Found:
             reason=answer.message,
             warning=answer.resolution,
             fault=fault,
-            counters=answer.counters,
             measured=measured,
         )
 
@@ -126,8 +119,6 @@ def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> R
         "outcome": outcome or _outcome(found, tolerance, limited=found.states_limit or bool(warning)),
         "error": found.error,
         "reason": found.fault or (warning if found.reached else "") or found.reason or warning,
-        "iterations": found.iterations,
-        "halvings": sum(found.counters.get(each, 0) for each in ("halved_increments", "halved_steps")),
         "stopped": not found.reached,
         "warned": bool(found.warning),
         **found.measured,
