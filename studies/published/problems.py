@@ -40,7 +40,7 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     """Return our answer to a value of a published problem in its printed unit; NaN if the path has none.
 
     Args:
-        name: of the problem. model: of `case.MODELS`. answer: of `case.ANSWERS`.
+        name: of the problem. model: of `case.MODELS`. answer: of its limits.
         value: of the problem.
 
     Raises:
@@ -55,7 +55,7 @@ def ours(name: str, model: str, answer: str, value: Value) -> float:
     else:
         arc = _arc(name, model, answer, value.load, value.quantity == case.LOAD_AT_ROTATION)
         found = OF_ARCS[value.quantity](arc, value)
-    return found / value.scale
+    return found / value.unit_SI
 
 
 @cache
@@ -136,7 +136,7 @@ def _compared(name: str, model: str, answer: str) -> Answer:
 
 
 def _row(name: str, model: str, answer: str, value: Value) -> Row:
-    problem, limit = published(name), value.limits[answer]
+    problem, limit = published(name), value.limit[answer]
     try:
         found, message = ours(name, model, answer, value), ""
     except BadInput as refusal:

@@ -14,7 +14,7 @@ from tests.models import refined
 from tests.table_one import BARE
 
 #: b/L, Poisson ratio, factors of a constant and of a linear moment: Ritz values of the literature.
-KNOWN = [
+RITZ = [
     (0.1, 0.30, 1.0075, 1.0205),
     (0.2, 0.29, 1.0140, 1.0349),
     (0.25, 0.30, 1.0188, 1.0445),
@@ -67,9 +67,9 @@ def test_plate_factors_are_those_of_the_literature(gate, models):
     """Requirement: both factors of a clamped plate are the published ones, to their printed digits."""
 
     def error(poisson_ratio=0.0):
-        found = [models.plate_factors(ratio, nu + poisson_ratio) for ratio, nu, *_ in KNOWN]
+        found = [models.plate_factors(ratio, nu + poisson_ratio) for ratio, nu, *_ in RITZ]
         factors = np.array([(each.constant, each.linear) for each in found])
-        return np.abs(factors - np.array(KNOWN)[:, 2:]).max()
+        return np.abs(factors - np.array(RITZ)[:, 2:]).max()
 
     gates.hold(gate, error)
 

@@ -22,9 +22,8 @@ from studies.answers.validity import (
 from studies.cases.design import named_design
 from studies.cases.problem import named_case
 from studies.cases.section import of_moments
-from studies.published.problems import RITZ
 from tests import gates
-from tests.agreement.test_section_laws import ASHWELL
+from tests.agreement.test_section_laws import ASHWELL, RITZ
 
 SIX = SplineSettings(control_points=6)
 
