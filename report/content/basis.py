@@ -1,6 +1,5 @@
 """What the report rests on: the given pivot, limits of tests, provenance, machine, versions."""
 
-import hashlib
 import importlib.metadata
 import tomllib
 from collections.abc import Mapping
@@ -9,15 +8,13 @@ from functools import cache
 from typing import Any
 
 from report.facts import FACTS, Fact, Results, Stored, Table, listing
-from report.forms import Form, count, degrees, percent, power, seconds, significant, unit
+from report.forms import Form, count, degrees, percent, power, significant, unit
 from studies.cases.problem import Problem, named_case
 from studies.record.source import ROOT
 from studies.registry import STUDIES
 
 TORQUE = Stored("cost/codes", "path_limits", theory="shear", quantity="torque")
 SWING = Stored("cost/codes", "swing_limits", theory="shear")
-#: Letters of a hash.
-HASH = 10
 
 
 @cache
@@ -47,16 +44,6 @@ _GIVEN: tuple[tuple[str, str, str, Form], ...] = (
 def _given(results: Results) -> Table:
     yield ["quantity", "symbol", "value"]
     yield from ([what, symbol, form(getattr(_pivot(), name))] for what, symbol, name, form in _GIVEN)
-
-
-@listing("provenance")
-def _provenance(results: Results) -> Table:
-    yield ["study", "source", "tables", "computed in", "date"]
-    for study in STUDIES:
-        record = results.record(study)
-        tables = hashlib.sha256("".join(record["tables"].values()).encode()).hexdigest()
-        took = seconds(record["elapsed_s"]) if record["elapsed_s"] else "–"
-        yield [study, record["inputs"]["source_sha256"][:HASH], tables[:HASH], took, record["date"]]
 
 
 @listing("machine")

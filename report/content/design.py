@@ -59,13 +59,6 @@ def _surrogates(results: Results) -> Table:
         yield [model, *(degrees(end) for end in ends.loc[model])]
 
 
-def _nearer(results: Results) -> float:
-    """Return the share of the rotations at which the four-bar's path is nearer than the paper's spline's."""
-    rows = Stored("cost/surrogates", "errors").rows(results).query("rotation_rad > 0.0")
-    errors = rows.pivot(index="rotation_rad", columns="model", values="trajectory").abs()
-    return float((errors["four-bar"] < errors[SPLINES[0]]).mean())
-
-
 def _extreme(task: str, group: str, pick: Callable[[Any], Any]) -> Fact:
     """Return the least or largest ratio of a group over all errors."""
     return Fact(made=lambda r: pick(TASKS[task][0].rows(r, group=group)["ratio"].dropna()), form=times)
@@ -84,7 +77,6 @@ FACTS |= {
     "cost.path.whole": TASKS["path"][0].at("spline_s", seconds, group="Exudyn", level=2e-4),
     "cost.command.spline": WAITS.at("whole_s", seconds, model="spline, n = 6"),
     "cost.command.fe": WAITS.at("whole_s", seconds, model="80 elements"),
-    "surrogates.nearer": Fact(made=_nearer, form=percent),
     "surrogates.torque": SURROGATES.at(
         "value",
         times,

@@ -41,11 +41,6 @@ def test_every_table_is_referred_to():
     assert quoted("listing") == quoted("seetable")
 
 
-def test_every_study_appears(content):
-    """Each study of the register has a line in the provenance."""
-    assert [row[0] for row in content["listings"]["provenance"]["rows"]] == list(STUDIES)
-
-
 def test_every_figure_has_words():
     """Each figure has an alternative text of a sentence; one without ends the build."""
     for path in SECTIONS:
