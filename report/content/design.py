@@ -64,7 +64,7 @@ def _extreme(task: str, group: str, pick: Callable[[Any], Any]) -> Fact:
     return Fact(made=lambda r: pick(TASKS[task][0].rows(r, group=group)["ratio"].dropna()), form=times)
 
 
-WAITS = Stored(CODES, "waits_of_time", what="command line")
+WAITS = Stored(CODES, "waits_of_time")
 FACTS |= {
     f"cost.{task}.{short}.{name}": _extreme(task, group, pick)
     for task in TASKS

@@ -16,7 +16,7 @@ from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, PAPER, REFINED, path_of, refined
-from studies.record.marks import Doubt, Level, Words
+from studies.record.marks import Doubt, Level
 from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
 from studies.record.style import Look
 
@@ -215,20 +215,16 @@ def _curves_and_errors(tables: Tables, quantity: str, column: str, label: str) -
     """Return the panel of a quantity, limited to what can be compared there, and that of its error."""
     curves = tables["curves"]
     highest = 1.8 * curves.query("formulation == @REFINED")[column].max()
-    locked = curves.query("formulation == @PAPER")[column].max()
-    unit = label[label.index("[") + 1 : -1]
-    words = f"as the paper:\nup to {locked:.0f} {unit}"
-    above = (
-        Curves(curves, LOOKS, more={"markevery": 2}),
-        Words(words, (0.03, 0.86), placed=True, colour=LOOKS[PAPER].colour),
-    )
+    above = Curves(curves, LOOKS, more={"markevery": 2})
     below = (
         Curves(curves.query("formulation != @REFINED and rotation_rad > 0"), LOOKS),
         Level(NEGLIGIBLE, words="3 %"),
         Doubt(tables["reference"].query("quantity == @quantity")["uncertainty"].max()),
     )
     error = Axis(f"error_{quantity}", f"|error of the {quantity}| [1]", log=True)
-    return Panel(ROTATION, Axis(column, label, limits=(0.0, highest)), above), Panel(ROTATION, error, below)
+    return Panel(ROTATION, Axis(column, label, limits=(0.0, highest)), (above,)), Panel(
+        ROTATION, error, below
+    )
 
 
 def _to_twenty(tables: Tables) -> Iterator[Row]:

@@ -78,29 +78,6 @@ class HeatMap:
 
 
 @dataclass(frozen=True)
-class Words:
-    """Words beside a point of the axes, or at a place of the panel, in parts of it, where `placed`.
-
-    Attributes:
-        by: how far from there [pt]; side: of the words that is there, left or right.
-    """
-
-    text: str
-    at: tuple[float, float]
-    by: tuple[float, float] = (0.0, 0.0)
-    colour: str = MARK
-    side: str = "left"
-    placed: bool = False
-
-    def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
-        """Write the words."""
-        panel.annotate(
-            self.text, self.at, self.by, "axes fraction" if self.placed else "data", "offset points",
-            ha=self.side, va="baseline", color=self.colour, fontsize=8,
-        )  # fmt: skip
-
-
-@dataclass(frozen=True)
 class Doubt:
     """How uncertain the reference is that errors are held against [of the axis y]: shaded below."""
 

@@ -31,7 +31,6 @@ class Axis:
     Attributes:
         column: of the tables that are drawn; factor: from its unit to that of the label.
         log: whether it is logarithmic. Sizes are drawn then, without a sign, and nothing of what is nought.
-        least: smaller sizes are drawn here.
         limits: lowest and highest value, None for those of the curves.
         ticks: the only ones; each: or a tick at every value of the column.
         names: what the column has in place of numbers, from the top, or from the left, on.
@@ -41,7 +40,6 @@ class Axis:
     label: str
     factor: float = 1.0
     log: bool = False
-    least: float = 0.0
     limits: tuple[float | None, float | None] = (None, None)
     ticks: Iterable[float] = ()
     each: bool = False
@@ -54,8 +52,7 @@ class Axis:
         values = self.factor * rows[self.column]
         if not self.log:
             return values
-        sizes = values.abs().clip(lower=self.least)
-        return sizes.where(sizes > 0.0)
+        return values.abs().where(values != 0.0)
 
     def apply(self, panel: Axes, name: str, values: Iterable[float]) -> None:
         """Give the axis of that name, x or y, its looks, once the values along it are drawn."""

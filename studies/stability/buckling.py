@@ -23,7 +23,6 @@ from studies.stability.verdict import (
     ARCS,
     CHECK,
     DEFAULT,
-    EIGHT,
     FE,
     REFINED,
     TOLERANCE,
@@ -162,7 +161,7 @@ def _difference(found: float, reference: float) -> float:
 PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 #: Models that follow them.
-PUSHED = (DEFAULT, EIGHT, TWELVE, FE)
+PUSHED = (DEFAULT, TWELVE, FE)
 
 
 def _branch(depth: float, model: str, branch: str) -> Answer:

@@ -36,24 +36,23 @@ LOCKING_FREE, PAPER, PRINTED, FE, SIX = (
     LOOKS[name].label for name in (named.LOCKING_FREE, named.PAPER, named.PRINTED, named.FE, named.SIX)
 )
 #: Finer splines, for paths in arc length: the default reaches its end there.
-EIGHT, TWELVE = "spline n = 8", "spline n = 12"
+TWELVE = "spline n = 12"
 
 #: Column -> settings. A peer is a column of the families when its settings are answered by
 #: `studies.answers.adapters`, as these are: add it here.
 SETTINGS: dict[str, Settings] = {
     DEFAULT: SplineSettings(),
     **{LOOKS[name].label: settings for name, settings in named.SETTINGS.items()},
-    EIGHT: SplineSettings(control_points=8),
     TWELVE: SplineSettings(control_points=12),
 }
 #: Those of all families; of paths, where the default takes as many control points as it needs (motions and
 #: arcs of frames take six by default); and of paths in arc length.
 COLUMNS, PATHS, ARCS = (
     {name: SETTINGS[name] for name in (DEFAULT, LOCKING_FREE, PAPER, PRINTED, FE, *more)}
-    for more in ((), (SIX,), (EIGHT, TWELVE))
+    for more in ((), (SIX,), (TWELVE,))
 )
 #: All columns, in the order of tables and figures.
-ORDER = (*PATHS, VARIED, EIGHT, TWELVE)
+ORDER = (*PATHS, VARIED, TWELVE)
 
 #: Columns that show the paper's own choices: what this suite has an answer say of its resolution does not
 #: count there, as the paper has no such check.

@@ -37,7 +37,6 @@ def test_curves_are_sizes_in_order_over_a_logarithmic_axis():
 
 
 @pytest.mark.parametrize(("axis", "drawn"), [
-    (replace(ERROR, least=1e-2), [1e-1, 1e-2, 1e-2]),
     (replace(ERROR, factor=10.0), [1.0, np.nan, 1e-2]),
     (Axis("error", "", factor=100.0), [-10.0, 0.0, 0.1]),
 ])  # fmt: skip
