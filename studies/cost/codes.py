@@ -5,13 +5,13 @@ calls, one scope for all (`tried`), and are compared at equal error: the fastest
 reaches a level, and keeps it at finer meshes or steps, over the fastest spline that does.
 """
 
-import importlib.metadata
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -20,17 +20,14 @@ from matplotlib.figure import Figure
 
 from studies.answers import reference
 from studies.answers.adapters import answer_release
-from studies.answers.reference import Reference, SwingReference, largest_errors, sampled
+from studies.answers.reference import SwingReference, largest_errors, sampled
 from studies.answers.settings import SplineSettings
-from studies.cases.design import Design
 from studies.cases.problem import TABLE_1, Problem, named_case
 from studies.cost import tried
-from studies.cost.exudyn import exudyn_ancf
-from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import GROUPS, HINT, LOOKS, SPLINE, missing, paths, swings
+from studies.cost.settings import GROUPS, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
-from studies.paper.formulations import INSTANTS
+from studies.paper.formulations import DURATION, INSTANTS
 from studies.record.marks import Level
 from studies.record.panels import Axis, Curves, Panel, sheet
 from studies.record.source import ROOT
@@ -53,39 +50,16 @@ SWINGS = {16: 3e-7, 14: 4e-7}
 RECORDS = 4000
 #: Meshes of the limit with shear, a third apart: linear elements, whose waves need finer ones.
 SHEAR_MESHES = (36, 54, 81, 121)
+#: Packages of the other codes.
+CODES = ("exudyn", "openseespy")
 #: What the other codes' rods with shear have beside it.
 ROTARY = "section_rotary_inertia"
 
 
-def _codes() -> list[dict[str, str]]:
-    """Return which of the other codes are there, and in which version."""
-    rows = []
-    for package, model in (("exudyn", exudyn_ancf), ("openseespy", openseespy_frame)):
-        there = model.installed()
-        said = {"status": "installed" if there else "not installed", "hint": "" if there else HINT}
-        version = importlib.metadata.version(package) if there else ""
-        rows.append({"code": package, "version": version, **said})
-    return rows
-
-
 def _paths() -> Answer:
-    """Return limits, errors and times of the static path."""
+    """Return errors and times of the static path, and of the limits of all theories how certain they are and
+    how far apart."""
     design = named_case()
-    limits, rows = _path_limits(design)
-    found = tried.compared(paths(), design, limits)
-    return {"path_limits": rows, **_apart("paths", found)}
-
-
-def _swings() -> Answer:
-    """Return limits, errors and times of the swing."""
-    design = named_case()
-    limits, rows = _swing_limits(design, INSTANTS)
-    found = tried.compared(swings(), design, limits, INSTANTS)
-    return {"swing_limits": rows, **_apart("swings", found)}
-
-
-def _path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
-    """Return the limits of all theories, and rows of how certain they are and how far apart."""
     limits = {theory: tried.path_limit(design, theory) for theory in tried.THEORIES}
     rows = [
         {
@@ -98,17 +72,16 @@ def _path_limits(design: Design) -> tuple[dict[str, Reference], list[Row]]:
         for theory, limit in limits.items()
         for name in reference.QUANTITIES
     ]
-    return limits, rows
+    return {"path_limits": rows, **_apart("paths", tried.compared(paths(), design, limits))}
 
 
-def _swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingReference], list[Row]]:
-    """Return the swing of either theory at the instants, with rows of how certain they are."""
+def _swings() -> Answer:
+    """Return errors and times of the swing, and the same of the limits of both theories."""
+    problem = named_case()
     with_rotary = replace(problem, effects=problem.effects.plus(ROTARY))
-    sheared = reference.swing_reference(
-        with_rotary,
-        duration=float(instants[-1]), instants=instants, meshes=SHEAR_MESHES, element="reissner",
-    )  # fmt: skip
-    limits = {tried.MATERIAL: _refined_swing(problem, instants), tried.SHEAR: sheared}
+    how: dict[str, Any] = {"duration": DURATION, "instants": INSTANTS, "meshes": SHEAR_MESHES}
+    sheared = reference.swing_reference(with_rotary, element="reissner", **how)
+    limits = {tried.MATERIAL: _refined_swing(problem, INSTANTS), tried.SHEAR: sheared}
     rows = [
         {
             "theory": theory,
@@ -119,7 +92,7 @@ def _swing_limits(problem: Problem, instants: Array) -> tuple[dict[str, SwingRef
         }
         for theory, limit in limits.items()
     ]
-    return limits, rows
+    return {"swing_limits": rows, **_apart("swings", tried.compared(swings(), problem, limits, INSTANTS))}
 
 
 def _refined_swing(problem: Problem, instants: Array) -> SwingReference:
@@ -220,7 +193,7 @@ def _panel(tables: Tables, name: str, y: Axis, title: str, *marks: Level) -> Pan
 
 STUDY = Study(
     parts=(
-        Part(ask=lambda: {"codes": _codes()}),
+        Part(at=lambda: CODES, ask=lambda code: {"codes": {"code": code, "version": version(code)}}),
         Part(ask=_paths, alone=True),
         Part(ask=_swings, alone=True),
         Part(at=lambda: tuple(WAITED), ask=_waited, alone=True),

@@ -34,8 +34,6 @@ LOOKS = {
     OPENSEES: Look(label="OpenSees", colour=ORANGE, line="--", marker="<"),
 }
 
-#: What to do about a peer that is not there.
-HINT = "not installed: python -m pip install '.[peers]'"
 #: How settings are told; others by their name.
 WORDS = {
     "control_points": "n = {}",

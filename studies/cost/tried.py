@@ -20,7 +20,7 @@ from studies.cases.design import Design
 from studies.cases.problem import Problem
 from studies.cost import settings as listed
 from studies.cost.model import elements, spline
-from studies.cost.settings import HINT, Setting
+from studies.cost.settings import Setting
 from studies.engine import Row
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
@@ -62,8 +62,7 @@ def compared(
     """Return errors [1, rad] and times [s] of the path of a design, or of its motion up to `instants`
     (T,) [s].
 
-    One row per setting; a model that is not installed has one row. Such a model, and a failed setting, have
-    no errors.
+    One row per setting; one that fails has no errors.
     """
 
     def solve(each: Setting) -> Any:
@@ -77,11 +76,6 @@ def compared(
         progress(done, len(settings))
         row: Row = {"model": each.model.name, "group": each.group, "setting": each.text}
         row |= {"theory": each.theory, "family": each.family, "fineness": each.fineness}
-        if not each.model.installed():
-            row |= {"setting": "", "status": "not installed", "message": HINT}
-            if all(row["model"] != other["model"] for other in rows):
-                rows.append(row)
-            continue
         try:
             answer = solve(each)
         except (Unanswered, BadInput) as stopped:

@@ -12,7 +12,7 @@ from studies.cases.problem import named_case
 from studies.cost.exudyn import exudyn_ancf, exudyn_exact
 from studies.cost.model import Model, elements
 from studies.cost.openseespy import openseespy_frame
-from studies.cost.settings import PEERS, grid
+from studies.cost.settings import grid
 from studies.cost.tried import compared
 from studies.errors import Unanswered
 from tests import gates
@@ -74,16 +74,6 @@ def test_exudyn_says_where_it_stops():
     """Requirement: a path that does not converge is an error with the place, never a wrong answer."""
     with pytest.raises(Unanswered, match=r"Exudyn: .*no convergence at load factor"):
         exudyn_ancf.path(CASE, elements=40, relative_tolerance=1e-14)
-
-
-@pytest.mark.parametrize("name", PEERS)
-def test_what_is_not_installed_is_said_in_one_line(name, monkeypatch):
-    """Requirement: a code that is absent is a row of the study, with what to do and without times."""
-    model = PEERS[name]
-    monkeypatch.setattr(model, "installed", lambda: False)
-    (row,) = compared(grid(model, "x", elements=(1, 2)), CASE, {}).to_dict("records")
-    assert (row["status"], row["model"], row["runs"]) == ("not installed", name, 0)
-    assert row["message"] == "not installed: python -m pip install '.[peers]'"
 
 
 def test_failed_setting_keeps_its_row():
