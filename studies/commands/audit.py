@@ -14,7 +14,7 @@ the line is faster. DOF are those with inertia; the explicit step is the longest
 Then come the effects that planar beams neglect: lateral clamping, anticlastic stiffening, monolithic
 supports, all three, and shear, which the elements have (--model fe-shear). Printed are the changes of path,
 of stiffness at the begin of the rotation, of torque and largest stress at its end, and of the first mode.
-The cheapest scene within the tolerance has the fewest degrees of freedom, which is not always the fastest.
+The cheapest scene within the tolerance is that with the fewest effects, which is not always the fastest.
 Exit code 0: done; 2: bad input; 3: the full scene has no answer.
 """
 

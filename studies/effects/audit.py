@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import product
 from typing import Any, TypeVar
 
 import numpy as np
@@ -22,8 +22,6 @@ from studies.record.progress import silent
 ROUNDS = 3
 #: A scene that took so many times as long as the full one is not timed again.
 SLOW = 3.0
-#: Effects that are tried in all combinations; of more the least important go in every one of them.
-MOST_COMBINED = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,10 +31,9 @@ class Audit:
     Attributes:
         tolerance: allowed change [1]. run: what every scene was asked.
         full: the full scene, with no change. rows: one effect removed or simplified each.
-        tried: scenes without several effects, for the cheapest.
+        tried: scenes without several effects, for the cheapest, which is the last one if it is within.
         beyond: effects that planar beams neglect, and the scene too, with their cost.
-        cheapest: the scene within the tolerance with the fewest degrees of freedom; the full one if there is
-            none.
+        cheapest: the scene with the fewest effects that is within the tolerance.
     """
 
     tolerance: float
@@ -88,7 +85,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     for done, name in enumerate(names):
         progress(done, len(names) + 2)
         rows.append(run.outcome(scene.without([name]), base))
-    tried = [run.outcome(scene.without(those), base) for those in _combined(rows, tolerance)]
+    tried = [*_fewer(rows, scene, run, base, tolerance)]
     progress(len(names), len(names) + 2)
     full, *others = _timed([full, *rows, *tried], run)
     progress(len(names) + 1, len(names) + 2)
@@ -99,7 +96,7 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
         rows=(*others[: len(rows)], *upset),
         tried=tuple(others[len(rows) :]),
         beyond=prices(run.design),
-        cheapest=_cheapest([full, *others], tolerance),
+        cheapest=others[-1] if tried and tried[-1].largest <= tolerance else full,
     )
 
 
@@ -115,14 +112,19 @@ def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
     return rows
 
 
-def _combined(rows: Sequence[Outcome], tolerance: float) -> Iterator[list[str]]:
-    """Yield two and more of the effects that can each be removed."""
+def _fewer(
+    rows: Sequence[Outcome], scene: Variant, run: Run, full: Answer, tolerance: float
+) -> Iterator[Outcome]:
+    """Yield the scene without all effects that can each be removed, then without all but the most important
+    of them, and so on until one is within the tolerance."""
     within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
     names = [row.variant.dropped[0] for row in within]
-    always, free = names[:-MOST_COMBINED], names[-MOST_COMBINED:]
-    for count in range(len(free) + 1):
-        if len(always) + count >= 2:
-            yield from ([*always, *chosen] for chosen in combinations(free, count))
+    while names:
+        found = run.outcome(scene.without(names), full)
+        yield found
+        if found.largest <= tolerance:
+            return
+        names.pop()
 
 
 def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
@@ -137,16 +139,6 @@ def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
             motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
             walls[id(each)].append(answer_static(scene, run.settings).wall_s + motion.wall_s)
     return [replace(each, wall_s=float(np.median(walls.get(id(each), each.wall_s)))) for each in outcomes]
-
-
-def _cheapest(outcomes: Sequence[Outcome], tolerance: float) -> Outcome:
-    """Return the scene within the tolerance with the fewest degrees of freedom, unknowns and effects.
-
-    The full scene, which is the first, is one of them even where its motion has nothing to compare.
-    """
-    within = [outcomes[0], *(each for each in outcomes[1:] if each.largest <= tolerance)]
-    sizes = ("degrees_of_freedom", "unknowns")
-    return min(within, key=lambda each: (*map(each.size.get, sizes), len(each.variant.effects.names)))
 
 
 Either = TypeVar("Either", bound=Problem | Mechanism)

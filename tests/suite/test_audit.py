@@ -110,19 +110,29 @@ WITHIN = dict.fromkeys(CHANGES, 1e-4)
 SIZE = dict.fromkeys(SIZES, 1)
 
 
-def scene(wall_s, *names, **changes):
-    """A scene of the audit with these effects, changes and time."""
-    variant = Variant(dropped=(), effects=Effects(names=names))
-    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, changes=WITHIN | changes)
+def without(*names, **changes):
+    """The outcome of a scene without these effects, with changes."""
+    variant = Variant(dropped=names, effects=Effects(names=("bending",)))
+    return Outcome(variant=variant, size=SIZE, changes=WITHIN | changes)
 
 
 @pytest.mark.parametrize("change", WITHIN)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_every_change_counts(change, sign):
-    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it."""
-    full = scene(2.0, "bending", "stretching", **dict.fromkeys(WITHIN, 0.0))
-    far = scene(1.0, "bending", **{change: sign * 2.0 * TOLERANCE})
-    near = scene(1.0, "bending", **{change: sign * 0.5 * TOLERANCE})
-    assert far.largest == pytest.approx(2.0 * TOLERANCE)
-    assert module._cheapest([full, far], TOLERANCE) is full
-    assert module._cheapest([full, near], TOLERANCE) is near
+    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it; of
+    effects that can each be removed, the most important one is kept where they cannot all be."""
+    far = {change: sign * 2.0 * TOLERANCE}
+    rows = [
+        without("gravity"),
+        without("stretching", **{change: sign * 0.5 * TOLERANCE}),
+        without("x", **far),
+    ]
+    assert rows[2].largest == pytest.approx(2.0 * TOLERANCE)
+
+    class Run:
+        def outcome(self, scene, _):
+            return without(*scene.dropped, **(far if len(scene.dropped) > 1 else {}))
+
+    full = Variant(dropped=(), effects=Effects(names=("bending", "stretching", "gravity")))
+    found = [*module._fewer(rows, full, Run(), None, TOLERANCE)]
+    assert [each.variant.dropped for each in found] == [("gravity", "stretching"), ("gravity",)]
