@@ -3,10 +3,8 @@
 import sys
 import time
 import timeit
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, Generic, Self, TypeVar
+from typing import Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -17,6 +15,8 @@ Result = TypeVar("Result")
 
 #: Nothing is shown for work shorter than this [s].
 DELAY = 2.0
+#: Begins a line of a terminal again.
+CLEAR = "\r\033[K"
 
 
 def silent(done: int, total: int) -> None:
@@ -32,51 +32,36 @@ def watched(items: Sequence[Item], progress: Progress) -> Iterator[Item]:
 
 
 class Bar:
-    """A progress callable `bar(done, total)` that draws on a terminal, once work has lasted two seconds."""
+    """A progress callable `bar(done, total)` that writes on a terminal, once work has lasted two seconds."""
 
     def __init__(self, label: str) -> None:
-        self._label, self._begin = label, time.monotonic()
-        self._bar: Any = None  # tqdm is generic in its stubs only
+        self._label, self._begin, self._shown = label, time.monotonic(), False
 
     def __call__(self, done: int, total: int) -> None:
         """Show that `done` of `total` parts are done."""
-        if self._bar is None:
-            if time.monotonic() - self._begin < DELAY:
-                return
-            from tqdm import tqdm  # short work does not import it
-
-            how: Any = {"leave": False, "dynamic_ncols": True, "disable": None}
-            self._bar = tqdm(total=total, initial=done, desc=self._label, **how)
-        self._bar.total = total
-        self._bar.update(done - self._bar.n)
+        if sys.stderr.isatty() and time.monotonic() - self._begin >= DELAY:
+            self._shown = True
+            print(f"\r{self._label}: {done} of {total}", end=" ", file=sys.stderr, flush=True)
 
     def say(self, line: str) -> None:
-        """Print a line on the error stream, in place of the bar, which goes on below it."""
-        if self._bar is not None:
-            self._bar.clear()
+        """Print a line on the error stream, in place of what is shown."""
+        self.__exit__()
         print(line, file=sys.stderr)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
+        if self._shown:
+            print(end=CLEAR, file=sys.stderr, flush=True)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Timing(Generic[Result]):
-    """Seconds of repeated runs and the result of the last one.
-
-    Attributes:
-        result: what the work returned.
-        seconds: one entry a run, in the order they were made [s].
-        parts: the time of each run that `part` told of [s]; empty without it.
-    """
+class _Timing(NamedTuple, Generic[Result]):
+    """What repeated work returned last, and its seconds and those of a part of it, an entry a run [s]."""
 
     result: Result
-    seconds: tuple[float, ...]
-    parts: tuple[float, ...]
+    seconds: list[float]
+    parts: list[float]
 
     @property
     def median(self) -> float:
@@ -113,10 +98,12 @@ def measure(
         raise ValueError(f"repeat: got {repeat}, expected at least 1")
     for _ in range(warm_up):
         work()
-    last: deque[Result] = deque(maxlen=1)
-    seconds, parts = [], []
+    last: list[Result] = []
+    seconds: list[float] = []
+    parts: list[float] = []
     for _ in range(repeat):
         seconds.append(timeit.timeit(lambda: last.append(work()), number=1))
+        result = last.pop()
         if part is not None:
-            parts.append(part(last[0]))
-    return _Timing(result=last[0], seconds=tuple(seconds), parts=tuple(parts))
+            parts.append(part(result))
+    return _Timing(result, seconds, parts)

@@ -10,7 +10,7 @@ from studies.record.source import ROOT
 from studies.registry import STUDIES, question_of, selected
 
 HEAVY = (
-    *("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib", "tqdm"),
+    *("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib"),
     *("spline_model", "spline_model.compile", "fe_reference"),
 )
 
