@@ -222,7 +222,7 @@ NUMBERS = Digits()
 #: Columns that are not compared: the work of a search depends on round-off where it hardly converges, and
 #: texts repeat numbers of their row. A study may add tolerances by "table.column" or "column".
 BY_NAME: dict[str, Digits | None] = dict.fromkeys(
-    (*("iterations", "newton_iterations", "sentence", "reason", "message", "says"),)
+    ("iterations", "newton_iterations", "sentence", "reason", "message", "says")
 )
 
 

@@ -188,7 +188,6 @@ DIGITS: dict[str, Digits | None] = {
     "outcomes.found": Digits(relative=1e-5, floor=1e-5, rows="outcome == 'right'"),
     "outcomes.error": Digits(relative=0.05, floor=1e-8, rows="outcome == 'right'"),
     "largest_right_error": Digits(relative=0.05),
-    "warned": None,
 }
 
 STUDY = study(

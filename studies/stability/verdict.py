@@ -100,9 +100,6 @@ class Found:
 def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> Row:
     """Return how `attempt` of a column ends, right within `tolerance` [1], as columns of a table.
 
-    Stopped and warned, the latter whether it counts for this `model` or not, are there so that every model
-    can be judged with its own warnings and without.
-
     An answer that is off, or not a finite number, is wrong unless the model said so itself. Bad input is a
     refusal of the question (`BadInput`); any other exception is a fault of the model, and wrong.
     """
@@ -118,8 +115,6 @@ def judged(attempt: Callable[[], Found], tolerance: float, model: str = "") -> R
         "outcome": outcome or _outcome(found, tolerance, limited=found.states_limit or bool(warning)),
         "error": found.error,
         "reason": found.fault or (warning if found.reached else "") or found.reason or warning,
-        "stopped": not found.reached,
-        "warned": bool(found.warning),
         **found.measured,
     }
 
@@ -138,7 +133,7 @@ _DISTANCE = Digits(floor=1e-9)
 _RIGHT = Digits(floor=1e-9, rows=f"outcome == '{RIGHT}'")
 DIGITS: dict[str, Digits | None] = {
     **dict.fromkeys(("largest_right_error", "refinement", "independent", "period_s"), _DISTANCE),
-    **dict.fromkeys(("outcomes.error", "outcomes.found", "stopped", "warned"), _RIGHT),
+    **dict.fromkeys(("outcomes.error", "outcomes.found"), _RIGHT),
 }
 
 
@@ -266,9 +261,9 @@ def _answers(question: Question) -> Answer:
     return {"outcomes": rows, "references": {**question.place, **known}}
 
 
-def family(questions: Callable[[], Iterable[Question]], *parts: Part, **declared: Any) -> Study:
+def family(questions: Callable[[], Iterable[Question]], **declared: Any) -> Study:
     """Return the study of a family of questions."""
-    return study(Part(at=questions, ask=_answers), *parts, **declared)
+    return study(Part(at=questions, ask=_answers), **declared)
 
 
 def path_distance(path: Response, reference: Response) -> float:
