@@ -14,8 +14,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.problem import Problem, named_case
 from studies.cases.section import of_moments
 from studies.engine import Answer, Claim, Part, Study, Tables
-from studies.record.marks import MARK, Level
-from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.panels import MARK, Axis, Curves, Level, Panel, sheet
 from studies.record.style import GREEN, GREY, ORANGE, Look
 
 #: Group of modes -> settings of a spline whose fastest mode belongs to it: strips that stretch, strips that

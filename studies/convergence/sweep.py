@@ -18,8 +18,17 @@ from studies.cases.problem import named_case
 from studies.engine import Claim, Part, Row, Study, Tables, percent
 from studies.kinds import Progress
 from studies.paper.formulations import FE, LOOKS, SIX, refined
-from studies.record.marks import Doubt, HeatMap
-from studies.record.panels import CONTROL_POINTS, MESH, STRIP_POINTS, Axis, Curves, Panel, sheet
+from studies.record.panels import (
+    CONTROL_POINTS,
+    MESH,
+    STRIP_POINTS,
+    Axis,
+    Curves,
+    Doubt,
+    HeatMap,
+    Panel,
+    sheet,
+)
 from studies.record.progress import silent, watched
 from studies.record.style import ELEMENTS, STRETCH, Look
 

@@ -28,8 +28,7 @@ from studies.cost.settings import GROUPS, LOOKS, SPLINE, missing, paths, swings
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper.formulations import DURATION, INSTANTS
-from studies.record.marks import Level
-from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.panels import Axis, Curves, Level, Panel, sheet
 from studies.record.source import ROOT
 
 #: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].

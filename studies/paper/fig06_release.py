@@ -13,8 +13,7 @@ from studies.answers.settings import SplineSettings
 from studies.engine import Answer, Part, Row, Study, Tables, finding
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, PAPER, REFINED, SETTINGS, SIX
-from studies.record.marks import Doubt
-from studies.record.panels import TIME, Axis, Curves, Panel, sheet
+from studies.record.panels import TIME, Axis, Curves, Doubt, Panel, sheet
 from studies.record.style import GREEN, Look
 
 #: Formulations of Fig 6, and the refined spline that the reference, which it shares nothing with, is held to.

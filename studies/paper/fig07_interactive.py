@@ -21,8 +21,7 @@ from PIL import Image
 from studies.engine import Answer, Part, Study, Tables, absent, lacking
 from studies.interactive.presets import PRESETS, STEPS_A_FRAME
 from studies.interactive.session import Session
-from studies.record.marks import Level
-from studies.record.panels import Axis, Curves, Drawn, Panel, sheet
+from studies.record.panels import Axis, Curves, Drawn, Level, Panel, sheet
 from studies.record.style import BLACK, BLUE, GREY, RED, Look
 
 #: The paper's pictures a second.

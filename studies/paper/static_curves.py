@@ -16,8 +16,7 @@ from studies.engine import Answer, Claim, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper import formulations
 from studies.paper.formulations import FE, LOCKING_FREE, LOOKS, PAPER, REFINED, path_of, refined
-from studies.record.marks import Doubt, Level
-from studies.record.panels import ROTATION, Axis, Curves, Panel, sheet
+from studies.record.panels import ROTATION, Axis, Curves, Doubt, Level, Panel, sheet
 from studies.record.style import Look
 
 #: The paper's 1 %: of the travel, and of the length for shapes.

@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies.record.marks import HeatMap, Level
-from studies.record.panels import Axis, Curves, Panel, sheet
+from studies.record.panels import Axis, Curves, HeatMap, Level, Panel, sheet
 from studies.record.style import BLUE, RED, Look
 
 ROWS = pd.DataFrame(
