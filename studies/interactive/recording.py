@@ -42,30 +42,20 @@ def _setup(session: Session) -> dict[str, Any]:
     """Return the event that makes a new session of this one's settings."""
     piece, placing = session.mechanics.piece, session.mechanics.placing
     return {
-        **{name: getattr(session, name) for name in ("drive", "solver", "sweeps")},
-        **{"do": "setup", "t": session.time, "lock_step": session.clock.lock_step},
+        **{"do": "setup", "t": session.time, "lock_step": session.clock.lock_step, "drive": session.drive},
         **{"preset": piece.name, "values": dict(piece.values), "case": dict(piece.document)},
         "rest": placing.rest.tolist(),
     }
 
 
 class Recorder:
-    """Gives a session's events as lines to `keep`, or keeps them up to a number of characters; begins with a
-    new session."""
+    """Gives a session's events as lines to `keep`; begins with a new session."""
 
-    MOST = 20_000_000
-
-    def __init__(self, session: Session, keep: Callable[[str], object] | None = None) -> None:
-        self.lines: list[str] = []
-        self._keep, self._size = keep, 0
+    def __init__(self, session: Session, keep: Callable[[str], object]) -> None:
+        self._keep = keep
         start = _setup(session)
         self.write(start, session.feed(start))
 
     def write(self, event: Mapping[str, Any], state: Mapping[str, Any]) -> None:
-        """Keep one event and the mark of the state after it."""
-        text = json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n"
-        if self._keep is not None:
-            self._keep(text)
-        elif self._size < self.MOST:
-            self.lines.append(text)
-            self._size += len(text)
+        """Give one event and the mark of the state after it."""
+        self._keep(json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n")

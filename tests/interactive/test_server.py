@@ -51,23 +51,6 @@ def test_released_body_runs_by_itself(server):
             pass
 
 
-def test_recording_is_sent_and_replays(server):
-    """Requirement: what the page records replays to the same states."""
-    with opened(server) as socket:
-        say(socket, do="drive", by="rotation")
-        say(socket, do="record", on=True)
-        for k in range(8):
-            say(socket, do="pose", pose=[0, 0, 0.05 * k], seq=k)
-            while answer(socket)["seq"] != k:
-                pass
-        say(socket, do="record", on=False)
-        while "lines" not in (recording := answer(socket, "recording")):
-            pass
-    same = [good for _, good in replay(recording["lines"])]
-    assert len(same) >= 8
-    assert all(same)
-
-
 def test_design_is_saved_and_opened(server, tmp_path):
     """Requirement: the design is a case file that the commands read; opened, it is the same design; a text
     that is no case is named in one line."""
