@@ -48,7 +48,7 @@ OF_PIVOTS = {
 }
 
 
-class Variable(NamedTuple):
+class _Variable(NamedTuple):
     """A number of the case that may change.
 
     name: keys that share its value, with commas; own, low, high: its value in the case and its bounds, in the
@@ -66,7 +66,7 @@ class Variable(NamedTuple):
         return self.high - self.low
 
 
-class Ratio(NamedTuple):
+class _Ratio(NamedTuple):
     """A limit on the ratio of two variables.
 
     name: of the constraint. top, bottom: places of the variables. limit: of the ratio, the least one if
@@ -97,11 +97,11 @@ class Question:
     where: str
     content: Mapping[str, Any]
     start: Design
-    variables: tuple[Variable, ...]
+    variables: tuple[_Variable, ...]
     objective: str
     wanted: float = math.nan
     allowable_stress: float = math.inf
-    ratios: tuple[Ratio, ...] = ()
+    ratios: tuple[_Ratio, ...] = ()
     control_points: int = CONTROL_POINTS
 
     @classmethod
@@ -252,7 +252,7 @@ class Question:
                 raise BadInput(f"--free: got {number.name}, expected {expected}")
 
 
-def _usual(document: Mapping[str, Any]) -> dict[str, Variable]:
+def _usual(document: Mapping[str, Any]) -> dict[str, _Variable]:
     """Return the numbers of a pivot that are found unless it is said otherwise, with their bounds."""
     own = {key: float(plan.value_at(document, key)) for key in OF_PIVOTS}
     length, thickness, width = own[LENGTH], own[THICKNESS], own[WIDTH]
@@ -263,20 +263,22 @@ def _usual(document: Mapping[str, Any]) -> dict[str, Variable]:
         THICKNESS: (0.1 * thickness, 1.6 * thickness),
         WIDTH: (0.2 * width, length),
     }
-    return {key: Variable(key, own[key], *ends) for key, ends in bounds.items()}
+    return {key: _Variable(key, own[key], *ends) for key, ends in bounds.items()}
 
 
-def _ratios(names: list[str], found: Mapping[str, Variable], aspect: float) -> tuple[Ratio, ...]:
+def _ratios(names: list[str], found: Mapping[str, _Variable], aspect: float) -> tuple[_Ratio, ...]:
     """Return the limits of a pivot's form: the least slenderness, that of the case, and the largest width."""
     length, thickness, width = map(names.index, (LENGTH, THICKNESS, WIDTH))
     own = found[LENGTH].own / found[THICKNESS].own
     return (
-        Ratio("slenderness", length, thickness, own, 1),
-        Ratio("aspect", width, length, aspect, -1),
+        _Ratio("slenderness", length, thickness, own, 1),
+        _Ratio("aspect", width, length, aspect, -1),
     )
 
 
-def _variable(where: str, document: Mapping[str, Any], text: str, usual: Mapping[str, Variable]) -> Variable:
+def _variable(
+    where: str, document: Mapping[str, Any], text: str, usual: Mapping[str, _Variable]
+) -> _Variable:
     """Return the number that a text stands for, of `usual` ones with their bounds; errors as of
     `Question.of`."""
     names, _, bounds = text.partition("=")
@@ -300,7 +302,7 @@ def _variable(where: str, document: Mapping[str, Any], text: str, usual: Mapping
         ends = []
     if not 1 <= len(ends) <= 2 or not -math.inf < ends[0] <= ends[-1] < math.inf:
         raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH with LOW < HIGH, in the file's unit")
-    return Variable(",".join(given), own, ends[0], ends[-1])
+    return _Variable(",".join(given), own, ends[0], ends[-1])
 
 
 def _value(document: Mapping[str, Any], key: str) -> float | None:

@@ -11,8 +11,7 @@ from spline_model import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
 from studies.interactive import presets
-from studies.interactive.recording import Recorder, replay
-from studies.interactive.session import Session
+from studies.interactive.session import Recorder, Session, replay
 from studies.record.source import ROOT
 
 

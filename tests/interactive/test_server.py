@@ -9,8 +9,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.interactive.recording import replay
-from studies.interactive.session import Session
+from studies.interactive.session import Session, replay
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.sockets import answer, opened, say, told

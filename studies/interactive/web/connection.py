@@ -16,8 +16,7 @@ from studies.errors import BadInput
 from studies.interactive import presets
 from studies.interactive.input import DRIVES, MOST_STEPS, checked
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.recording import Recorder
-from studies.interactive.session import Session
+from studies.interactive.session import Recorder, Session
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.films import Shot, Source
 from studies.interactive.tracking.tracker import Tracker
