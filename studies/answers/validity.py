@@ -33,9 +33,7 @@ LENGTHS, MODULI, DENSITIES = (1e-5, 5.0), (1e6, 1.3e12), (10.0, 23e3)
 
 @dataclass(frozen=True, kw_only=True)
 class Strip:
-    """A strip of rectangular section with its largest strain; numbers, or arrays (D,) over designs.
-
-    If only the largest strain is known, `bent` uses the curvature of pure bending.
+    """A strip of rectangular section with its largest strain.
 
     Attributes:
         length, thickness, width: [m]; width follows from A = b t.
@@ -53,10 +51,6 @@ class Strip:
     strain: Any = 0.0
     curvature: Any = 0.0
     yield_strength: Any = math.inf
-
-    def bent(self, strain: Any) -> "Strip":
-        """Return the strip with that strain [1], and the curvature [1/m] of pure bending: an upper bound."""
-        return replace(self, strain=strain, curvature=2.0 * strain / self.thickness)
 
     @property
     def width_ratio(self) -> Any:
@@ -239,13 +233,6 @@ def told(rules: Iterable[_Rule], strips: list[Strip], effects: Iterable[str]) ->
         worst = max(strips, key=rule.excess)
         if rule.excess(worst) > 1.0 and rule.effect not in named:
             yield rule.says.format(**_told_of(worst))
-
-
-def passed(strips: Iterable[Strip], effects: Iterable[str]) -> Any:
-    """Return how many rules a design breaks by any of its strips; for arrays, one number (D,) per design."""
-    strips, named = tuple(strips), set(effects)
-    rules = [rule for rule in RULES if rule.effect not in named]
-    return sum(np.any([rule.excess(strip) > 1.0 for strip in strips], axis=0).astype(int) for rule in rules)
 
 
 def strips_of(design: Design, forces: Any = None) -> list[Strip]:

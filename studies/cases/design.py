@@ -94,7 +94,7 @@ def document_of(design: Design) -> dict[str, Any]:
     else:
         found["strips"] = [{"tip": FREE} | _table((*STRIP, *OWN), strip) for strip in design.strips]
         found |= {"bodies": [_table(BODY, body) for body in design.bodies], "drive": _table(DRIVE, design)}
-    found["scene"] = {"effects": design.effects.names}
+    found["scene"] = {"effects": list(design.effects.names)}
     found["points"] = [_table(POINT, point) for point in design.points]
     tables: dict[str, Any] = {}
     for name in design.effects.tables:

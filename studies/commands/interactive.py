@@ -228,7 +228,7 @@ def _stream(path: Path | None):  # type: ignore[no-untyped-def]
 
 def _replay(path: Path) -> int:
     """Replay a session file; 0 where every state is the recorded one."""
-    from studies.interactive.recording import replay
+    from studies.interactive.session import replay
 
     try:
         lines = path.read_text(encoding="utf-8").splitlines()

@@ -5,73 +5,94 @@
     python -m studies size large_steel_pivot --objective centre-shift --free strip.length_m=0.3
     python -m studies size four_bar_of_flexures --objective stress --free section.thickness_m=1e-4:5e-4
 
-The case of a pivot gives the material, the range to either side (its rotation), the loads that it carries and
-the design to compare with. The wanted stiffness is its own at rotation 0 unless it is given; the allowable
-stress is the yield strength, or the case's own at the end of the range where no strength is known. Under
-loads both sides of the range are solved, the stress is held at both ends and before the body turns, and a
-design that buckles is none. Both strips are alike, with a rectangular section; they become neither thicker
-for their length than the case's nor wider than --aspect times their length. --free sets the bounds of a
-dimension, or the one value that holds it. Gradients are exact; several starts show local optima, and one
-whose path ends early is moved towards the case. A case whose own path ends early takes --stiffness, and a
-stress where none is known; then other designs are searched. A start is given up after 300 designs. The
-optimum is answered to 1e-4, found again with more control points where it takes more, and solved by the
-finite elements in the limit of refinement; --out writes it as a case file. A price is the change of the
-objective over that of a limit, in % over %. What the scene names is assembled: clamped widths, sections that
-flatten and roots too.
+The numbers of the case file that --free names are found, as `sweep` names them, in the file's unit; keys with
+commas share a value, and one value instead of bounds holds a number. Of a pivot these are its length,
+inclination, crossing ratio, thickness and width, unless --free says otherwise, with a rectangular section;
+its strips become neither thicker for their length than the case's nor wider than --aspect times their length.
 
-Of a mechanism the numbers of its file that --free names are found, as `sweep` names them, in the file's unit;
-keys with commas share a value. Held is the stiffness of the driven body as it begins to turn, or, of a
-mechanism that follows its loads, how far its body goes. Exit code 0: an optimum was found; 2: bad input; 3:
-none was found, and then the table of the starts says how near they came.
+The case gives all else: material, range (its rotation), loads and the design to compare with. Held is the
+stiffness of the driven body as it begins to turn, the case's own unless it is given, or, of a mechanism that
+follows its loads, how far its body goes. The allowable stress is the yield strength, or the case's own at the
+end of the range where no strength is known. Under loads both sides of a pivot's range are solved, the stress
+is held at both ends and before the body turns, and a design that buckles is none.
+
+Gradients are exact; several starts show local optima, and one whose path ends early is moved towards the
+case. A start is given up after 300 designs. The optimum is answered to 1e-4, found again with more control
+points where it takes more, and solved by the finite elements in the limit of refinement, with all effects of
+the scene; --out writes it as a case file. A price is the change of the objective over that of a limit, in %
+over %. Exit code 0: an optimum was found; 2: bad input; 3: none was found, or the case has no answer itself;
+then the table of the starts says how near they came.
 """
 
 import argparse
 import math
 import sys
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
+from spline_model.accuracy import DEFAULT
 from spline_model.confirmed import NOTHING
 from studies.answers.adapters import answer_static
+from studies.answers.reference import NoReference
+from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
-from studies.cases.design import as_toml
-from studies.cases.document import is_mechanism, parsed
-from studies.cases.keys import KEYS, LOADS_FIRST
+from studies.answers.validity import validity
+from studies.cases.design import as_toml, design_of
+from studies.cases.document import parsed
+from studies.cases.effects import OF_SIDES
+from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
-from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
+from studies.commands.columns import cell
 from studies.commands.parser import Argument, command, positive, whole_number
-from studies.commands.sized import Optimum, as_document, question, readable
-from studies.design.evaluate import CONTROL_POINTS, STRESS, VARIABLES, Accurate, PathEnds, sides_of
-from studies.design.numbers import MechanismQuestion
-from studies.design.optimise import best, search
-from studies.design.programme import STARTS, compared
-from studies.design.question import OF_PIVOT, PivotQuestion, Question
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    PLAIN,
+    STIFFNESS,
+    STRESS,
+    TRAVEL,
+    VARIATION,
+    Accurate,
+    PathEnds,
+    by_elements,
+    sides_of,
+)
+from studies.design.optimise import SAME, Outcome, best, numbered, search, settled
+from studies.design.programme import STARTS
+from studies.design.question import Question
 from studies.errors import BadInput
 from studies.record.files import write_whole
 from studies.record.progress import Bar
 
-#: Numbers of a pivot's file that are found.
-FOUND = {f"strip.{key.name}": key for key in KEYS if key.attribute in VARIABLES}
+#: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
+SHOWN = {
+    CENTRE_SHIFT: ("largest_centre_shift_m", "centre shift [mm]", 1e3),
+    VARIATION: ("stiffness_variation", "variation of stiffness [%]", 1e2),
+    STIFFNESS: ("stiffness_Nm_per_rad", "stiffness [N m / rad]", 1.0),
+    TRAVEL: ("travel_m", "travel [mm]", 1e3),
+    STRESS: ("max_stress_Pa", "stress [MPa]", 1e-6),
+}
 
 
 @command(
     take.CASE,
     Argument(
         "--objective",
-        "what is to be least: of a mechanism stress or stiffness-variation",
-        choices=[*OF_PIVOT, STRESS],
+        "what is to be least",
+        choices=[CENTRE_SHIFT, VARIATION, STRESS],
         required=True,
     ),
     Argument(
         "--free KEY[=LOW:HIGH]",
-        "a number of the file to be found, repeatable: of a mechanism the only ones (default bounds: half to "
-        "twice its own); of a pivot bounds of its length, inclination, crossing, thickness and width",
+        "a number of the file to be found, with its bounds, or the one value that it has; repeatable "
+        "(default bounds: of a pivot's dimensions as far as usual, of others half to twice the case's)",
         action="append",
+        default=[],
     ),
-    take.ROTATION.but("range to either side, in deg (default: the case's)"),
+    take.ROTATION.but("end of the range, of a pivot to either side, in deg (default: the case's)"),
     Argument("--stiffness K", "at rotation 0, in N m/rad (default: the case's own)", positive),
     Argument(
         "--travel-mm U",
@@ -83,47 +104,67 @@ FOUND = {f"strip.{key.name}": key for key in KEYS if key.attribute in VARIABLES}
         "allowable, in MPa (default: the yield strength, or the case's own)",
         positive,
     ),
-    Argument("--aspect R", "largest width, relative to the length, default 1", positive, default=1.0),
+    Argument("--aspect R", "largest width of a pivot's strips over their length", positive, default=1.0),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
     take.OUT_FILE.but("write the optimum there as a case file (default: none)"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Search, check, report; return the exit code. BadInput: an objective that the case does not support."""
-    content = parsed(arguments.case)
-    mechanism = is_mechanism(content)
-    _refuse_others(arguments, mechanism)
-    asked: Question = _numbers(content, arguments) if mechanism else _pivot(arguments)
+    asked = _question(arguments)
     try:
         task, own = _limited(asked, arguments)
         with Bar("size") as bar:
             outcomes = search(task, task.starts(arguments.starts), bar)
         best_one = best(outcomes)
-        found = None if best_one is None else Optimum.of(task, best_one)
+        found = None if best_one is None else _Optimum.of(task, best_one)
     except PathEnds as error:
-        return not_converged(error)
+        return not_converged(f"{arguments.case}: the case itself has no answer over the range: {error}")
     failure = None
     if found is None:
         nearest = min(range(len(outcomes)), key=lambda k: outcomes[k].violation)
         reason = outcomes[nearest].message
         failure = f"no optimum from {len(outcomes)} starts; nearest, start {nearest}: {reason}"
     elif arguments.out is not None:
-        (least, held), name = question(task), Path(arguments.case).stem
+        (least, held), name = _said(task), Path(arguments.case).stem
         remarks = [f"Sized from {name} for the {least},", f"{held}."]
         content = task.document(task.values(found.outcome.at))
         write_whole(arguments.out, as_toml(content, remarks).encode())
         print(f"studies: {arguments.out}: the optimum as a case file", file=sys.stderr)
-    document = as_document(task, own, outcomes, found)
-    return deliver(arguments, document, readable(task, own, outcomes, found), failure=failure)
+    document = _document(task, own, outcomes, found)
+    return deliver(arguments, document, _readable(task, own, outcomes, found), failure=failure)
 
 
-def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
-    """Return what is asked of a pivot, within bounds; BadInput where it cannot be sized."""
-    start = take.turned_design(arguments, "range to size for")
-    assert isinstance(start, Problem)
-    refuse_tapers(arguments.case, start.strips, "sizing")
+def _question(arguments: argparse.Namespace) -> Question:
+    """Return what is asked of the case; BadInput where it cannot be sized so."""
+    where, content = str(arguments.case), parsed(arguments.case)
+    if arguments.rotation is not None:
+        drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
+        content = content | {"drive": drive}
+    start = design_of(where, content)
+    if isinstance(start, Problem):
+        _require_sizable(where, start)
+    elif not arguments.free:
+        raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
+    if not start.bodies:
+        raise BadInput(f"{where}: bodies: got none, expected one whose stiffness or travel is held")
+    task = Question.of(where, content, arguments.free, aspect=arguments.aspect, objective=arguments.objective)
+    if task.objective not in task.objectives:
+        expected = " or ".join(task.objectives)
+        raise BadInput(f"--objective: got {task.objective}, expected {expected} for {Path(where).stem}")
+    other, option = (TRAVEL, "--travel-mm") if task.held == STIFFNESS else (STIFFNESS, "--stiffness")
+    if getattr(arguments, "travel_mm" if other == TRAVEL else other) is not None:
+        raise BadInput(f"{option}: got it for {Path(where).stem}, of which the {task.held} is held")
+    task.require_gradients()
+    return task
+
+
+def _require_sizable(where: str, start: Problem) -> None:
+    """Raise BadInput for a pivot of which no range can be sized."""
     got, expected = "", ""
-    if start.outer_fibre is not None:
+    if not start.rotation:
+        got, expected = "drive.rotation_deg: got 0", "a range to size for"
+    elif start.outer_fibre is not None:
         got = f"strip.outer_fibre_m: got {start.outer_fibre:g}"
         expected = "none: both sides of a rectangular section are sized"
     elif "driven_displacement" in start.effects.names:
@@ -132,90 +173,175 @@ def _pivot(arguments: argparse.Namespace) -> PivotQuestion:
         got = f'drive.order: got "{start.order}"'
         expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
     if got:
-        raise BadInput(f"{arguments.case}: {got}, expected {expected}")
-    bounds = dict(map(_bounds, arguments.free or ()))
-    return PivotQuestion.usual(start, bounds, aspect=arguments.aspect, objective=arguments.objective)
-
-
-def _bounds(text: str) -> tuple[str, tuple[float, float]]:
-    """Return the name of a pivot's number and its bounds in SI, equal where the text has one value."""
-    name, _, given = text.partition("=")
-    try:
-        ends = [FOUND[name].rule.parse(float(part)) for part in given.split(":")]
-    except (KeyError, ValueError) as error:
-        what = f"one of {', '.join(FOUND)}" if name not in FOUND else str(error)
-        raise BadInput(f"--free: got {text}, expected KEY=LOW:HIGH, in the file's unit: {what}") from None
-    return FOUND[name].attribute, (min(ends), max(ends))
-
-
-def _refuse_others(arguments: argparse.Namespace, mechanism: bool) -> None:
-    """Raise BadInput for an option of the other kind of design."""
-    if arguments.travel_mm is not None and not mechanism:
-        got = f"got it for {Path(arguments.case).stem}"
-        raise BadInput(f"--travel-mm: {got}, expected it for a mechanism only")
-    wrong = "centre-shift" if mechanism else STRESS
-    if arguments.objective == wrong:
-        kinds = "stress or stiffness-variation" if mechanism else " or ".join(OF_PIVOT)
-        raise BadInput(f"--objective: got {wrong}, expected {kinds} for {Path(arguments.case).stem}")
-    if mechanism and not arguments.free:
-        raise BadInput("--free: got none, expected a number of the mechanism's file, such as section.width_m")
-
-
-def _numbers(content: dict[str, Any], arguments: argparse.Namespace) -> MechanismQuestion:
-    """Return the numbers of a mechanism that are to be found, over the path that is asked for."""
-    where = str(arguments.case)
-    if arguments.rotation is not None:
-        drive = content.get("drive", {}) | {"rotation_deg": math.degrees(arguments.rotation)}
-        content = content | {"drive": drive}
-    task = MechanismQuestion.of(where, content, arguments.free, objective=arguments.objective)
-    if task.objective not in task.objectives:
-        raise BadInput(f"--objective: got {task.objective}, expected stress of what follows its loads")
-    if not task.start.bodies:
-        raise BadInput(f"{where}: bodies: got none, expected one whose stiffness or travel is held")
-    other = "travel_mm" if task.held == "stiffness" else "stiffness"
-    if getattr(arguments, other) is not None:
-        expected = take.option("stiffness" if other == "travel_mm" else "travel_mm")
-        raise BadInput(f"{take.option(other)}: got it for {Path(where).stem}, expected {expected}")
-    task.require_gradients()
-    return task
+        raise BadInput(f"{where}: {got}, expected {expected}")
 
 
 def _limited(task: Question, arguments: argparse.Namespace) -> tuple[Question, Accurate]:
     """Return the question with what is held and allowed, given or the case's own, and the case's answers."""
-    travel = arguments.travel_mm
-    wanted = arguments.stiffness if travel is None else 1e-3 * travel
-    strengths = [strip.yield_strength for strip in task.start.strips]
-    allowable = None if None in strengths else min(strengths)
-    if arguments.max_stress_MPa is not None:
-        allowable = 1e6 * arguments.max_stress_MPa
-    try:
-        own = task.accurate()
-    except PathEnds:
-        own = _unknown(task, arguments, {task.held: wanted, "stress": allowable})
-        assert allowable is not None, "it is given, as without it there is no question"
-        return replace(task, wanted=wanted, allowable_stress=allowable), own
+    own = task.accurate()
     if own.quantities[task.objective] <= NOTHING:
         expected = "what is not zero already: its stiffness does not vary"
         raise BadInput(f"--objective: got {task.objective} of {arguments.case}, expected {expected}")
+    strengths = [strip.yield_strength or math.nan for strip in task.start.strips]
+    allowable = own.answers.largest(STRESS) if math.isnan(sum(strengths)) else min(strengths)
+    if arguments.max_stress_MPa is not None:
+        allowable = 1e6 * arguments.max_stress_MPa
+    wanted = arguments.stiffness if arguments.travel_mm is None else 1e-3 * arguments.travel_mm
     wanted = own.quantities[task.held] if wanted is None else wanted
-    allowable = own.answers.largest(STRESS) if allowable is None else allowable
     points = own.control_points
     return replace(task, wanted=wanted, allowable_stress=allowable, control_points=points), own
 
 
-def _unknown(task: Question, arguments: argparse.Namespace, limits: dict[str, float | None]) -> Accurate:
-    """Return the answers of a case whose path ends early: no numbers, if all limits are given without them;
-    else PathEnds, with what is to be given."""
-    options = {"stiffness": "--stiffness", "travel": "--travel-mm", "stress": "--max-stress-MPa"}
-    missing = [options[name] for name, limit in limits.items() if limit is None]
-    if missing:
-        told = answer_static(task.start, SplineSettings())
-        reason = (
-            told.message or f"it takes more than {CONTROL_POINTS} control points, from which sizing goes on"
-        )
-        rest = float(told.stiffness[0]) if len(told.stiffness) else math.nan
-        unloaded = f" (at rest it has {rest:.4g} N m/rad)" if rest > 0.0 else ""
-        remedy = f"give {' and '.join(missing)} to search from other designs{unloaded}"
-        raise PathEnds(f"{arguments.case}: the case itself has no answer over the range: {reason}; {remedy}")
-    nothing, (_, answers) = dict.fromkeys(task.quantities, math.nan), compared(task)
-    return Accurate(answers=answers, quantities=nothing, errors=nothing, control_points=task.control_points)
+@dataclass(frozen=True, kw_only=True)
+class _Optimum:
+    """The best design of a search, its answer to the accuracy of `solve`, and that of the finite elements.
+
+    If the finite elements have no answer, the reason takes its place.
+    """
+
+    outcome: Outcome
+    answers: Accurate
+    path: Response
+    elements: Mapping[str, float]
+    no_elements: str = ""
+
+    @classmethod
+    def of(cls, asked: Question, found: Outcome) -> Self:
+        """Return an optimum with all that is said of it."""
+        found, answers = settled(asked, found)
+        path, reason = answer_static(found.design, SplineSettings()), ""
+        try:
+            elements = by_elements(found.design)
+        except (NoReference, BadInput) as error:
+            elements, reason = dict.fromkeys(SHOWN, math.nan), str(error)
+        return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
+
+
+def _document(
+    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+) -> dict[str, Any]:
+    """Return the answer as the JSON object of the command; own: the case's answers."""
+
+    def named(measured: Mapping[str, float]) -> dict[str, float]:
+        return {SHOWN[name][0]: measured[name] for name in asked.quantities}
+
+    def numbers(outcome: Outcome) -> dict[str, float]:
+        return dict(zip(asked.names, map(float, asked.values(outcome.at)), strict=True))
+
+    starts = [
+        {
+            "optimum": number,
+            "objective": each.objective,
+            "violation": each.violation,
+            "kkt_residual": each.residual,
+            "paths_solved": each.solved,
+            "message": _ended(number, each),
+            "numbers": numbers(each),
+        }
+        for number, each in zip(numbered(outcomes), outcomes, strict=True)
+    ]
+    optimum = None
+    if found is not None:
+        optimum = {
+            "numbers": numbers(found.outcome),
+            "spline": named(found.answers.quantities),
+            "estimated_error": named(found.answers.errors),
+            "control_points": found.answers.control_points,
+            "finite_elements": named(found.elements),
+            "validity": asdict(validity(found.path)),
+            "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
+        }
+    return {
+        "objective": asked.objective,
+        SHOWN[asked.held][0]: asked.wanted,
+        "allowable_stress_Pa": asked.allowable_stress,
+        "bounds": {each.name: [each.low, each.high] for each in asked.variables},
+        "case": named(own.quantities),
+        "optimum": optimum,
+        "starts": starts,
+    }
+
+
+def _said(asked: Question) -> tuple[str, str]:
+    """Return what is asked, in two lines: the range of a pivot is to both sides."""
+    names, rotation = asked.start.effects.names, asked.start.rotation
+    least = f"least {asked.objective.replace('-', ' ')}"
+    if rotation is not None:
+        degrees = math.degrees(rotation)
+        both = isinstance(asked.start, Problem)
+        least += f" over +-{abs(degrees):.4g} deg" if both else f" over {degrees:.4g} deg"
+    if loads := [name for name in names if name not in PLAIN]:
+        least += f" under {', '.join(loads)}"
+    if taken := [name.replace("_", " ") for name in OF_SIDES if name in names]:
+        least += f" with {', '.join(taken)}"
+    wanted = f"{asked.wanted:.6g} N m/rad"
+    if asked.held == TRAVEL:
+        wanted = f"a travel of {1e3 * asked.wanted:.6g} mm"
+    return least, f"at {wanted} and at most {asked.allowable_stress / 1e6:.6g} MPa"
+
+
+def _readable(
+    asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
+) -> Iterator[str]:
+    """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
+    yield from _said(asked)
+    heading = "".join(f"{place:>12}" for place, _ in enumerate(asked.variables, start=1))
+    yield ""
+    yield from (f"{place:>5}: {name}" for place, name in enumerate(asked.names, start=1))
+    if found is not None:
+        yield ""
+        yield from _comparison(asked, own.quantities, found)
+        yield ""
+        yield f"{'':<10}{heading}"
+        yield f"{'case':<10}{_line(asked.own)}"
+        yield f"{'sized':<10}{_line(asked.values(found.outcome.at))}"
+        yield ""
+        active = ", ".join(f"{each.name} ({each.price:+.2g})" for each in found.outcome.active)
+        yield f"held back by, with prices: {active or 'nothing'}"
+        if held := [each.name for each in asked.variables if each.span == 0.0]:
+            yield f"held as asked: {', '.join(held)}"
+    yield ""
+    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {heading}"
+    for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
+        share = cell(each.objective / own.quantities[asked.objective], 10, ".4f")
+        begun = f"{i:>5} {number or '-':>8} {share} {each.solved:>6}"
+        yield f"{begun}  {_line(asked.values(each.at))}  {_ended(number, each)}"
+
+
+def _line(values: Any) -> str:
+    return "".join(f"{value:12.6g}" for value in values)
+
+
+def _ended(number: int, outcome: Outcome) -> str:
+    """Return where a start led, in words."""
+    return outcome.message or ("the least" if number == 1 else "an optimum, not the least")
+
+
+def _comparison(asked: Question, case: Mapping[str, float], found: _Optimum) -> Iterator[str]:
+    """Yield what case and optimum answer, how sure that is, and what `solve` says of the optimum."""
+    spline, errors = found.answers.quantities, found.answers.errors
+    yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
+    for key, (_, label, factor) in SHOWN.items():
+        if key in case:
+            columns = (factor * each[key] for each in (case, spline, found.elements))
+            yield f"{label:<28}" + "".join(cell(value, 12, ".5g") for value in columns)
+    if found.no_elements:
+        yield f"the finite elements have no answer: {found.no_elements}"
+    yield _gain(case[asked.objective] / spline[asked.objective])
+    points = f"{found.answers.control_points} control points"
+    told = (f"{name} {e:.1e}" if math.isfinite(e) else f"{name} not estimated" for name, e in errors.items())
+    yield f"estimated error of the splines, sized, {points}: {', '.join(told)}"
+    if missed := [name for name, error in errors.items() if error > DEFAULT]:
+        yield f"the accuracy of {DEFAULT:g} is not reached by: {', '.join(missed)}"
+    yield from (f"warning: {each}" for each in validity(found.path).outside)
+    if found.path.message:
+        yield found.path.message
+
+
+def _gain(times: float) -> str:
+    """Return in words how much less the objective is, which the case has so many times."""
+    if abs(times - 1.0) < SAME:
+        return "as much as the case's, which is an optimum already"
+    if times > 1.0:
+        return f"{times:.4g} times less than the case's"
+    return f"{1.0 / times:.4g} times the case's, which does not meet what is asked"

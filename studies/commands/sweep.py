@@ -21,9 +21,8 @@ omitted:
     # modes: rotation_deg, count, held; release: duration_s, step_s, integrator
 
     [sample]
-    method = "sobol"                  # grid (default), list, latin-hypercube, sobol
-    points = 4096                     # of the random methods; `seed`, 0 if not given
-    # file = "designs.csv"            # a list instead of [vary]: a column a key
+    method = "sobol"                  # grid (default), list, sobol
+    points = 4096                     # of sobol; `seed`, 0 if not given
     # chunk = 256                     # designs that are solved and kept at a time
 
     [vary]                            # SECTION.KEY as in the case, strips.NAME.KEY of a mechanism,
@@ -61,7 +60,7 @@ INTERRUPTED = 130
     Argument("designs DESIGNS.toml", "which designs, and what is asked of them"),
     OUT.but("folder of the table", required=True, metavar="DIR"),
     Argument("--csv", "write the table as CSV as well"),
-    Argument("--workers N", "threads or processes (default: all cores)", whole_number(1)),
+    Argument("--workers N", "processes (default: all cores)", whole_number(1)),
     Argument("--scheduler ADDRESS", "of a Dask cluster, tcp://HOST:PORT (default: none, this machine alone)"),
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -76,11 +75,7 @@ def main(arguments: argparse.Namespace) -> int:
     from studies.sweep.run import cluster, local_pool, sweep
 
     plan = read_plan(arguments.designs)
-    pool = (
-        cluster(arguments.scheduler)
-        if arguments.scheduler is not None
-        else local_pool(plan, arguments.workers)
-    )
+    pool = cluster(arguments.scheduler) if arguments.scheduler is not None else local_pool(arguments.workers)
     try:
         with Bar("sweep") as bar:
             solved = sweep(plan, arguments.out, pool=pool, csv=arguments.csv, progress=bar)

@@ -1,18 +1,17 @@
-"""A design's answers with exact gradients, and what checks them: differences, and the finite elements."""
+"""A design's answers over its range with exact gradients, and those of the finite elements beside them."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from spline_model.accuracy import DEFAULT, search
-from spline_model.confirmed import NOTHING, Grid
-from spline_model.discretisation import Discretisation
+from spline_model.accuracy import DEFAULT, MOST
+from spline_model.confirmed import MORE, NOTHING
 from spline_model.sensitivity import sensitivities
-from spline_model.solution import largest
 from studies.answers.answer import centre_shift
 from studies.answers.models import put
 from studies.answers.reference import reference
@@ -22,19 +21,15 @@ from studies.cases.effects import MOTION_ONLY
 from studies.cases.problem import Problem
 from studies.kinds import Array
 
-#: Variables of a pivot's sizing, as keywords of the sensitivities; both strips are alike.
-VARIABLES = ("length", "inclination", "crossing_ratio", "thickness", "width")
 CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
 STIFFNESS, TRAVEL = "stiffness", "travel"
-#: Quantities of a pivot.
-OF_PIVOTS = (CENTRE_SHIFT, VARIATION, STIFFNESS, STRESS)
 #: Where fibre stresses are constrained, reference arc length over L.
 STATIONS = np.linspace(0.0, 1.0, 21)
 #: The fewest control points of the strips: an optimum's answers nearly cancel, and 8 miss the least variation
 #: by 8 %.
 CONTROL_POINTS = 10
-
-
+#: Control points that are added where the accuracy is not reached.
+FURTHER = 2
 #: Effects under which both sides of a range are mirror images, as both strips are alike.
 PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_compliance", *MOTION_ONLY}
 
@@ -58,37 +53,8 @@ class PathEnds(RuntimeError):
     """A design whose static path does not reach the end of the range."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Measured:
-    """What an answer of either model says of a design over the S states of its range, both sides.
-
-    The first state has all loads, and the body has not turned; under loads the states of the other side
-    follow.
-
-    Attributes:
-        rotation: (S,) from the first state [rad]; shift: (S,) distance since then of a pivot's crossing, or
-            of the body of a mechanism [m]; stiffness: (S,) [N m / rad]; stress: (S,) largest [Pa].
-    """
-
-    rotation: Array
-    shift: Array
-    stiffness: Array
-    stress: Array
-
-    def quantities(self, names: Sequence[str] = OF_PIVOTS) -> dict[str, float]:
-        """Return objectives and constraints of these names: [m, 1, N m / rad, m, Pa]."""
-        known: dict[str, Callable[[], float]] = {
-            CENTRE_SHIFT: self.shift.max,
-            VARIATION: lambda: np.abs(self.stiffness / self.stiffness[0] - 1.0).max(),
-            STIFFNESS: lambda: self.stiffness[0],
-            TRAVEL: lambda: self.shift[-1],
-            STRESS: self.stress.max,
-        }
-        return {name: float(known[name]()) for name in names}
-
-
 class Followed(NamedTuple):
-    """Values (R,) of a quantity over states or fibres, and gradients (R, N) by the variables, in SI units."""
+    """Values (R,) of a quantity over states or fibres, and gradients (R, N) by the variables."""
 
     value: Array
     by: Array
@@ -96,18 +62,18 @@ class Followed(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Answers:
-    """What a design answers over its range, with gradients.
+    """What a design answers over its range, both sides; the first state has all loads, before it turns.
 
     Attributes:
         followed: by quantity: `STIFFNESS` at the first state [N m / rad], or, where the bodies follow the
             loads, `TRAVEL`, how far the body goes [m], each alone; behind the first state the squares of the
             centre shift [m^2] and the change of the stiffness over that of the first state, signed [1]; the
             signed fibre stresses at the states of `_held_states` [Pa].
-        measured: the same without gradients.
+        quantities: the largest of each over all states [m, 1, N m / rad, m, Pa].
     """
 
     followed: Mapping[str, Followed]
-    measured: Measured
+    quantities: Mapping[str, float]
 
     def largest(self, quantity: str) -> float:
         """Return the largest size of a quantity that is followed [m, 1, N m / rad or Pa]."""
@@ -115,29 +81,36 @@ class Answers:
         return math.sqrt(largest) if quantity == CENTRE_SHIFT else largest
 
 
-def answers(
-    design: Design,
-    control_points: int = CONTROL_POINTS,
-    *,
-    parameters: Sequence[str] = VARIABLES,
-    chain: Array | None = None,
-) -> Answers:
+def _quantities(shift: Array, stiffness: Array, stress: Array) -> dict[str, float]:
+    """Return the quantities of a range by its states (S,).
+
+    shift: distance since the first state of a pivot's crossing, or of a mechanism's body [m].
+    stiffness: [N m / rad]. stress: the largest of all fibres [Pa].
+    """
+    found = {
+        CENTRE_SHIFT: shift.max(),
+        VARIATION: np.abs(stiffness / stiffness[0] - 1.0).max(),
+        STIFFNESS: stiffness[0],
+        TRAVEL: shift[-1],
+        STRESS: stress.max(),
+    }
+    return {name: float(value) for name, value in found.items()}
+
+
+def answers(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> Answers:
     """Solve a design to the end of its range, with exact gradients.
 
     Args:
         control_points: of each strip [1].
         parameters: R names of the sensitivities.
-        chain: derivatives (R, N) of these by the variables [SI]; None if they are the variables.
+        chain: derivatives (R, N) of these by the variables.
 
     Raises:
         PathEnds: the static path does not reach the end of the range, or buckles on its way under the loads.
         BadInput: an effect or value that the model, or its sensitivities, reject; one line.
     """
-    chain = np.eye(len(parameters)) if chain is None else chain
     sides = [_to_one_side(side, control_points, parameters, chain) for side in sides_of(design)]
-    rotation, stiffness, by_stiffness, shift, by_shift, stress, by_stress = map(
-        _joined, zip(*sides, strict=True)
-    )
+    stiffness, by_stiffness, shift, by_shift, stress, by_stress = map(_joined, zip(*sides, strict=True))
     shift, by_shift, held = shift - shift[0], by_shift - by_shift[0], _held_states(design)
     ratio = stiffness[1:] / stiffness[0]
     by_ratio = (by_stiffness[1:] - ratio[:, None] * by_stiffness[0]) / stiffness[0]
@@ -152,8 +125,36 @@ def answers(
         travel = np.linalg.norm(shift[-1:], axis=1)
         followed[TRAVEL] = Followed(travel, shift[-1:] @ by_shift[-1] / travel)
     largest = np.abs(stress).max(axis=(1, 2, 3))
-    measured = Measured(rotation=rotation, shift=np.hypot(*shift.T), stiffness=stiffness, stress=largest)
-    return Answers(followed=followed, measured=measured)
+    return Answers(followed=followed, quantities=_quantities(np.hypot(*shift.T), stiffness, largest))
+
+
+def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> list[Array]:
+    """Return a path from the state on at which the body begins to turn, loads having come on before.
+
+    Arguments and errors are those of `answers`. Arrays (S, ...): the stiffness [N m / rad], the shift of the
+    pivot's crossing, or of the mechanism's body, from rest (2) [m], and the stress of the fibres [Pa], each
+    before its derivative by the variables (S, ..., N).
+    """
+    asked = put(design, SplineSettings(control_points=control_points))
+    with asked.refusals():
+        try:
+            path = asked.static_path()
+        except asked.model.ConvergenceError as error:
+            raise PathEnds(str(error)) from None
+        if path.critical_points and _held_states(design) != [-1]:
+            raise PathEnds(path.message)
+        found = sensitivities(
+            asked.modelled, path, parameters=parameters, stations=STATIONS, body=design.body
+        )
+    turned, arrays = slice(-design.increments - 1, None), []
+    for quantity in (found.stiffness, found.centre_shift, found.fibre_stress):
+        arrays += [quantity.value[turned], quantity.derivative[turned] @ chain]
+    return arrays
+
+
+def _joined(sides: Sequence[Array]) -> Array:
+    """Return the values of a path to one side and, behind its first state, of that to the other."""
+    return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,87 +173,44 @@ class Accurate:
 
 def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
     """Return the answers of a design that `solve` gives with some control points, chosen so that the
-    quantities of these names have an error of `DEFAULT`.
+    quantities of these names have an error of `DEFAULT`, estimated by `MORE` control points.
 
     Raises:
         PathEnds: the fewest control points do not reach the end of the range.
     """
-    first = solve(CONTROL_POINTS)
-    known: dict[int, Answers | None] = {CONTROL_POINTS: first}
-
-    def solved(points: int) -> Answers | None:
-        if points not in known:
-            known[points] = None
-            with suppress(PathEnds):
-                known[points] = solve(points)
-        return known[points]
-
-    def attempt(fewer: Grid, more: Grid) -> tuple[float, tuple[Answers, dict[str, float]]] | None:
-        coarse, fine = solved(fewer[1]), solved(more[1])
-        if coarse is None or fine is None:
-            return None
-        mine, errors = coarse.measured.quantities(names), {}
-        for name, right in fine.measured.quantities(names).items():
-            scale = max(abs(right), NOTHING) if name == VARIATION else abs(right)
-            errors[name] = abs(mine[name] - right) / scale if scale else 0.0
-        return largest(errors.values()), (coarse, errors)
-
-    outcome = search(Discretisation(control_points=CONTROL_POINTS), DEFAULT, attempt, most_segments=1)
-    found, errors = outcome.found or (first, dict.fromkeys(names, math.nan))
-    return Accurate(
-        answers=found,
-        quantities=found.measured.quantities(names),
-        errors=errors,
-        control_points=outcome.best[1],
-    )
+    solved, least = cache(solve), math.inf
+    found, errors, chosen = solved(CONTROL_POINTS), dict.fromkeys(names, math.nan), CONTROL_POINTS
+    for points in range(CONTROL_POINTS, MOST + 1, FURTHER):
+        if least <= DEFAULT:
+            break
+        with suppress(PathEnds):
+            mine, fine = solved(points), solved(points + MORE)
+            apart = {name: _apart(name, mine, fine) for name in names}
+            if max(apart.values()) < least:
+                least, found, errors, chosen = max(apart.values()), mine, apart, points
+    quantities = {name: found.quantities[name] for name in names}
+    return Accurate(answers=found, quantities=quantities, errors=errors, control_points=chosen)
 
 
-def _to_one_side(design: Design, control_points: int, parameters: Sequence[str], chain: Array) -> list[Array]:
-    """Return a path from the state on at which the body begins to turn, loads having come on before.
-
-    Arguments and errors are those of `answers`. Arrays (S, ...): rotation [rad], load factor where nothing
-    is driven; the stiffness [N m / rad], the shift of the pivot's crossing, or of the mechanism's body, from
-    rest (2) [m], and the stress of the fibres [Pa], each before its derivative by the variables (S, ..., N).
-    """
-    asked = put(design, SplineSettings(control_points=control_points))
-    with asked.refusals():
-        try:
-            path = asked.static_path()
-        except asked.model.ConvergenceError as error:
-            raise PathEnds(str(error)) from None
-        if path.critical_points and _held_states(design) != [-1]:
-            raise PathEnds(path.message)
-        found = sensitivities(
-            asked.modelled, path, parameters=parameters, stations=STATIONS, body=design.body
-        )
-    turned = slice(-design.increments - 1, None)
-    arrays = [path.load_factor[turned] if design.rotation is None else path.rotation[turned]]
-    for quantity in (found.stiffness, found.centre_shift, found.fibre_stress):
-        arrays += [quantity.value[turned], quantity.derivative[turned] @ chain]
-    return arrays
+def _apart(name: str, coarse: Answers, fine: Answers) -> float:
+    """Return the relative difference of a quantity of two answers [1]."""
+    mine, right = coarse.quantities[name], fine.quantities[name]
+    scale = max(abs(right), NOTHING) if name == VARIATION else abs(right)
+    return abs(mine - right) / scale if scale else 0.0
 
 
-def _joined(sides: Sequence[Array]) -> Array:
-    """Return the values of a path to one side and, behind its first state, of that to the other."""
-    return np.concatenate([sides[0], *(side[1:] for side in sides[1:])])
-
-
-def by_elements(design: Design) -> Measured:
-    """Return what the finite elements say of a design in the limit of refinement, stress on the finest mesh.
+def by_elements(design: Design) -> dict[str, float]:
+    """Return the quantities of a design by the finite elements in the limit of refinement, stress on the
+    finest mesh.
 
     Raises:
         NoReference: they do not reach the end of the range.
     """
-    limits = [reference(side) for side in sides_of(design)]
-    turned, shifts = slice(-design.increments - 1, None), []
-    for limit in limits:
+    turned, sides = slice(-design.increments - 1, None), []
+    for limit in map(reference, sides_of(design)):
         shift = limit.centre
         if isinstance(design, Problem):
             shift = centre_shift(design.crossing_point, limit.rotation, limit.centre)
-        shifts.append(np.hypot(*(shift[turned] - shift[turned][0]).T))
-    return Measured(
-        rotation=_joined([limit.rotation[turned] for limit in limits]),
-        shift=_joined(shifts),
-        stiffness=_joined([limit.stiffness[turned] for limit in limits]),
-        stress=_joined([limit.finest.max_stress[turned] for limit in limits]),
-    )
+        moved = np.hypot(*(shift[turned] - shift[turned][0]).T)
+        sides.append((moved, limit.stiffness[turned], limit.finest.max_stress[turned]))
+    return _quantities(*map(_joined, zip(*sides, strict=True)))

@@ -5,7 +5,6 @@ would hang on round-off.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from operator import itemgetter
 from typing import Any
@@ -19,7 +18,7 @@ from studies.design.question import Question
 from studies.kinds import Array, Progress
 
 MOST_ITERATIONS = 100
-#: Designs that a start solves before it is given up: of all questions of the study one takes 125 at most.
+#: Designs after which a start is not continued: of all questions of the study one takes 125 at most.
 MOST_PATHS = 300
 #: Times that the optimiser is started again where it stopped short of an optimum.
 MOST_RUNS = 4
@@ -70,18 +69,15 @@ class Outcome:
     solved: int
 
 
-class _Enough(Exception):
-    """`MOST_PATHS` designs are solved; its argument: where the optimiser is (N + 1,)."""
-
-
-def optimise(question: Question, start: Array, progress: Callable[[int], None] | None = None) -> Outcome:
+def optimise(question: Question, start: Array) -> Outcome:
     """Return the outcome of a minimisation from a scaled start (N,) [1].
 
     If the start has no answer, a nearer one that has an answer is used. A feasible end that is not stationary
-    is continued, with a new approximation of the curvature; `progress` receives the number of solved designs.
+    is continued, with a new approximation of the curvature.
     """
-    programme = Programme(question=question, progress=progress)
-    moves = (programme.known + 0.5**k * (start - programme.known) for k in range(MOST_MOVES + 1))
+    programme = Programme(question=question)
+    known = question.scaled(question.own)
+    moves = (known + 0.5**k * (start - known) for k in range(MOST_MOVES + 1))
     begin = next((at for at in moves if programme.answers(at) is not None), None)
     if begin is None:
         return _outcome(programme, start, None)
@@ -157,10 +153,6 @@ def _run(programme: Programme, at: Array) -> Outcome:
     assert begin is not None, "it has an answer"
     objective = begin.largest(programme.question.objective)
 
-    def stop(x: Array) -> None:
-        if programme.solved >= MOST_PATHS:
-            raise _Enough(x.copy())
-
     constraints = [
         {
             "type": kind,
@@ -169,38 +161,29 @@ def _run(programme: Programme, at: Array) -> Outcome:
         }
         for kind, at in (("ineq", itemgetter(slice(-1))), ("eq", itemgetter(slice(-1, None))))
     ]
-    try:
-        found = minimize(
-            lambda x: (x[-1], np.eye(len(x))[-1]),
-            np.append(at, programme.relative(objective)),
-            jac=True,
-            method="SLSQP",
-            bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
-            constraints=constraints,
-            options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
-            callback=stop,
-        )
-        last, message = found.x, str(found.message)
-    except _Enough as enough:
-        last, message = enough.args[0], f"given up after {programme.solved} designs"
-    end = _outcome(programme, last, programme.answers(last), message)
+    found = minimize(
+        lambda x: (x[-1], np.eye(len(x))[-1]),
+        np.append(at, programme.relative(objective)),
+        jac=True,
+        method="SLSQP",
+        bounds=[(0.0, 1.0)] * len(at) + [(0.0, None)],
+        constraints=constraints,
+        options={"maxiter": MOST_ITERATIONS, "ftol": PRECISION},
+    )
+    end = _outcome(programme, found.x, programme.answers(found.x), str(found.message))
     if end.violation <= FEASIBLE:
         return end
-    nearer = min((_outcome(programme, at, begin, message), end), key=lambda each: each.violation)
-    return replace(nearer, solved=programme.solved)
+    nearer = _outcome(programme, at, begin, str(found.message))
+    return replace(min((nearer, end), key=lambda each: each.violation), solved=programme.solved)
 
 
 def search(question: Question, begin: Array, progress: Progress) -> list[Outcome]:
-    """Return the outcomes of minimisations from scaled starts (K, N) [1]; `progress` counts solved
-    designs."""
-    outcomes, most = [], len(begin) * MOST_PATHS
-    for k, start in enumerate(begin):
-
-        def told(solved: int, before: int = k * MOST_PATHS) -> None:
-            progress(before + min(solved, MOST_PATHS), most)
-
-        outcomes.append(optimise(question, start, told))
-    progress(most, most)
+    """Return the outcomes of minimisations from scaled starts (K, N) [1]; `progress` counts starts."""
+    outcomes: list[Outcome] = []
+    for start in begin:
+        progress(len(outcomes), len(begin))
+        outcomes.append(optimise(question, start))
+    progress(len(begin), len(begin))
     return outcomes
 
 
@@ -223,12 +206,9 @@ def best(outcomes: list[Outcome]) -> Outcome | None:
 
     Of a design and its mirror image, which answer the same, the one with the smaller body.
     """
-    good = [each for each in outcomes if each.converged]
-    if not good:
-        return None
-    least = min(each.objective for each in good) * (1.0 + SAME)
-    least_ones = [each for each in good if each.objective <= least]
-    return max(least_ones, key=lambda each: getattr(each.design, "crossing_ratio", -each.objective))
+    least = [each for number, each in zip(numbered(outcomes), outcomes, strict=True) if number == 1]
+    ratio = "crossing_ratio"
+    return max(least, key=lambda each: getattr(each.design, ratio, -each.objective), default=None)
 
 
 def numbered(outcomes: list[Outcome]) -> list[int]:

@@ -10,7 +10,7 @@ to what they are held against: the start's objective, the wanted stiffness, the 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -32,10 +32,6 @@ ACTIVE = 1e-6
 STARTS = 8
 #: Part of a limit below which it is met [1].
 MET = 1e-6
-#: From so many times a limit on it is told as times, not as percent above.
-TIMES = 2.0
-#: Part of a limit up to which it is told as times below, not as percent.
-SMALL = 1e-3
 
 
 class _Rows(NamedTuple):
@@ -61,56 +57,34 @@ class Active(NamedTuple):
     price: float
 
 
-def compared(question: Question) -> tuple[Array, Answers]:
-    """Return the scaled place (N,) [1] of a question's own design, and its answers.
-
-    If its path ends early, the first of the spread starts that has an answer is used.
-
-    Raises:
-        PathEnds: none of them has an answer.
-    """
-    own, *spread = question.starts(STARTS)
-    try:
-        return own, question.answers()
-    except PathEnds as error:
-        ended = str(error)
-    for start in spread:
-        try:
-            return start, question.answers(question.values(start))
-        except (PathEnds, BadInput) as error:
-            ended = str(error)
-    raise PathEnds(f"neither the case nor {len(spread)} designs within the bounds have an answer: {ended}")
-
-
 @dataclass(kw_only=True)
 class Programme:
     """The optimisation problem of a question, in scaled variables (N,) [1].
 
-    `scale` is the largest objective of the design to compare with, or of a neighbour that has an answer, in
-    its unit; `known` (N,) is its place. The object counts solved designs, reports them to `progress`, and
-    keeps the last answer and the reason why the last path `ended` early.
+    `scale` is the largest objective of the design to compare with, in its unit. The object counts solved
+    designs, and keeps the last answer and the reason why the last path `ended` early.
+
+    Raises:
+        PathEnds: the design to compare with has no answer.
     """
 
     question: Question
-    progress: Callable[[int], None] | None = field(default=None, repr=False)
-    known: Array = field(init=False, repr=False)
     scale: float = field(init=False)
     solved: int = 0
     ended: str = ""
     _last: tuple[bytes, Answers | None] = field(default=(b"", None), repr=False)
 
     def __post_init__(self) -> None:
-        self.known, given = compared(self.question)
+        given = self.question.answers()
         self.scale = given.largest(self.question.objective)
-        self._count = sum(len(rows.margin) for rows in self.limits(np.append(self.known, 1.0), given))
+        own = np.append(self.question.scaled(self.question.own), 1.0)
+        self._count = sum(len(rows.margin) for rows in self.limits(own, given))
 
     def answers(self, y: Array) -> Answers | None:
         """Return the answers at relative variables y (N + 1,) [1]; None if the path ends early."""
         key = y[: len(self.question.span)].tobytes()
         if key != self._last[0]:
             self.solved += 1
-            if self.progress is not None:
-                self.progress(self.solved)
             try:
                 found = self.question.answers(self.question.values(y))
             except (PathEnds, BadInput) as error:  # the model may refuse a design that is none of the case's
@@ -211,49 +185,22 @@ class Programme:
         return tuple(Active(name, price) for name, price in told if abs(price) > LEAST_PRICE), float(residual)
 
 
-class _Held(NamedTuple):
-    """A quantity that is held against a limit: its name, value and limit, and what that is, which may be
-    missed to the sides of these signs; it is told times `factor`, with a unit."""
-
-    name: str
-    got: float
-    limit: float
-    what: str
-    sides: tuple[int, ...]
-    unit: str = ""
-    factor: float = 1.0
-
-    @property
-    def excess(self) -> float:
-        """How far it is beyond the limit, of what is below it by its logarithm; 0 where it is met."""
-        ratio = self.got / self.limit
-        far = ratio - 1.0 if ratio >= 1.0 else -math.log(ratio) if ratio > 0.0 else math.inf
-        return far if (1 if ratio >= 1.0 else -1) in self.sides and far > MET else 0.0
-
-    def __str__(self) -> str:
-        """Return what it is, and how far from its limit."""
-        ratio = self.got / self.limit
-        far = f"{100.0 * abs(ratio - 1.0):.3g} % {'above' if ratio > 1.0 else 'below'}"
-        if ratio >= TIMES:
-            far = f"{ratio:.3g} times"
-        elif 0.0 < ratio <= SMALL:
-            far = f"{1.0 / ratio:.3g} times below"
-        elif ratio < 0.0:
-            far = "of the other sign than"
-        got, limit = (f"{self.factor * value:.4g}{self.unit}" for value in (self.got, self.limit))
-        return f"{self.name} {got}, {far} {self.what} {limit}"
-
-
 def missed(question: Question, values: Array, found: Answers) -> str:
-    """Return a phrase for each constraint that a design with these variables (N,) [1] misses, the worst
-    first."""
+    """Return a phrase for each constraint that a design with these variables (N,) misses."""
     unit, factor = (" mm", 1e3) if question.held == TRAVEL else (" N m/rad", 1.0)
-    got, stress = float(found.followed[question.held].value[0]), found.largest(STRESS)
+    own, stress = float(found.followed[question.held].value[0]), found.largest(STRESS)
+    # name, value and limit in the unit that is told, what the limit is, and the sides it is missed to
     held = [
-        _Held(question.held, got, question.wanted, "the wanted", (-1, 1), unit, factor),
-        _Held(STRESS, stress, question.allowable_stress, "the allowable", (1,), " MPa", 1e-6),
+        (question.held, factor * own, factor * question.wanted, unit, "the wanted", (-1, 1)),
+        (STRESS, 1e-6 * stress, 1e-6 * question.allowable_stress, " MPa", "at most", (1,)),
     ]
     for ratio in question.ratios:
-        name, what = ratio.words
-        held.append(_Held(name, values[ratio.top] / values[ratio.bottom], ratio.limit, what, (-ratio.side,)))
-    return "; ".join(str(each) for each in sorted(held, key=lambda each: -each.excess) if each.excess)
+        what = "at least" if ratio.side > 0 else "at most"
+        got = values[ratio.top] / values[ratio.bottom]
+        held.append((ratio.name, got, ratio.limit, "", what, (-ratio.side,)))
+    told = []
+    for name, got, limit, unit, what, sides in held:
+        far = got / limit - 1.0
+        if abs(far) > MET and math.copysign(1, far) in sides:
+            told.append(f"{name}: got {got:.4g}{unit}, expected {what} {limit:.4g}{unit}")
+    return "; ".join(told)

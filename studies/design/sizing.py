@@ -8,6 +8,7 @@ ends the value.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -15,12 +16,20 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from studies.cases.problem import Problem, named_case
-from studies.design import evaluate
-from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, VARIATION, Answers, Followed
+from studies.cases.design import document_of
+from studies.cases.problem import named_case
+from studies.design.evaluate import (
+    CENTRE_SHIFT,
+    STIFFNESS,
+    STRESS,
+    VARIATION,
+    Answers,
+    Followed,
+    by_elements,
+)
 from studies.design.optimise import Outcome, best, search
 from studies.design.programme import STARTS
-from studies.design.question import PivotQuestion, variables_of, varied
+from studies.design.question import Question
 from studies.effects.audit import with_sections
 from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
@@ -38,8 +47,8 @@ COLUMNS = {
 }
 #: Starts of a search with the effects, beside the optimum of beams.
 MORE = 2
-#: Usual tolerances: of lengths [m], angles [rad], and of a thickness by its grade [1].
-LENGTH, ANGLE, GRADE = 0.05e-3, math.radians(0.1), 0.01
+#: Usual tolerances: of lengths [m], angles [deg], and of a thickness by its grade [1].
+TOLERANCE, ANGLE, GRADE = 0.05e-3, 0.1, 0.01
 
 
 #: What tables call the variables.
@@ -63,81 +72,93 @@ QUESTIONS = {
 
 
 @cache
-def baseline(name: str = TABLE_ONE) -> tuple[Problem, Answers]:
-    """Return the design to compare with, over its range, and its answers."""
-    case, degrees, _ = BASELINES[name]
+def baseline(name: str = TABLE_ONE) -> Question:
+    """Return the question about the design to compare with, at its own stiffness, over its range."""
+    case, degrees, stress = BASELINES[name]
     given = named_case(case)
     rotation = given.rotation if degrees is None else math.radians(degrees)
     problem = replace(given, rotation=rotation, increments=INCREMENTS)
-    return problem, evaluate.answers(problem)
-
-
-def asked(name: str, objective: str, aspect: float) -> PivotQuestion:
-    """Return the question of a baseline at the stiffness of its own answers; aspect: largest width over
-    thickness."""
-    problem, own = baseline(name)
-    allowable = BASELINES[name][2] or own.largest(STRESS)
-    question = PivotQuestion.usual(problem, aspect=aspect, objective=objective)
+    question = Question.of(case, document_of(problem), objective=CENTRE_SHIFT)
+    own = question.answers()
+    allowable = stress or own.largest(STRESS)
     return replace(question, wanted=own.largest(STIFFNESS), allowable_stress=allowable)
+
+
+def asked(name: str, objective: str, aspect: float) -> Question:
+    """Return the question of a baseline; aspect: largest width over thickness."""
+    question = baseline(name)
+    slender, wide = question.ratios
+    return replace(question, objective=objective, ratios=(slender, wide._replace(limit=aspect)))
+
+
+def _with_effects(question: Question) -> Question:
+    """Return the question about the same pivot with all effects of its sections."""
+    start = with_sections(question.start)
+    return replace(question, start=start, content=document_of(start))
 
 
 def _of_question(name: str) -> Answer:
     """Return the rows of a question: those of its optimum as beams, and the optimum with all effects."""
     question, begun = asked(*QUESTIONS[name]), QUESTIONS[name][0]
     found = _optimum(name, question, question.starts(STARTS))
-    new = replace(question, start=with_sections(question.start))
+    new = _with_effects(question)
     again = _optimum(name, new, np.vstack((found.at[:-1], new.starts(MORE))))
-    rows = _rows(name, begun, found.design, found.answers)
-    row = _row(name, begun, AGAIN, again.design, again.answers.measured.quantities())
-    return {"designs": [*rows, {**row, "error": _error(again.design, again.answers)}]}
+    rows = _rows(name, begun, question, question.values(found.at))
+    values = new.values(again.at)
+    row = _row(name, begun, AGAIN, values, again.answers.quantities)
+    return {"designs": [*rows, {**row, "error": error(new, values, again.answers)}]}
 
 
-def _optimum(name: str, question: PivotQuestion, starts: Array) -> Outcome:
+def _optimum(name: str, question: Question, starts: Array) -> Outcome:
     found = best(search(question, starts, silent))
     if found is None:
         raise RuntimeError(f"{name}: no start has led to an optimum")
     return found
 
 
-def _rows(name: str, baseline: str, problem: Problem, found: Answers) -> list[Row]:
-    """Return a design as beams, with the effects and at tolerances."""
-    own = found.measured.quantities()
-    within = evaluate.answers(with_sections(problem)).measured.quantities()
+def _rows(name: str, begun: str, question: Question, values: Array) -> list[Row]:
+    """Return a design, variables (5,), as beams, with the effects and at tolerances."""
+    found = question.answers(values)
+    within = _with_effects(question).answers(values)
     return [
-        {**_row(name, baseline, BEAMS, problem, own), "error": _error(problem, found)},
-        _row(name, baseline, EFFECTS, problem, within),
-        _row(name, baseline, TOLERANCES, problem, toleranced(problem, found)),
+        {**_row(name, begun, BEAMS, values, found.quantities), "error": error(question, values, found)},
+        _row(name, begun, EFFECTS, values, within.quantities),
+        _row(name, begun, TOLERANCES, values, toleranced(question, values)),
     ]
 
 
-def _row(name: str, baseline: str, basis: str, problem: Problem, values: dict[str, float]) -> Row:
-    sizes = dict(zip(UNITS, variables_of(problem), strict=True))
-    answers = {column: values[quantity] for quantity, column in COLUMNS.items()}
-    return {"design": name, "baseline": baseline, "basis": basis, **sizes, **answers}
+def _row(name: str, begun: str, basis: str, values: Array, found: Mapping[str, float]) -> Row:
+    sizes = dict(zip(UNITS, values, strict=True))
+    sizes["inclination_rad"] = math.radians(sizes["inclination_rad"])
+    answers = {column: found[quantity] for quantity, column in COLUMNS.items()}
+    return {"design": name, "baseline": begun, "basis": basis, **sizes, **answers}
 
 
-def _error(problem: Problem, found: Answers) -> float:
-    """Return the largest difference of all quantities to those of the finite elements, relative [1]."""
-    splines, elements = (each.quantities() for each in (found.measured, evaluate.by_elements(problem)))
-    return max(abs(splines[name] / elements[name] - 1.0) for name in splines)
+def error(question: Question, values: Array, found: Answers) -> float:
+    """Return the largest difference of all quantities of a design to those of the finite elements,
+    relative [1]."""
+    elements = by_elements(question.design(values))
+    return max(abs(found.quantities[name] / elements[name] - 1.0) for name in question.quantities)
 
 
-def toleranced(problem: Problem, found: Answers) -> dict[str, float]:
+def sizes_of(values: Array) -> Array:
+    """Return the tolerances (5,) of the variables (5,), in their units."""
+    length, _, _, thickness, _ = values
+    return np.array([TOLERANCE, ANGLE, TOLERANCE / length, GRADE * thickness, TOLERANCE])
+
+
+def toleranced(question: Question, values: Array) -> dict[str, float]:
     """Return the largest value of each quantity, in its SI unit, at the usual tolerances of all dimensions.
 
     Every state of the range, and every fibre, has its own gradient, so that the largest value may move from
     one to another, as it does at an optimum.
     """
-    length, _, _, thickness, _ = variables_of(problem)
-    sizes = np.array([LENGTH, ANGLE, LENGTH / length, GRADE * thickness, LENGTH])
-    largest = {}
-    for quantity, (values, by) in _followed(found).items():
-        state = int((np.abs(values) + np.abs(by) @ sizes).argmax())
-        change = np.where(values[state] * by[state] < 0.0, -1.0, 1.0) * sizes
-        ends = (
-            evaluate.answers(varied(problem, variables_of(problem) + side * change)) for side in (1.0, -1.0)
-        )
-        largest[quantity] = max(float(np.abs(_followed(end)[quantity][0]).max()) for end in ends)
+    sizes, largest = sizes_of(values), {}
+    for quantity, (found, by) in _followed(question.answers(values)).items():
+        state = int((np.abs(found) + np.abs(by) @ sizes).argmax())
+        change = np.where(found[state] * by[state] < 0.0, -1.0, 1.0) * sizes
+        ends = (question.answers(values + side * change) for side in (1.0, -1.0))
+        largest[quantity] = max(float(np.abs(_followed(end)[quantity].value).max()) for end in ends)
     return largest
 
 
@@ -173,7 +194,10 @@ def _figure(tables: Tables) -> Figure:
 STUDY = Study(
     cases=tuple(case for case, *_ in BASELINES.values()),
     parts=(
-        Part(at=lambda: BASELINES, ask=lambda name: {"designs": _rows(name, name, *baseline(name))}),
+        Part(
+            at=lambda: BASELINES,
+            ask=lambda name: {"designs": _rows(name, name, baseline(name), baseline(name).own)},
+        ),
         Part(at=lambda: QUESTIONS, ask=_of_question),
     ),
     figures={"sizing": _figure},

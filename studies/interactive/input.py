@@ -8,19 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from spline_model.errors import FORMER
 from studies.cases.rules import TRUTH, Rule, choice, number, text, whole
 from studies.errors import BadInput
-from studies.interactive.motion import SOLVERS
 from studies.interactive.presets import STEP, STEPS_A_FRAME
 from studies.kinds import Array
 
 #: Grips of the hand: the rotation, and the centre by a spring; the centre alone, by a spring; the rotation
 #: alone; the whole pose.
 DRIVES = ("grip", "pull", "rotation", "pose")
-#: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told; most
-#: sweeps of a solver.
-MOST_STEPS, FRAMES, MOST_SWEEPS = 20, 25, 1000
+#: Longest that simulated time is caught up, or waits, in one frame, in steps; frames whose pace is told.
+MOST_STEPS, FRAMES = 20, 25
 
 Fields = Mapping[str, Rule]
 Events = Mapping[str, Fields]
@@ -37,19 +34,13 @@ _THREE = Rule(
     ),
     read=lambda value: np.array(value, dtype=float),
 )
-#: Session files of former versions are read with the former name of a solver.
-_SOLVER = Rule(
-    expected=choice(*SOLVERS).expected,
-    admits=lambda value: isinstance(value, str) and FORMER.get(value, value) in SOLVERS,
-    read=lambda value: FORMER.get(value, value),
-)
-_DRIVE, _SWEEPS = choice(*DRIVES), whole(1, MOST_SWEEPS)
+_DRIVE = choice(*DRIVES)
 #: Actions of events, each a method of the session, with their fields; fields with a question mark are
 #: optional.
 EVENTS: Events = {
     "setup": {
-        **{"preset": _NAME, "values": _MAP, "case?": _MAP, "drive": _DRIVE, "solver": _SOLVER},
-        **{"sweeps": _SWEEPS, "lock_step": TRUTH, "rest": _THREE},
+        **{"preset": _NAME, "values": _MAP, "case?": _MAP, "drive": _DRIVE},
+        **{"lock_step": TRUTH, "rest": _THREE},
     },
     "pose": {"pose": _THREE},
     "seen": {
@@ -64,14 +55,12 @@ EVENTS: Events = {
         "faults?": _WORDS,
     },
     "unseen": {"code?": _NAME, "text?": ANYTHING},
-    "release": {"speed?": choice("hand", "zero")},
-    "parameter": {"name": _NAME, "value": ANYTHING, "part?": TRUTH},
-    "preset": {"name": _NAME, "values?": _MAP, "case?": _MAP, "part?": TRUTH},
+    "parameter": {"name": _NAME, "value": ANYTHING},
+    "preset": {"name": _NAME, "values?": _MAP, "case?": _MAP},
     "drive": {"by": _DRIVE},
     "grasp": {"body": _NAME},
-    "solver": {"name": _SOLVER, "sweeps?": _SWEEPS},
     "critical": {"force": ANYTHING},
-    **{do: {} for do in ("tick", "catch", "pause", "resume", "step", "reset", "undo", "redo", "rest")},
+    **{do: {} for do in ("tick", "release", "catch", "pause", "resume", "reset", "rest")},
 }
 #: What every event may have.
 _ALWAYS: Fields = {"t": NUMBER, "room?": whole(1, MOST_STEPS)}
@@ -161,15 +150,13 @@ class Clock:
 #: A camera's pose that lies farther from the last one, for each frame's time since, waits for a second one
 #: that agrees [m, rad, s].
 JUMP_SHIFT, JUMP_TURN, FRAME = 0.025, math.radians(15), 0.04
-#: Poses that the velocity is taken from.
-POSES = 5
 
 
 class Hand:
-    """The last poses (3,) [m, m, rad] of the hand with their times [s], the newest last."""
+    """The last pose (3,) [m, m, rad] of the hand with its time [s], None before there is one."""
 
     def __init__(self) -> None:
-        self.poses: deque[tuple[float, Array]] = deque(maxlen=POSES)
+        self.last: tuple[float, Array] | None = None
         self._odd: Array | None = None
 
     def believes(self, time: float, pose: Array) -> bool:
@@ -178,22 +165,13 @@ class Hand:
         It may if it is as near the last one as a hand moves in that time, or seen twice.
         """
         known, self._odd = self._odd, None
-        if not self.poses or (known is not None and _close(pose, known, 1.0)):
+        if self.last is None or (known is not None and _close(pose, known, 1.0)):
             return True
-        last, before = self.poses[-1]
+        last, before = self.last
         if _close(pose, before, max(1.0, (time - last) / FRAME)):
             return True
         self._odd = pose
         return False
-
-    @property
-    def velocity(self) -> Array:
-        """Slope (3,) of the last poses [m/s, rad/s], zero where there are none at different times."""
-        times = np.array([time for time, _ in self.poses])
-        if len(times) < 2 or np.ptp(times) == 0.0:
-            return np.zeros(3)
-        poses = np.array([pose for _, pose in self.poses])
-        return np.asarray(np.polyfit(times - times.mean(), poses, 1)[0])
 
 
 def _close(pose: Array, other: Array, frames: float) -> bool:

@@ -16,7 +16,7 @@ from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
 from studies.interactive.design import PRINTED, Curve, Placing, Snapshot
-from studies.interactive.motion import Motion, Pull, motion
+from studies.interactive.motion import Motion, Pull
 from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
 
@@ -45,7 +45,7 @@ class Mechanics:
         control_points: of a strip; doubt: what is to be said of the error that they leave, empty if nothing.
         length: the longest strip [m]; scale: sizes of moment [N m], force [N], energy [J] and stress [Pa] of
             the design's bending. placing: of its markers. begun: energy [J] of strips, body and load at the
-            release, or where the solver was changed.
+            release.
     """
 
     def __init__(self, piece: Piece, rest: Any = PRINTED) -> None:
@@ -198,20 +198,11 @@ class Mechanics:
         table = np.array(rows)
         return Curve(rotation=table[:, 0], shift=table[:, 1:3], moment=table[:, 3], stress=table[:, 4])
 
-    def release(self, velocity: Array, solver: str, sweeps: int) -> None:
-        """Release the held body with a `velocity` (3,) [m/s, m/s, rad/s] of its pose; the strips follow
-        it."""
-        self._move(solver, sweeps, self._held.full_state(self._system), self._rates(velocity))
-
-    def change_solver(self, solver: str, sweeps: int) -> None:
-        """Let a released body move on by another solver, from where it is."""
-        if self._motion is not None:
-            now = self._motion.state()
-            self._move(solver, sweeps, now.z, now.v)
-
-    def _move(self, solver: str, sweeps: int, z: Array, v: Array) -> None:
-        """Move from unknowns z and velocities v (Q,) on; energies are counted from there."""
-        self._motion = motion(solver, sweeps, self._acting, z, v)
+    def release(self, velocity: Array) -> None:
+        """Release the held body with a `velocity` (3,) [m/s, m/s, rad/s] of its pose, which the strips
+        follow; energies are counted from there."""
+        z, v = self._held.full_state(self._system), self._rates(velocity)
+        self._motion = Motion(self._acting, z, v)
         now = self._motion.state()
         self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(self._body)])
         self.snapshot = self._dynamic(self._motion)
@@ -219,8 +210,7 @@ class Mechanics:
     @property
     def resolved(self) -> bool:
         """Whether a moving body's steps resolve its swing."""
-        moving = self._motion
-        return moving is None or min(self.step, moving.longest) <= self.longest_step
+        return self._motion is None or self.step <= self.longest_step
 
     def advance(self, steps: int) -> float:
         """Take steps of the released body; returns the time done [s], 0 where the solver cannot take them and

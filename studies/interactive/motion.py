@@ -1,6 +1,5 @@
 """What moves the body: an elastic hand or a load, to where strips, spring and load balance; and, released,
-step after step, sequential impulses (section 4.1), stable or as published, or the energy-consistent
-integrator."""
+step after step, the sequential impulses of section 4.1 at once, in their form that is stable at any step."""
 
 import math
 from dataclasses import dataclass
@@ -8,41 +7,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spline_model.compile import compile_scene
-from spline_model.effects import StripDamping
 from spline_model.held import HeldPivot, HeldState
 from spline_model.mechanism import Mechanism
-from spline_model.motion.energy_consistent import Stepper
-from spline_model.motion.records import KINETIC, STRAIN
-from spline_model.motion.start import Start, set_in_motion
-from spline_model.motion.step import NEWTON
-from spline_model.sequential_impulse import impulse_solver, stability_limit
-from spline_model.solution import Later
+from spline_model.sequential_impulse import impulse_solver
 from studies.kinds import Array
 
-#: Least part of an energy-consistent step before the motion is given up: work stays bounded.
-SMALLEST_PART = 2.0**-10
-#: Part of its stability limit that a step of the published form has, and most of them for one of the frame's.
-STABLE_PART, MOST_PARTS = 0.8, 1000
 #: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and
 #: the force that is none, over EI / L^2.
 MOST_PULLS, LONGEST_PULL, HALVINGS, BALANCED = 40, 0.1, 12, 1e-7
 #: Stiffness of a finger's grip [N/m]; share of EI / L^2 that the spread of a seen place may show as a force;
 #: that spread where a pointer shows the place [m].
 FINGER, SHARE, POINTER = 1e3, 0.04, 2e-4
-#: Solvers by the name that the user chooses. The first is what one begins with.
-SOLVERS = {
-    "stable": "impulses at once (Eq 30), stable form",
-    "published": "impulses by sweeps over constraints, as published",
-    "energy": "energy-consistent",
-}
-#: Most sweeps for one linear system, if the user says nothing.
-SWEEPS = 30
 
 
 class _Moving(NamedTuple):
-    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], and the iterations, or
-    sweeps, of the last frame."""
+    """Unknowns (N,) and velocities (Q,) of the released scene, its energies [J], and the solutions for
+    impulses of the last frame."""
 
     z: Array
     v: Array
@@ -51,53 +31,16 @@ class _Moving(NamedTuple):
     iterations: int
 
 
-class _Energy:
-    """The energy-consistent integrator, one call a frame."""
-
-    longest = math.inf
+class Motion:
+    """The motion of a released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI] on."""
 
     def __init__(self, design: Mechanism, z: Array, v: Array) -> None:
-        system = compile_scene(design.released())
-        known = Later(z[None, : system.layout.size].copy)
-        self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
-        self._stepper.smallest = SMALLEST_PART
+        self._solver = solver = impulse_solver(design, form="stable", body=design.design.bodies[0].name)
+        self._out = solver.look(solver.start_at(z, v))
 
     def advance(self, steps: int, step: float) -> float:
-        """Take `steps` steps of `step` seconds, halved at need down to SMALLEST_PART; returns the time done
-        [s], 0 where the solver fails, the last good state being kept."""
-        stepper = self._stepper
-        before, kept = int(stepper.counters[NEWTON]), stepper.kept()
-        for _ in range(steps):
-            if not stepper.advance(0.0, step):
-                stepper.take_back(kept)
-                return 0.0
-        self._iterations = int(stepper.counters[NEWTON]) - before
-        return steps * step
-
-    def state(self) -> _Moving:
-        """Return the present state."""
-        (z,), (v,), (row,) = self._stepper.look()
-        return _Moving(z, v, float(row[KINETIC]), float(row[STRAIN]), self._iterations)
-
-
-class _Impulses:
-    """Sequential impulses: at once, stable at any step, or as published by sweeps, in steps that are cut to
-    what is stable."""
-
-    def __init__(self, design: Mechanism, z: Array, v: Array, form: str, sweeps: int) -> None:
-        swept, body = sweeps if form == "published" else None, design.design.bodies[0].name
-        self._solver = solver = impulse_solver(design, form=form, sweeps=swept, body=body)
-        self._out, self.longest = solver.look(solver.start_at(z, v)), math.inf
-        if form == "published":
-            limit, damping = stability_limit(design), solver.system.scene.of(StripDamping)
-            time = max((each.relaxation_time for each in damping), default=0.0)
-            # damping is explicit too: h^2 + 2 T h < limit^2
-            self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
-
-    def advance(self, steps: int, step: float) -> float:
-        """As of the other; where a step must be cut below its least part, none counts."""
-        parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
-        step, steps = min(step / parts, self.longest), steps * parts
+        """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
+        good state being kept."""
         out = self._solver.step(self._out.state, step, steps)
         if not out.complete:
             return 0.0
@@ -109,20 +52,6 @@ class _Impulses:
         out = self._out
         now, sweeps = out.state, out.counters["sweeps"]
         return _Moving(now.z, now.v, out.kinetic_energy, out.strain_energy, sweeps)
-
-
-#: A solver that was started from a state; `longest`: step [s] that it can take.
-Motion = _Energy | _Impulses
-
-
-def motion(solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> Motion:
-    """Return the motion of the released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI].
-
-    sweeps: largest number for one linear system of the published form [1].
-    """
-    if solver == "energy":
-        return _Energy(design, z, v)
-    return _Impulses(design, z, v, solver, sweeps)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,21 +1,25 @@
-"""A session: events in, states out. No input or output, no clock: the same events give the same states.
+"""A session: events in, states out; and its file: the events, each with the mark of the state it led to.
+
+No input or output, no clock: the same events give the same states.
 
 An event is a mapping with "do" and "t" [s], as the page sends it and a session file stores it. A state is
 what `view.shown` makes of the session: plain numbers in SI units and sentences.
 """
 
+import hashlib
+import json
 import math
-from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
+from studies.errors import BadInput
 from studies.interactive import presets
 from studies.interactive.design import PRINTED
 from studies.interactive.input import DRIVES, MOST_STEPS, Clock, Hand, checked
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import SOLVERS, SWEEPS, softness, ways
+from studies.interactive.motion import softness, ways
 from studies.interactive.presets import STEP, Piece
 from studies.interactive.view import SENTENCES, shown, unstable
 from studies.kinds import Array
@@ -27,8 +31,6 @@ FARTHEST_SHIFT, FARTHEST_TURN = 2.0, 3.5
 #: Distance of the body from where the pivot turns by itself, over the strips' length, that is named: few
 #: hands pull so hard, but 1.5 % of a wrong printed size do it.
 OFF_PATH = 0.02
-#: Designs that can be undone.
-MOST_UNDONE = 100
 #: Pace of a motion below which it is said to be slowed down.
 SLOWED = 0.9
 
@@ -55,11 +57,9 @@ class Session:
         """Everything as at the start, with this design and marker 1 at `rest`."""
         self._at_rest, self.mechanics = rest, Mechanics(piece, rest)
         self.critical: float | None = None
-        self._past, self._future = deque[Piece](maxlen=MOST_UNDONE), deque[Piece](maxlen=MOST_UNDONE)
         self.clock, self.hand = Clock(lock_step=lock_step), Hand()
         self.warnings: dict[str, str] = {}
-        self.drive, self.solver = DRIVES[0], next(iter(SOLVERS))
-        self.sweeps, self.paused, self.time = SWEEPS, False, 0.0
+        self.drive, self.paused, self.time = DRIVES[0], False, 0.0
         self.sight: dict[str, Any] = {"state": "none"}
         self.spread: Array | None = None
         self.sd: Array | None = None
@@ -107,7 +107,7 @@ class Session:
     def _setup(self, event: dict[str, Any]) -> None:
         """Start again with these settings; the first event of a session file."""
         self._begin(self._chosen(event["preset"], event), event["lock_step"], event["rest"])
-        self.drive, self.solver, self.sweeps = event["drive"], event["solver"], event["sweeps"]
+        self.drive = event["drive"]
         self._settle()
 
     def _pose(self, event: dict[str, Any]) -> None:
@@ -156,7 +156,7 @@ class Session:
         if far <= FARTHEST_SHIFT and abs(pose[2]) <= FARTHEST_TURN:
             self.wanted = pose
             self._hold()
-            self.hand.poses.append((time, self.wanted))
+            self.hand.last = (time, self.wanted)
         else:
             self._warn("absurd", f"shift {far:.2g} strip lengths, turn {math.degrees(pose[2]):.0f}°")
 
@@ -192,12 +192,11 @@ class Session:
 
     def _release(self, event: dict[str, Any]) -> None:
         if not self.mechanics.moving:
-            velocity = self.hand.velocity if event.get("speed") == "hand" else np.zeros(3)
-            self._let_go(velocity * STEP / self.mechanics.step, event["t"])
+            self._let_go(np.zeros(3), event["t"])
 
     def _let_go(self, velocity: Array, time: float) -> None:
         """Release the held body with a `velocity` (3,)."""
-        self.mechanics.release(velocity, self.solver, self.sweeps)
+        self.mechanics.release(velocity)
         self.clock.begin(time)
 
     def _catch(self, event: dict[str, Any]) -> None:
@@ -230,12 +229,6 @@ class Session:
 
     _resume = _pause
 
-    def _step(self, event: dict[str, Any]) -> None:
-        """One step of a released body that is paused."""
-        self.paused = True
-        if self.mechanics.moving:
-            self._advance(1)
-
     def _reset(self, event: dict[str, Any]) -> None:
         self.mechanics.reset()
         self.wanted, self.paused = np.zeros(3), False
@@ -244,39 +237,20 @@ class Session:
         self._settle()
 
     def _parameter(self, event: dict[str, Any]) -> None:
-        self._change(self.mechanics.piece.changed({event["name"]: event["value"]}), event)
+        self._change(self.mechanics.piece.changed({event["name"]: event["value"]}), event["t"])
 
     def _grasp(self, event: dict[str, Any]) -> None:
         """Hold another body of the mechanism, from rest on."""
         self.mechanics.reset()
-        self._change(self.mechanics.piece.grasped(event["body"]), event)
+        self._change(self.mechanics.piece.grasped(event["body"]), event["t"])
 
     def _preset(self, event: dict[str, Any]) -> None:
-        self._change(self._chosen(event["name"], event), event)
+        self._change(self._chosen(event["name"], event), event["t"])
 
     def _chosen(self, name: str, event: dict[str, Any]) -> Piece:
         return presets.chosen(name, self.mechanics.piece, event.get("case"), event.get("values", {}))
 
-    def _change(self, piece: Piece, event: dict[str, Any]) -> None:
-        known = self.mechanics.piece
-        self._rebuild(piece, event["t"])
-        self._future.clear()
-        if not event.get("part", False):  # of a longer change
-            self._past.append(known)
-
-    def _undo(self, event: dict[str, Any]) -> None:
-        """Back to the design before, or forth to the one that was undone."""
-        source, target = self._past, self._future
-        if event["do"] == "redo":
-            source, target = target, source
-        if not source:
-            return self._warn("empty", f"to {event['do']}")
-        target.append(self.mechanics.piece)
-        self._rebuild(source.pop(), event["t"])
-
-    _redo = _undo
-
-    def _rebuild(self, piece: Piece, time: float) -> None:
+    def _change(self, piece: Piece, time: float) -> None:
         """Another design goes on where the former one is, held or swinging; its time begins."""
         before = self.mechanics
         if before.piece.like(piece):
@@ -308,10 +282,6 @@ class Session:
             self._hand_is_here(float(self.mechanics.snapshot.pose[2]))
             self._hold()
 
-    def _solver(self, event: dict[str, Any]) -> None:
-        self.solver, self.sweeps = event["name"], event.get("sweeps", self.sweeps)
-        self.mechanics.change_solver(self.solver, self.sweeps)
-
     def _rest(self, event: dict[str, Any]) -> None:
         """The markers, as they are seen now, are those of the pivot at rest."""
         if self.marker is None or self.sight["state"] == "lost":
@@ -320,3 +290,55 @@ class Session:
             self._at_rest = self.marker
             self.mechanics.placed(self.marker)
             self._reset(event)
+
+
+#: Characters of the hash that marks a state.
+MARK = 16
+
+
+def mark(state: Mapping[str, Any]) -> str:
+    """Return a hash of a state: equal for states that are equal digit by digit."""
+    text = json.dumps(state, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()[:MARK]
+
+
+def replay(lines: Iterable[str]) -> Iterator[tuple[dict[str, Any], bool]]:
+    """Feed a session file to a session; yield each state, and whether it equals the recorded one.
+
+    Raises:
+        BadInput: a line that is no event, or a first one that is no setup; one line with its number.
+    """
+    session = Session()
+    for number, text in enumerate(lines, start=1):
+        try:
+            event = json.loads(text)
+        except ValueError:
+            raise BadInput(f"line {number}: got no JSON, expected an event") from None
+        if not isinstance(event, dict) or (number == 1 and event.get("do") != "setup"):
+            raise BadInput(f"line {number}: got {text.strip()[:40]!r}, expected an event, the first a setup")
+        known = event.pop("mark", None)
+        state = session.feed(event)
+        yield state, known == mark(state)
+
+
+def _setup(session: Session) -> dict[str, Any]:
+    """Return the event that makes a new session of this one's settings."""
+    piece, placing = session.mechanics.piece, session.mechanics.placing
+    return {
+        **{"do": "setup", "t": session.time, "lock_step": session.clock.lock_step, "drive": session.drive},
+        **{"preset": piece.name, "values": dict(piece.values), "case": dict(piece.document)},
+        "rest": placing.rest.tolist(),
+    }
+
+
+class Recorder:
+    """Gives a session's events as lines to `keep`; begins with a new session."""
+
+    def __init__(self, session: Session, keep: Callable[[str], object]) -> None:
+        self._keep = keep
+        start = _setup(session)
+        self.write(start, session.feed(start))
+
+    def write(self, event: Mapping[str, Any], state: Mapping[str, Any]) -> None:
+        """Give one event and the mark of the state after it."""
+        self._keep(json.dumps({**event, "mark": mark(state)}, allow_nan=False) + "\n")

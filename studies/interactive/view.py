@@ -114,7 +114,7 @@ def curved(session: Any) -> dict[str, Any]:
 
 
 #: What a state tells of the session, of its clock and of the mechanics as it is.
-OF_SESSION = ("paused", "drive", "solver", "sweeps", "sight", "wanted", "critical")
+OF_SESSION = ("paused", "drive", "sight", "wanted", "critical")
 OF_CLOCK = ("steps", "simulated")
 OF_NOW = ("iterations", "pose", "poses", "velocity", "centre", "force", "stiffness", "shape", "energy")
 #: Of the placing.

@@ -158,7 +158,7 @@ def _alone(preset: str) -> Iterator[dict[str, Any]]:
             pose = mechanics.snapshot.pose + rng.normal(0.0, (3e-5, 3e-5, 4e-4))
             yield timed("pose", repeat, k, partial(mechanics.hold, pose))
         mechanics.turn(1.0)
-        mechanics.release(np.zeros(3), session.solver, session.sweeps)
+        mechanics.release(np.zeros(3))
         for k in range(WATCHED):
             yield timed("four steps", repeat, k, partial(mechanics.advance, STEPS_A_FRAME))
 

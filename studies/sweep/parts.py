@@ -33,7 +33,7 @@ SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
 #: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.batch", "studies.sweep.sample")
+SOURCES = ("studies.sweep.points", "studies.sweep.sample")
 
 
 @contextmanager

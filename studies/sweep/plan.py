@@ -30,7 +30,6 @@ class Task:
         kind: of the analysis, one of `KINDS`.
         options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
         keys: that are varied. quantities: names of what is stored.
-        batch: whether the compiled paths of many pivots at once take the designs.
     """
 
     where: str
@@ -41,7 +40,6 @@ class Task:
     options: dict[str, Any]
     keys: tuple[str, ...]
     quantities: tuple[str, ...]
-    batch: bool
 
     def design(self, values: Mapping[str, Any]) -> Design:
         """Return one design of the sweep; CaseError where a value is out of its range."""

@@ -1,10 +1,7 @@
 """Read DESIGNS.toml into a `Plan`; what is wrong with it is said in one line before anything is solved."""
 
 import copy
-import hashlib
-import json
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +12,14 @@ from studies.cases.document import CaseError
 from studies.cases.keys import ROTATION
 from studies.cases.problem import FOLDER
 from studies.cases.rules import TRUTH, Key, choice, positive, shown, text, whole
-from studies.sweep import batch, plan, points
+from studies.sweep import plan, points
 from studies.sweep.plan import KINDS, Column, Plan, Task
 from studies.sweep.sample import KEYS as SAMPLE
 from studies.sweep.sample import leaves, require_known, sample_of
 
 SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
-#: Designs a chunk, smallest and largest: of the batch kernel (a third of a second), of single solves.
-CHUNK, CHUNK_OF_SINGLE = (64, 2048), (1, 16)
+#: Most designs a chunk: a third of a second of static paths.
+CHUNK = 64
 #: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
 CHUNKS = 16
 #: Kind of an analysis -> its options, and what these are where the file does not say.
@@ -63,7 +60,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     """Return the sweep of a parsed file whose relative paths start from `folder`; CaseError as of
     `read_plan`."""
     tables = _tables(where, content)
-    if not tables["vary"] and "file" not in tables["sample"]:
+    if not tables["vary"]:
         raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
     case = _case(where, content.get("case"), folder)
     model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
@@ -78,7 +75,7 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
     keys = [Key(plan.SETTINGS, name, name, rule, optional=True) for name, rule in own.items()]
     settings = document.values(where, keys, tables["settings"], plan.SETTINGS)
     asked = document.values(where, SAMPLE, tables["sample"], "sample")
-    columns = sample_of(where, asked, tables["vary"], known, folder)
+    columns = sample_of(where, asked, tables["vary"], known)
     _refuse_overlaps(where, list(columns), case)
     kind, options = _analysis(where, tables["analysis"])
     found = points.known(case, kind, options.get("count", 0))
@@ -91,16 +88,11 @@ def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
         kind=kind,
         options=options,
         quantities=_quantities(where, tables["store"], found),
-        batch=False,
     )
-    task = _checked(task, columns)
-    least, most = CHUNK if task.batch else CHUNK_OF_SINGLE
+    _require_usable(task, columns)
     count = len(next(iter(columns.values())))
-    chunk = asked.get("chunk", max(least, min(most, -(-count // CHUNKS))))
+    chunk = asked.get("chunk", min(CHUNK, -(-count // CHUNKS)))
     made_from = {**content, "case": case, "chunk": chunk}
-    if "file" in asked:
-        listed = json.dumps({key: column.tolist() for key, column in columns.items()})
-        made_from["file_sha256"] = hashlib.sha256(listed.encode()).hexdigest()
     return Plan(task=task, columns=columns, chunk=chunk, content=copy.deepcopy(made_from))
 
 
@@ -161,8 +153,8 @@ def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) 
     return tuple(names)
 
 
-def _checked(task: Task, columns: Mapping[str, Column]) -> Task:
-    """Return the task once its case and every setting have been taken by the model.
+def _require_usable(task: Task, columns: Mapping[str, Column]) -> None:
+    """Raise BadInput unless the model takes the case and every setting.
 
     Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
     """
@@ -170,4 +162,3 @@ def _checked(task: Task, columns: Mapping[str, Column]) -> Task:
     settings = ((key, set(columns[key].tolist())) for key in columns if plan.is_setting(key))
     for values in ({}, *({key: value} for key, every in settings for value in every)):
         put(design, task.settings_of(values), moving=task.kind != "static")
-    return replace(task, batch=batch.takes(task))

@@ -1,7 +1,4 @@
-"""Run a sweep: the chunks that are missing, on threads, processes or a Dask cluster, then the table.
-
-Threads are for the compiled batch, which needs no lock, processes for the rest.
-"""
+"""Run a sweep: the chunks that are missing, on processes or a Dask cluster, then the table."""
 
 import asyncio
 import logging
@@ -21,9 +18,9 @@ import pyarrow as pa
 from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.record.progress import silent
-from studies.sweep.batch import solve_chunk
 from studies.sweep.parts import Folder, suite
 from studies.sweep.plan import Plan
+from studies.sweep.points import solve_chunk
 
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2
@@ -38,7 +35,7 @@ class SweepError(BadInput):
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Pool:
+class Pool:
     """Workers behind the interface of `concurrent.futures`, and how many they are."""
 
     executor: futures.Executor
@@ -49,7 +46,7 @@ def sweep(
     plan: Plan,
     out: Path,
     *,
-    pool: AbstractContextManager[_Pool] | None = None,
+    pool: AbstractContextManager[Pool] | None = None,
     csv: bool = False,
     progress: Progress = silent,
 ) -> int:
@@ -71,7 +68,7 @@ def sweep(
     with ExitStack() as stack:
         workers = None
         if folder.missing():  # asked before anything is written: a scheduler may be out of reach
-            workers = stack.enter_context(local_pool(plan) if pool is None else pool)
+            workers = stack.enter_context(local_pool() if pool is None else pool)
         stack.enter_context(folder.held())
         missing = folder.missing()
         if missing and workers is not None:
@@ -115,7 +112,7 @@ def _interruptions() -> Iterator[Callable[[], None]]:
 
 
 def _tables(
-    plan: Plan, missing: list[int], pool: _Pool, interrupted: Callable[[], None]
+    plan: Plan, missing: list[int], pool: Pool, interrupted: Callable[[], None]
 ) -> Iterator[tuple[int, pa.Table]]:
     """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
     waiting = iter(missing)
@@ -152,18 +149,13 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
 
 
 @contextmanager
-def local_pool(plan: Plan, workers: int | None = None) -> Iterator[_Pool]:
-    """Yield workers on this machine, all cores by default: threads for the batch kernel, else processes.
-
-    An interruption waits for the chunks that threads have under way; processes end in the middle of one.
-    """
+def local_pool(workers: int | None = None) -> Iterator[Pool]:
+    """Yield processes on this machine, one for each core by default; an interruption ends them at once."""
     count, others = workers or os.cpu_count() or 1, set(multiprocessing.active_children())
-    executor: futures.Executor = futures.ThreadPoolExecutor(count)
-    if not plan.task.batch:
-        spawn = multiprocessing.get_context("spawn")
-        executor = futures.ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_quietly)
+    spawn = multiprocessing.get_context("spawn")
+    executor = futures.ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_quietly)
     try:
-        yield _Pool(executor=executor, workers=count)
+        yield Pool(executor=executor, workers=count)
     except BaseException:
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
@@ -180,7 +172,7 @@ def _end_quietly() -> None:
 @contextmanager
 def cluster(
     address: str, *, workers: int = 1, timeout: float = TIMEOUT, workers_within: float = WORKERS_WITHIN
-) -> Iterator[_Pool]:
+) -> Iterator[Pool]:
     """Yield the workers of the scheduler at `address` (tcp://HOST:PORT), once there are so many.
 
     Every worker needs the suite in the same version. The chunks of a lost worker go to others. The rows
@@ -210,7 +202,7 @@ def cluster(
                 f"expected one: dask worker {address}"
             ) from None
         _require_suite(client, address)
-        yield _Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
+        yield Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
 
 
 def _require_suite(client: Any, address: str) -> None:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,11 +9,11 @@ from scipy.stats import qmc
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import Key, choice, shown, text, whole
+from studies.cases.rules import Key, choice, shown, whole
 from studies.kinds import Array
 from studies.sweep.plan import Column
 
-METHODS = ("grid", "list", "latin-hypercube", "sobol")
+METHODS = ("grid", "list", "sobol")
 #: Most points, whose varied values are all in memory.
 MOST = 10_000_000
 POINTS = whole(1, MOST)
@@ -28,7 +27,6 @@ KEYS = tuple(
         "points": POINTS,
         "seed": whole(0, 2**32 - 1),
         "chunk": POINTS,
-        "file": text("the name of a CSV file"),
     }.items()
 )
 
@@ -52,22 +50,19 @@ class _Range(NamedTuple):
 
 
 def sample_of(
-    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
+    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any]
 ) -> dict[str, Column]:
     """Return the values (D,) of each key that varies, in the file's units, as the section [vary] and the
     values of `KEYS` say; CaseError as of `read_plan`."""
-    method = given.get("method", "list" if "file" in given else "grid")
-    random = method in METHODS[2:]
+    method = given.get("method", "grid")
     for name in ("points", "seed"):
-        if name in given and not random:
+        if name in given and method != "sobol":
             raise CaseError(f"{where}: sample.{name}: got it for a {method}, which has those of [vary]")
-    if random and "points" not in given:
+    if method == "sobol" and "points" not in given:
         raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
-    if "file" in given:
-        return _from_file(where, given, varied, known, folder)
     axes = {key: _axis(where, key, value, known, method) for key, value in leaves(varied)}
-    if random:
-        return _drawn(axes, method, given["points"], given.get("seed", 0))
+    if method == "sobol":
+        return _drawn(axes, given["points"], given.get("seed", 0))
     counts = {key: len(axis) for key, axis in axes.items()}
     if method == "list":
         if len(set(counts.values())) > 1:
@@ -81,13 +76,10 @@ def sample_of(
     return {key: each.ravel() for key, each in zip(axes, mesh, strict=True)}
 
 
-def _drawn(axes: Mapping[str, Any], method: str, points: int, seed: int) -> dict[str, Column]:
+def _drawn(axes: Mapping[str, Any], points: int, seed: int) -> dict[str, Column]:
     """Return the columns of a random sample over axes."""
-    if method == "sobol":
-        sobol = qmc.Sobol(d=len(axes), scramble=True, seed=seed)
-        unit = sobol.random_base2(math.ceil(math.log2(points)))[:points]
-    else:
-        unit = qmc.LatinHypercube(d=len(axes), seed=seed).random(points)
+    sobol = qmc.Sobol(d=len(axes), scramble=True, seed=seed)
+    unit = sobol.random_base2(math.ceil(math.log2(points)))[:points]
     shares = dict(zip(axes, unit.T, strict=True))
     return {
         key: axis.at(shares[key]) if isinstance(axis, _Range) else axis[(shares[key] * len(axis)).astype(int)]
@@ -178,26 +170,3 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
     whole = _Range(float(low), float(high), log)
     return whole.at(np.linspace(0.0, 1.0, found["points"])) if grid else whole
-
-
-def _from_file(
-    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any], folder: Path
-) -> dict[str, Column]:
-    """Return the columns of a CSV file, whose head names the keys."""
-    import pandas as pd
-
-    if varied or given.get("method", "list") != "list":
-        raise CaseError(f"{where}: sample.file: got it beside [vary] or a method, expected it alone")
-    path = folder / given["file"]
-    try:
-        table = pd.read_csv(path)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise CaseError(f"{where}: sample.file: {path}: cannot be read ({reason}), expected CSV") from None
-    if table.empty:
-        raise CaseError(f"{where}: sample.file: {path}: got no design, expected at least one row")
-    columns = {}
-    for key in map(str, table.columns):
-        require_known(where, f"sample.file: {path}", key, known)
-        columns[key] = _listed(where, f"sample.file: {path}: {key}", known[key], table[key].tolist())
-    return columns

@@ -6,7 +6,7 @@ import pytest
 from studies.cases.document import parsed
 from studies.cases.problem import FOLDER
 from studies.design.evaluate import STRESS, VARIATION
-from studies.design.numbers import MechanismQuestion
+from studies.design.question import Question
 from tests import gates
 from tests.design.gradients import gradient_error
 
@@ -20,7 +20,7 @@ SHARED = "strips.left.end_m.y,strips.right.end_m.y=0.09:0.11"
 
 def task(name, texts, **given):
     """The question about a case that comes with the suite."""
-    return MechanismQuestion.of(name, parsed(FOLDER / f"{name}.toml"), texts, **given)
+    return Question.of(name, parsed(FOLDER / f"{name}.toml"), texts, **given)
 
 
 @pytest.mark.parametrize(

@@ -6,22 +6,22 @@ from itertools import product
 import numpy as np
 import pytest
 
-from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, VARIATION, answers, by_elements
+from studies.cases.design import document_of
+from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds
 from studies.design.optimise import numbered, optimise, search
 from studies.design.programme import OUTSIDE, Programme
-from studies.design.question import PivotQuestion, variables_of, varied
+from studies.design.question import Question
 from studies.design.sizing import (
     AGAIN,
-    ANGLE,
     BEAMS,
     EFFECTS,
-    GRADE,
-    LENGTH,
-    SPRING_STEEL,
+    TABLE_ONE,
     asked,
-    baseline,
+    error,
+    sizes_of,
     toleranced,
 )
+from studies.errors import BadInput
 from studies.record.progress import silent
 from studies.record.store import Store
 from tests import gates
@@ -32,22 +32,15 @@ FAR = 2
 
 
 @pytest.fixture(scope="module")
-def own():
-    """Table 1's pivot over the range, and its answers."""
-    return baseline()
-
-
-@pytest.fixture(scope="module")
-def narrow(own):
+def narrow():
     """The task of narrow strips and its optimum."""
-    task = _task(own)
+    task = _task()
     return task, _quick(task)
 
 
-def _task(own, objective=CENTRE_SHIFT, aspect=0.5, **changes):
-    start, found = own
-    limits = {"wanted": found.largest(STIFFNESS), "allowable_stress": found.largest(STRESS)} | changes
-    return PivotQuestion.usual(start, aspect=aspect, objective=objective, **limits)
+def _task(objective=CENTRE_SHIFT, aspect=0.5):
+    """A question about Table 1's pivot over the range."""
+    return asked(TABLE_ONE, objective, aspect)
 
 
 def _quick(task):
@@ -58,19 +51,19 @@ def _quick(task):
 
 
 @pytest.mark.parametrize("objective", [CENTRE_SHIFT, pytest.param(VARIATION, marks=pytest.mark.slow)])
-def test_jacobian_agrees_with_differences(own, objective):
+def test_jacobian_agrees_with_differences(objective):
     """Rows and Jacobian of the programme fit together at a design that is no optimum."""
-    task = _task(own, objective, 1.0)
+    task = _task(objective, 1.0)
     values = task.low + task.span * (0.4, 0.3, 0.7, 0.35, 0.45)
     gates.hold("sizing_jacobian", lambda **steps: gradient_error(task, values, **steps))
 
 
-def test_optimum_of_narrow_strips(own, narrow):
+def test_optimum_of_narrow_strips(narrow):
     """A search of a few paths halves Table 1's shift, and says which constraints stop it there."""
-    _, found = narrow
+    task, found = narrow
     assert found.violation < 1e-9 and found.residual < 1e-6
-    assert found.objective < 0.5 * own[1].largest(CENTRE_SHIFT)
-    stops = {"stress", "slenderness", "aspect", "inclination at its most", "stiffness"}
+    assert found.objective < 0.5 * task.answers().largest(CENTRE_SHIFT)
+    stops = {"stress", "slenderness", "aspect", "strip.inclination_deg at its most", "stiffness"}
     assert {each.name for each in found.active} == stops
     assert found.solved < 20
 
@@ -89,34 +82,35 @@ def test_price_is_what_another_limit_costs(narrow, name):
     assert moved / change == pytest.approx(price, rel=0.02)
 
 
-def test_a_start_without_a_path_is_outside(own):
-    """A design whose path ends early stands far outside; it is no error of the search."""
-    programme = Programme(question=replace(_task(own), start=replace(own[0], rotation=3.5, increments=1)))
-    y = np.array([0.5, 0.9, 0.05, 0.9, 0.5, 1.0])
-    assert programme.answers(y) is None
+@pytest.mark.parametrize(
+    "ended", [PathEnds("a limit point"), BadInput("strip.length_m: got 0")], ids=["path", "refused"]
+)
+def test_a_start_without_an_answer_is_outside(ended, monkeypatch):
+    """A design whose path ends early, or that the model refuses, stands far outside; it ends no search."""
+    programme, y = Programme(question=_task()), np.array([0.5, 0.9, 0.05, 0.9, 0.5, 1.0])
+
+    def no_answer(*_):
+        raise ended
+
+    monkeypatch.setattr(Question, "answers", no_answer)
     rows, jacobian = programme.rows(y)
     assert (rows == OUTSIDE).all() and not jacobian.any()
-    assert programme.solved == 1
+    assert programme.solved == 1 and programme.ended == str(ended)
 
 
-@pytest.mark.slow
-def test_a_start_is_given_up(monkeypatch):
-    """Of a stiffness that nothing has a start solves no more than its share of designs, and tells each."""
-    share = 100  # of the some 300 that this search would take
-    monkeypatch.setattr("studies.design.optimise.MOST_PATHS", share)
-    task, told = replace(asked(SPRING_STEEL, VARIATION, 1.0), wanted=1e4), []
-    found = search(task, task.starts(2)[1:], lambda done, total: told.append((done, total)))
-    assert "no design here meets the constraints" in found[0].message
-    assert share <= found[0].solved < 1.2 * share
-    assert [done for done, _ in told[:-1]] == [min(k, share) for k in range(1, found[0].solved + 1)]
-    assert {total for _, total in told} == {share} and told[-1][0] == share
+def test_a_path_that_ends_early_is_no_answer():
+    """A pivot that is to turn by three radians in one increment has no answer, and says why."""
+    document = document_of(replace(_task().start, rotation=3.1, increments=1))
+    question = Question.of("far", document, objective=CENTRE_SHIFT)
+    with pytest.raises(PathEnds, match="load factor"):
+        question.answers(question.values(np.array([0.5, 0.9, 0.05, 0.9, 0.5])))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("start", [FAR, 5])
-def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
+def test_where_a_start_leads_does_not_hang_on_round_off(start):
     """Starts far outside end feasible, and at the same optimum when they are moved by 1e-14."""
-    task = _task(own)
+    task = _task()
     begin = task.starts(8)[start]
     moves = (np.zeros(5), *(1e-14 * np.random.default_rng(k).choice([-1.0, 1.0], 5) for k in range(3)))
     found = search(task, np.clip(begin + moves, 0.0, 1.0), silent)
@@ -125,38 +119,32 @@ def test_where_a_start_leads_does_not_hang_on_round_off(own, start):
 
 
 @pytest.mark.slow
-def test_optimum_holds_in_the_finite_elements(own, narrow):
+def test_optimum_holds_in_the_finite_elements(narrow):
     """Objectives and constraints of the quick optimum are those of the elements; splines of fewer control
     points miss the least variation, which is small."""
-    _, found = narrow
-    values = [0.080774, 0.767438, 0.9, 0.00174162, 0.0771115]
-    steady = _task(own, VARIATION, 1.0).design(np.array(values))
+    task, found = narrow
+    steady = np.array([0.080774, np.degrees(0.767438), 0.9, 0.00174162, 0.0771115])
 
-    def error(**coarse):
-        problem, by_spline = (steady, answers(steady, **coarse)) if coarse else (found.design, found.answers)
-        return _difference(problem, by_spline)
+    def missed(**coarse):
+        if not coarse:
+            return error(task, task.values(found.at), found.answers)
+        steadier = _task(VARIATION, 1.0)
+        return error(steadier, steady, steadier.answers(steady, **coarse))
 
-    gates.hold("sizing_finite_elements", error)
+    gates.hold("sizing_finite_elements", missed)
 
 
 @pytest.mark.slow
-def test_tolerances_take_the_worst_corner(own):
+def test_tolerances_take_the_worst_corner():
     """What the tolerances do to a design is the worst of whole solves in all corners of them."""
-    design = replace(own[0], increments=2)
-    found, values = answers(design), variables_of(design)
-    length, _, _, thickness, _ = values
-    sizes = np.array([LENGTH, ANGLE, LENGTH / length, GRADE * thickness, LENGTH])
-    signs = product((-1.0, 1.0), repeat=5)
-    corners = [answers(varied(design, values + sizes * sign)).measured.quantities() for sign in signs]
-    as_drawn = found.measured.quantities()
-    for name, largest in toleranced(design, found).items():
+    document = document_of(replace(_task().start, increments=2))
+    task = Question.of("pivot", document, objective=CENTRE_SHIFT)
+    values, signs = task.own, product((-1.0, 1.0), repeat=5)
+    corners = [task.answers(values + sizes_of(values) * sign).quantities for sign in signs]
+    as_drawn = task.answers().quantities
+    for name, largest in toleranced(task, values).items():
         assert largest == pytest.approx(max(each[name] for each in corners), rel=1e-9), name
         assert largest > as_drawn[name]
-
-
-def _difference(problem, found):
-    spline, elements = found.measured.quantities(), by_elements(problem).quantities()
-    return max(abs(spline[name] / elements[name] - 1.0) for name in spline)
 
 
 def stored(design, basis=BEAMS):

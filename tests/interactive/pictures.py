@@ -14,7 +14,7 @@ from tests.interactive.pages import picture, typed
 
 #: What the numbers stand at, from 1 on.
 PARTS = (
-    *("#stage", "#status", "#release", "#scrub", "#record", "#preset", "#sliders", "#drive", "#numbers"),
+    *("#stage", "#status", "#release", "#scrub", "#csv", "#preset", "#sliders", "#drive", "#numbers"),
     *(".gauge", "#moment", "#energy"),
 )
 #: Puts a number at the left of each part.

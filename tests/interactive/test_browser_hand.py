@@ -1,12 +1,14 @@
 """The page in a real browser without a window and without a camera: mouse, touch and keys."""
 
 import re
+import time
 
 import pytest
 
 pytest.importorskip("cv2", reason="the extra `interactive` is not installed")
 pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed")
 
+from studies.interactive.mechanics import Mechanics
 from studies.interactive.web.browser import executable
 from tests.interactive.pages import ANGLE, BODY, CONTRAST, chosen, drag, touch, typed
 
@@ -55,8 +57,7 @@ def test_swipe_beside_the_body_leaves_it(page):
 
 
 def test_keyboard_alone_does_everything(page):
-    """Requirement: turn, move, release, pause, step, catch, export, list of keys and scrubbing need
-    no mouse."""
+    """Requirement: turn, move, release, pause, catch, export, list of keys and scrubbing need no mouse."""
     for _ in range(6):
         page.key("ArrowLeft")
     page.wait("Math.abs(studio.state.pose[2] - 6 * Math.PI / 180) < 1e-9")
@@ -66,9 +67,6 @@ def test_keyboard_alone_does_everything(page):
     page.wait("studio.state.mode === 'released' && studio.state.steps > 8")
     page.key(" ")
     page.wait("studio.state.paused")
-    steps = page.ask("studio.state.steps")
-    page.key(".")
-    page.wait(f"studio.state.steps === {steps + 1}")
     page.key("[")
     assert page.ask("document.getElementById('when').textContent").endswith("s ago")
     page.key("l")
@@ -98,7 +96,7 @@ def test_everything_is_reached_by_tab(page):
     for _ in range(70):
         page.key("Tab")
         reached.add(page.ask("document.activeElement.id"))
-    wanted = "stage release reset record csv png save open preset drive solver"
+    wanted = "stage release reset csv png save open preset drive"
     assert set(wanted.split()) - reached == set()
     page.call("Accessibility.enable")
     nodes = page.call("Accessibility.getFullAXTree")["nodes"]
@@ -126,31 +124,28 @@ def test_contrast_is_enough(page):
     page.call("Emulation.setEmulatedMedia", features=[])
 
 
-def test_solvers_are_chosen_by_their_names(page):
-    """Requirement: the solvers are named as what they are, the number of sweeps is asked for where there are
-    any, and a motion that cannot keep up says on the picture how slow it runs."""
-    names = page.ask("[...document.getElementById('solver').options].map((option) => option.text)")
-    assert names[0] == "impulses at once (Eq 30), stable form"
-    assert "impulses by sweeps over constraints, as published" in names
-    assert page.ask("document.getElementById('sweeps-row').hidden")
-    chosen(page, "solver", "published")
-    page.wait("!document.getElementById('sweeps-row').hidden")
-    chosen(page, "sweeps", "7")
-    page.wait("studio.state.sweeps === 7")
+def test_slow_motion_says_so(page, monkeypatch):
+    """Requirement: a motion that cannot keep up says on the picture how slow it runs."""
+    advance = Mechanics.advance
+
+    def slow(mechanics, steps):
+        time.sleep(0.03 * steps)
+        return advance(mechanics, steps)
+
+    monkeypatch.setattr(Mechanics, "advance", slow)
     page.key("ArrowUp")
     page.key("r")
     text = page.wait("document.getElementById('pace').textContent")
-    assert re.search(r"runs at 0\.0*\d of real time", text)
+    assert re.search(r"runs at 0\.\d+ of real time", text)
     page.key("0")
-    chosen(page, "solver", "stable")
-    page.wait("studio.state.solver === 'stable' && !document.getElementById('pace').textContent")
+    page.wait("!document.getElementById('pace').textContent")
 
 
 #: Elements of the page that take the focus, by what they are.
 FOCUSED = {
     "slider": "input[aria-label='strip thickness, slider']",
-    "list": "#solver",
-    "box": "#hand",
+    "list": "#drive",
+    "box": "#shape",
     "button": "#csv",
     "scrubber": "#scrub",
 }
@@ -158,13 +153,11 @@ FOCUSED = {
 
 @pytest.mark.parametrize("element", FOCUSED)
 def test_keys_work_wherever_the_focus_is(page, element):
-    """Requirement: R releases and catches, and Z takes a change back, while a slider, a list, a box or a
-    button has the focus."""
-    typed(page, "strip width in mm", "12")
-    page.wait("studio.state.values.width === 0.012")
+    """Requirement: R releases and catches, and M chooses what is prescribed, while a slider, a list, a box or
+    a button has the focus."""
     page.ask(f'document.querySelector("{FOCUSED[element]}").focus()')
-    page.key("z")
-    page.wait("studio.state.values.width === 0.01")
+    page.key("m")
+    page.wait("studio.state.drive === 'pose'")
     page.key("r")
     page.wait("studio.state.mode === 'released'")
     page.key("r")
@@ -174,6 +167,7 @@ def test_keys_work_wherever_the_focus_is(page, element):
 
 def test_keys_are_letters_in_a_text_field(page):
     """Requirement: in a box for numbers no key does anything else."""
+    typed(page, "strip width in mm", "10")  # nothing of it is selected, which a key would replace
     page.ask("document.querySelector(\"input[aria-label='strip width in mm']\").focus()")
     page.key("r")
     page.key("ArrowUp")
@@ -215,22 +209,19 @@ def test_unstable_load_is_named_on_the_page(page):
     page.wait("/fell to the ground/.test(document.getElementById('faults').textContent)")
     assert page.ask("studio.state.paused && studio.state.pose[1] > 0")
     page.key("0")
-    page.key("z")
-    page.key("z")
+    typed(page, "load, downward in N", "0")
     page.wait("studio.state.values.load === 0")
 
 
 def test_parameters_are_typed_in_their_units(page):
-    """Requirement: a value typed in its unit reaches the session in SI, undo brings the former one back; one
-    beyond the slider's ends is named and taken back."""
+    """Requirement: a value typed in its unit reaches the session in SI; one beyond the slider's ends is named
+    and taken back."""
     typed(page, "strip thickness in mm", "0.8")
     page.wait("Math.abs(studio.state.values.thickness - 8e-4) < 1e-12")
-    page.key("z")
-    page.wait("Math.abs(studio.state.values.thickness - 5e-4) < 1e-6")
     typed(page, "strip thickness in mm", "8000")
     said = page.ask("document.getElementById('note').textContent")
     assert said == "strip thickness: from 0.0001 to 1000 mm."
-    assert page.ask("document.querySelector(\"input[aria-label='strip thickness in mm']\").value") == "0.5"
+    assert page.ask("document.querySelector(\"input[aria-label='strip thickness in mm']\").value") == "0.8"
 
 
 #: Drags a slider to and fro, 60 steps a second, for two seconds, and on until fifteen states have come of it;
@@ -252,10 +243,9 @@ SLIDE = """
 """
 
 
-def test_sliders_are_live_and_undone_at_once(page):
+def test_sliders_are_live(page):
     """Requirement: the pivot follows a slider while it is dragged, the former design's curve staying as a
-    ghost; one undo takes the whole drag back."""
-    before = page.ask("studio.state.values.thickness")
+    ghost."""
     ratio = "studio.curve.moment[1] / studio.curve.rotation[1] / studio.state.stiffness"
     page.wait(f"Math.abs({ratio} - 1) < 0.05")  # the curve is that of this design
     moment = page.ask("studio.curve.moment.at(-1)")
@@ -265,13 +255,11 @@ def test_sliders_are_live_and_undone_at_once(page):
     page.wait(
         "studio.state.values.thickness === JSON.parse(sessionStorage.design ?? 'null')?.values.thickness"
     )
-    page.key("z")
-    page.wait(f"studio.state.values.thickness === {before}")
 
 
 def test_body_is_grasped_by_pointing(page):
     """Requirement: a click on another body of a mechanism holds it; a drag then moves it, and the others
-    follow; an undo gives back the first body."""
+    follow."""
     chosen(page, "preset", "four_bar_of_flexures")
     page.wait("studio.state.poses.length === 3")
     x, y = page.ask("studio.view.page(studio.state.poses[1][0] + 0.02, studio.state.poses[1][1])")
@@ -279,9 +267,6 @@ def test_body_is_grasped_by_pointing(page):
     page.wait("studio.state.placing.body === 1 && studio.state.drive === 'pull'")
     drag(page, [(x, y), (x + 20, y), (x + 40, y)])
     page.wait("studio.state.poses[1][0] > 0.055 && studio.state.poses[0][2] < -0.05")
-    page.key("z")
-    page.key("z")
-    page.wait("studio.state.placing.body !== 1")
     assert page.ask("studio.errors") == []
 
 
@@ -294,7 +279,7 @@ def test_no_word_outlives_what_it_is_of(page):
     page.wait(f"studio.state.values.width === 0.012 && {note} === ''")
     typed(page, "strip thickness in mm", "8000")
     page.wait(f"{error}.startsWith('strip thickness: from')")
-    page.key("z")
+    typed(page, "strip width in mm", "10")
     page.wait(f"studio.state.values.width === 0.01 && {note} !== '' && {error} === ''")
     chosen(page, "preset", "titanium_pivot")
     page.wait(f"studio.state.preset === 'titanium_pivot' && {note} === ''")

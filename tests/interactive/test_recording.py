@@ -11,24 +11,23 @@ from spline_model import natural_frequencies
 from studies.cases.problem import FOLDER, named_case
 from studies.errors import BadInput
 from studies.interactive import presets
-from studies.interactive.recording import Recorder, mark, replay
-from studies.interactive.session import Session
+from studies.interactive.session import Recorder, Session, replay
 from studies.record.source import ROOT
 
 
 def recorded(preset="polymer"):
     """Lines of a session with turns, a change, release, swing and catch."""
-    session = Session(preset)
-    recorder = Recorder(session)
+    session, lines = Session(preset), []
+    recorder = Recorder(session, lines.append)
     events = [{"do": "drive", "by": "rotation"}]
     events += [{"do": "pose", "pose": [0.0, 0.0, math.radians(3 * k)]} for k in range(15)]
-    events += [{"do": "parameter", "name": "width", "value": 0.012}, {"do": "release", "speed": "hand"}]
+    events += [{"do": "parameter", "name": "width", "value": 0.012}, {"do": "release"}]
     events += [{"do": "tick"}] * 20
     events += [{"do": "catch"}, {"do": "drive", "by": "pose"}, {"do": "pose", "pose": [1e-3, -2e-3, 0.4]}]
     for k, event in enumerate(events):
         stamped = {**event, "t": 0.04 * k}
         recorder.write(stamped, session.feed(stamped))
-    return recorder.lines
+    return lines
 
 
 @pytest.mark.parametrize("preset", ["polymer", "table-1"])
@@ -63,7 +62,8 @@ def test_a_recording_begins_at_rest():
     session = Session()
     session.feed({"do": "pose", "pose": [0.0, 0.0, 0.3], "t": 0.0})
     session.feed({"do": "release", "t": 0.1})
-    lines = Recorder(session).lines
+    lines = []
+    Recorder(session, lines.append)
     assert not session.mechanics.moving
     assert session.mechanics.snapshot.pose[2] == 0.0
     assert all(good for _, good in replay(lines))
@@ -107,14 +107,3 @@ def test_what_is_no_session_file_is_one_line(lines, message):
     """Requirement: a file that is no session is refused with the number of the line."""
     with pytest.raises(BadInput, match=message):
         list(replay(lines))
-
-
-def test_a_recording_is_bounded():
-    """Requirement: a recording that is forgotten stops growing."""
-    recorder = Recorder(Session())
-    recorder.MOST = 5000
-    state = {"t": 0.0}
-    for _ in range(1000):
-        recorder.write({"do": "tick", "t": 0.0}, state)
-    assert sum(map(len, recorder.lines)) < 5200
-    assert recorder.lines[1] == f'{{"do": "tick", "t": 0.0, "mark": "{mark(state)}"}}\n'

@@ -9,8 +9,7 @@ pytest.importorskip("uvicorn", reason="the extra `interactive` is not installed"
 
 from studies.cases.problem import named_case
 from studies.errors import BadInput
-from studies.interactive.recording import replay
-from studies.interactive.session import Session
+from studies.interactive.session import Session, replay
 from studies.interactive.web import protocol
 from studies.interactive.web.server import Server, Settings
 from tests.interactive.sockets import answer, opened, say, told
@@ -49,23 +48,6 @@ def test_released_body_runs_by_itself(server):
         say(socket, do="pause")
         while not answer(socket)["paused"]:
             pass
-
-
-def test_recording_is_sent_and_replays(server):
-    """Requirement: what the page records replays to the same states."""
-    with opened(server) as socket:
-        say(socket, do="drive", by="rotation")
-        say(socket, do="record", on=True)
-        for k in range(8):
-            say(socket, do="pose", pose=[0, 0, 0.05 * k], seq=k)
-            while answer(socket)["seq"] != k:
-                pass
-        say(socket, do="record", on=False)
-        while "lines" not in (recording := answer(socket, "recording")):
-            pass
-    same = [good for _, good in replay(recording["lines"])]
-    assert len(same) >= 8
-    assert all(same)
 
 
 def test_design_is_saved_and_opened(server, tmp_path):

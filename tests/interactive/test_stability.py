@@ -45,12 +45,10 @@ def test_a_load_beyond_the_critical_one_is_named(preset):
     assert text.startswith("Unstable under this load: ") and "Contact with the ground is not modelled" in text
 
 
-@pytest.mark.parametrize("solver", ["stable", "energy"])
-def test_no_body_falls_through_the_ground(solver):
+def test_no_body_falls_through_the_ground():
     """Requirement: under five times its critical load a released body stops where its centre meets the
     ground, in a sentence, and time is paused."""
     made, _ = loaded("polymer", 1.4)
-    made.feed({"do": "solver", "name": solver, "t": 0.0})
     turned(made, 1)
     made.feed({"do": "release", "t": 0.0})
     for k in range(60):
@@ -84,7 +82,7 @@ def test_every_case_opens(case):
 
 def test_body_of_a_four_bar_is_grasped():
     """Requirement: the bodies of a four-bar follow the held one, with the moment of `solve` on the crank.
-    Another body that is grasped is held from rest on; an undo gives back the first."""
+    Another body that is grasped is held from rest on."""
     made = Session("four_bar_of_flexures")
     made.feed({"do": "drive", "by": "rotation", "t": 0.0})
     state = made.feed({"do": "pose", "pose": [0.0, 0.0, 0.2], "t": 0.1})
@@ -103,7 +101,6 @@ def test_body_of_a_four_bar_is_grasped():
     assert crank[2] < -0.05
     assert rocker[2] == pytest.approx(crank[2], rel=0.01)
     assert coupler[0] - 0.05 == pytest.approx(0.01, rel=0.5)
-    assert made.feed({"do": "undo", "t": 0.4})["placing"]["body"] == 0
     with pytest.raises(BadInput, match="body: got 'wheel', expected one of crank, coupler, rocker"):
         made.feed({"do": "grasp", "body": "wheel", "t": 0.5})
 

@@ -109,18 +109,18 @@ WORDS = {
 ASKED = "size CASE --objective centre-shift --rotation-deg 45 --aspect 0.5 --starts 1"
 LINKAGE = "size four_bar_of_flexures --objective stress"
 HINGE, GUIDE = "size living_hinge --objective", "size parallel_strip_guide --objective"
-#: The same of a sizing: also numbers that a mechanism lacks or has no gradients for, and what only the other
-#: kind of design has.
+#: The same of a sizing: also numbers that a case lacks or has no gradients for, and what only other designs
+#: have.
 WORDS |= {
     "size CASE": "size: the following arguments are required: --objective",
-    f"{ASKED} --free strip.width_m": "got strip.width_m, expected KEY=LOW:HIGH, in the file's unit: could",
+    f"{ASKED} --free strip.width_m=x": "got strip.width_m=x, expected KEY=LOW:HIGH with LOW < HIGH, in the",
     f"{ASKED} --stiffness=--": "argument --stiffness: expected one argument",
     f"{ASKED} --free strip.crossing_ratio=0.5:1.5": "got 1.5, expected a number between 0 and 1",
     f"{ASKED} --out /nowhere/x.toml": "/nowhere/x.toml: cannot be written",
     f"{ASKED} --rotation-deg 0": "drive.rotation_deg: got 0, expected a range to size for",
     f"{HINGE} stress --free section.thickness_m=1e-9:1": "--free: section.thickness_m at its bound of 1: ",
     f"{HINGE} stiffness-variation --free section.width_m": "expected what is not zero already: its stiffness",
-    f"{HINGE} centre-shift": "got centre-shift, expected stress or",
+    f"{HINGE} centre-shift --free section.width_m": "got centre-shift, expected stiffness-variation or",
     LINKAGE: "--free: got none, expected a number of the mechanism's file",
     f"{LINKAGE} --free section.depth_m": "--free: got section.depth_m, expected a number of",
     f"{LINKAGE} --free strips.rocker_ground.end_m.x": "without bounds, expected strips.rock",
@@ -133,8 +133,7 @@ WORDS |= {
         "arc of strip beam [deg]: got 180.0, expected at most 100 deg for sensitivities: two strips, a body"
     ),
     f"{LINKAGE} --free section.width_m --travel-mm 1": "--travel-mm: got it for four_bar",
-    "size CASE --objective stress": "--objective: got stress, expected centre-shift or",
-    "size CASE --objective centre-shift --free x": "in the file's unit: one of strip.length_m, strip.incl",
+    "size CASE --objective centre-shift --free x": "--free: got x, expected a number of",
     "size CASE --objective centre-shift --travel-mm 1": "--travel-mm: got it for cross_axis",
-    f"{GUIDE} stiffness-variation --free section.width_m": "expected stress of what follows its loads",
+    f"{GUIDE} stiffness-variation --free section.width_m": "got stiffness-variation, expected stress for",
 }

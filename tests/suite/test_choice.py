@@ -15,7 +15,7 @@ from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.cases.document import parsed
 from studies.cases.problem import named_case
-from studies.sweep import batch
+from studies.sweep.points import solve_chunk
 from studies.sweep.read import plan_of
 
 FINDS = Path(__file__).parent / "finds"
@@ -118,7 +118,7 @@ def written(tmp_path):
 
 
 def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_path):
-    """Requirement: solve, compare, a sweep by batch and one by one, and export have the same design within
+    """Requirement: solve, compare, a sweep and export have the same design within
     1e-4 of the answer with many more control points; modes as well."""
     good = numbers(right())
     solved = json.loads(command("solve", pivot, "--json", "-").out)
@@ -129,10 +129,9 @@ def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_pa
     keys = ("torque_Nm", "stiffness_end_Nm_per_rad", "max_stress_Pa", "largest_centre_shift_m")
     assert apart(dict(zip(good, (compared[key] for key in keys), strict=True)), good) < ACCURACY
     assert compared["estimate"]["torque"] <= ACCURACY
-    for together in (True, False):
-        row = row_of(together, case=str(pivot), vary={"strip": {"crossing_ratio": [STEEP["crossing_ratio"]]}})
-        assert apart(row, good) < ACCURACY
-        assert row["estimated_error"] <= ACCURACY and row["reason"] == ""
+    row = row_of(case=str(pivot), vary={"strip": {"crossing_ratio": [STEEP["crossing_ratio"]]}})
+    assert apart(row, good) < ACCURACY
+    assert row["estimated_error"] <= ACCURACY and row["reason"] == ""
     outcome = command("export", pivot, "--out", tmp_path / "out", "--formats", "csv")
     assert "estimated error: trajectory" in outcome.out
     (exported,) = (tmp_path / "out").glob("static_states.csv")
@@ -189,19 +188,17 @@ def test_the_page_says_that_the_accuracy_is_missed(pivot, few):
     assert state["control_points"] == 8
 
 
-def row_of(together=True, **content):
+def row_of(**content):
     """The row of a sweep's file with one design."""
     given = {"case": "cross_axis_pivot", "vary": {"strip": {"crossing_ratio": [0.9]}}, **content}
     plan = plan_of("s.toml", given, Path())
-    task = replace(plan.task, batch=together and plan.task.batch)
-    return batch.solve_chunk(task, 0, plan.rows(0, 1)).to_pylist()[0]
+    return solve_chunk(plan.task, 0, plan.rows(0, 1)).to_pylist()[0]
 
 
 @pytest.mark.parametrize("content", [{"model": "fe"}, {"settings": {"control_points": 8}}], ids=str)
-@pytest.mark.parametrize("together", [True, False])
-def test_a_row_that_nothing_estimates_says_so(content, together):
+def test_a_row_that_nothing_estimates_says_so(content):
     """Requirement: a row of elements, or of a given number of control points, has no error but a reason."""
-    row = row_of(together, **content)
+    row = row_of(**content)
     assert (row["status"], row["estimated_error"], row["reason"]) == (
         "converged",
         None,

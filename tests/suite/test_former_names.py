@@ -6,7 +6,6 @@ import pytest
 
 import spline_model
 from spline_model import cross_axis_pivot, impulse_solver
-from studies.interactive.input import EVENTS, checked
 from tests.table_one import TABLE_ONE
 
 SOLVE = "solve silicon_pivot --control-points 5 --rotation-deg 5"
@@ -46,9 +45,3 @@ def test_former_keywords_of_python_are_accepted():
         assert impulse_solver(new, form="printed").form == "published"
     with pytest.warns(FutureWarning, match="motion_penalty_stiffness"):
         assert spline_model.swinging_slide_stiffness is spline_model.motion_penalty_stiffness
-
-
-def test_session_files_with_a_former_solver_are_read():
-    """Requirement: an event of a former session file chooses the solver by its present name."""
-    event = checked({"do": "solver", "name": "printed"}, EVENTS["solver"])
-    assert event["name"] == "published"

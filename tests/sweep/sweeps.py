@@ -1,12 +1,16 @@
 """Small sweeps for the tests, as texts of DESIGNS.toml."""
 
 import tomllib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 from studies.sweep.plan import Plan
 from studies.sweep.read import plan_of
+from studies.sweep.run import Pool
 
-#: Twelve pivots over two settings: on the batch kernel.
+#: Twelve pivots over two settings.
 GRID = """
 case = "cross_axis_pivot"
 [set]
@@ -39,3 +43,10 @@ strip.slenderness = { from = 20, to = 200, scale = "log" }
 def plan(text: str, folder: Path = Path()) -> Plan:
     """Return the sweep that the text describes."""
     return plan_of("designs.toml", tomllib.loads(text), folder)
+
+
+@contextmanager
+def within() -> Iterator[Pool]:
+    """Yield a worker within this process, which knows what a test has put in place of the suite's own."""
+    with ThreadPoolExecutor(1) as executor:
+        yield Pool(executor=executor, workers=1)

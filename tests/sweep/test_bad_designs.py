@@ -38,8 +38,6 @@ BAD = [
     ),
     ({"sample": 'sample = { method = "sobol" }'}, "sample.points: got no such key"),
     ({"sample": 'sample = { method = "grid", points = 8 }'}, "sample.points: got it for a grid"),
-    ({"sample": 'sample.file = "a.csv"'}, "sample.file: got it beside [vary]"),
-    ({"sample": 'sample.file = "a.csv"', "vary": ""}, "a.csv: cannot be read (No such file"),
     ({"vary": ""}, "[vary]: got nothing to vary"),
     ({"vary": "vary.strips.left.area_m2 = [1e-5]"}, "got no key of the case"),
     ({"vary": "vary.foo = [1]"}, " names, which docs/cases.md lists"),
@@ -101,20 +99,6 @@ def test_a_part_without_a_name_is_named(part, tmp_path, refused):
     says = f"{part} number 1.name: got no such key"
     refused("sweep", path, "--out", tmp_path / "out", says=says)
     refused("size", case, "--free", "section.thickness_m", "--objective", "stress", says=says)
-
-
-def test_a_file_without_rows_or_with_a_wrong_value_is_named(tmp_path, refused):
-    """Requirement: faults of the CSV file name it, its column and the value."""
-    path, table = tmp_path / "designs.toml", tmp_path / "a.csv"
-    path.write_text('case = "cross_axis_pivot"\nsample.file = "a.csv"')
-    for text, words in (
-        ("strip.crossing_ratio\n", "got no design, expected at least one row"),
-        ("strip.crossing_ratio\n0.5\nx\n", 'strip.crossing_ratio: got the text "0.5"'),
-        ("strip.crossing_ratio\n0.5\n7\n", "strip.crossing_ratio: got 7.0, expected a number between"),
-        ("strip.crossingratio\n0.5\n", "expected strip.crossing_ratio (the nearest name)"),
-    ):
-        table.write_text(text)
-        refused("sweep", path, "--out", tmp_path / "out", says=words)
 
 
 #: A grid over a load, with or without its name in the scene.

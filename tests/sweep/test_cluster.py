@@ -18,7 +18,7 @@ from tests.sweep.sweeps import RANDOM
 
 with_dask = pytest.mark.skipif(not importlib.util.find_spec("distributed"), reason="needs the extra cluster")
 
-MANY = RANDOM.replace("points = 200", "points = 4000").replace("chunk = 32", "chunk = 100")
+MANY = RANDOM.replace("points = 200", "points = 800").replace("chunk = 32", "chunk = 20")
 
 
 @contextmanager
@@ -86,17 +86,17 @@ def test_cluster_gives_the_local_table_though_a_worker_is_killed(tmp_path):
 
         def kill_one(done, total):
             arrived.append(done)
-            if done == 1000:
+            if done == 200:
                 first.kill()
 
         pool = cluster(both.scheduler_address)
-        assert sweep(read_plan(path), tmp_path / "cluster", pool=pool, progress=kill_one) == 4000
+        assert sweep(read_plan(path), tmp_path / "cluster", pool=pool, progress=kill_one) == 800
         assert first.returncode < 0
         assert second.returncode is None
     assert second.returncode is not None
-    assert arrived == list(range(0, 4001, 100))
+    assert arrived == list(range(0, 801, 20))
     table = pd.read_parquet(tmp_path / "cluster" / "designs.parquet")
-    assert list(table["point"]) == list(range(4000))
+    assert list(table["point"]) == list(range(800))
     for name in ("designs.parquet", "sweep.json"):
         local, remote = (tmp_path / place / name for place in ("local", "cluster"))
         assert local.read_bytes() == remote.read_bytes()

@@ -10,9 +10,9 @@ import pytest
 
 from studies.record.files import OutputError
 from studies.sweep import parts, run
-from studies.sweep.batch import solve_chunk
+from studies.sweep.points import solve_chunk
 from studies.sweep.run import SweepError, local_pool, sweep
-from tests.sweep.sweeps import GRID, RANDOM, plan
+from tests.sweep.sweeps import GRID, RANDOM, plan, within
 
 
 def listed(folder):
@@ -38,7 +38,7 @@ def stop_after(points):
 def whole(tmp_path_factory):
     """The folder of the random pivots, solved without interruption, with CSV."""
     folder = tmp_path_factory.mktemp("sweep") / "whole"
-    assert sweep(plan(RANDOM), folder, csv=True) == 200
+    assert sweep(plan(RANDOM), folder, csv=True, pool=within()) == 200
     return folder
 
 
@@ -61,7 +61,7 @@ def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, mo
     """Requirement: after an interruption at any time only what is missing is solved, to the same table."""
     out = tmp_path / "out"
     with pytest.raises(Stopped):
-        sweep(plan(RANDOM), out, progress=stop_after(points), pool=local_pool(plan(RANDOM), 1))
+        sweep(plan(RANDOM), out, progress=stop_after(points), pool=within())
     kept = sum(pq.read_metadata(part).num_rows for part in (out / "parts").glob("part-*"))
     assert kept >= points
     solved = []
@@ -71,7 +71,7 @@ def test_interrupted_sweep_goes_on_to_the_same_bytes(points, whole, tmp_path, mo
         return solve_chunk(task, start, columns)
 
     monkeypatch.setattr(run, "solve_chunk", counted)
-    assert sweep(plan(RANDOM), out, csv=True) == 200 - kept
+    assert sweep(plan(RANDOM), out, csv=True, pool=within()) == 200 - kept
     assert len(solved) == len(set(solved)) == -(-(200 - kept) // 32)
     for name in ("designs.parquet", "designs.csv", "sweep.json"):
         assert (out / name).read_bytes() == (whole / name).read_bytes()
@@ -90,7 +90,7 @@ def test_lists_are_values_too(key, values, stored, written, tmp_path):
     stand in either table."""
     text = f'case = "cross_axis_pivot"\nsample.chunk = 1\nvary.{key} = {values}\n'
     asked = plan(text + "set.drive = { rotation_deg = 5, increments = 1 }\nsettings.control_points = 5")
-    assert sweep(asked, tmp_path, csv=True, pool=local_pool(asked, 1)) == 2
+    assert sweep(asked, tmp_path, csv=True, pool=within()) == 2
     table = pd.read_parquet(tmp_path / "designs.parquet")
     assert [list(each) if isinstance(stored[0], list) else each for each in table[key]] == stored
     assert list(pd.read_csv(tmp_path / "designs.csv")[key]) == written
@@ -100,14 +100,14 @@ def test_a_finished_sweep_is_not_solved_again(whole, monkeypatch):
     """Requirement: the same call on a finished folder does nothing."""
     monkeypatch.setattr(run, "solve_chunk", None)
     before = (whole / "designs.parquet").stat().st_mtime_ns
-    assert sweep(plan(RANDOM), whole) == 0
+    assert sweep(plan(RANDOM), whole, pool=within()) == 0
     assert (whole / "designs.parquet").stat().st_mtime_ns == before
 
 
 @pytest.mark.parametrize("workers", [1, 3])
 def test_table_does_not_depend_on_the_workers(workers, whole, tmp_path):
     """Requirement: any number of workers gives the same bytes."""
-    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(plan(RANDOM), workers))
+    sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(workers))
     assert (tmp_path / "out" / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
@@ -125,7 +125,7 @@ def test_another_sweep_asks_for_another_folder(change, words, whole):
     """Requirement: a used folder takes the same sweep only; what is different is named."""
     before = listed(whole)
     with pytest.raises(OutputError, match=words):
-        sweep(plan(RANDOM.replace(*change)), whole)
+        sweep(plan(RANDOM.replace(*change)), whole, pool=within())
     assert listed(whole) == before
 
 
@@ -134,20 +134,20 @@ def test_other_code_or_libraries_ask_for_another_folder(whole, monkeypatch):
     real = parts.version
     monkeypatch.setattr(parts, "version", lambda name: "0.0" if name == "numba" else real(name))
     with pytest.raises(OutputError, match=r"versions that differ \(numba\)"):
-        sweep(plan(RANDOM), whole)
+        sweep(plan(RANDOM), whole, pool=within())
     monkeypatch.setattr(parts, "version", real)
     monkeypatch.setattr(parts, "source_hash", lambda module: "other")
     with pytest.raises(OutputError, match=r"suite that differ \(source_sha256\)"):
-        sweep(plan(RANDOM), whole)
+        sweep(plan(RANDOM), whole, pool=within())
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path):
     """Requirement: nothing is mixed into a folder that holds other files, or put in the place of a file."""
     (tmp_path / "thesis.txt").write_text("years of work")
     with pytest.raises(OutputError, match="got a folder with other files"):
-        sweep(plan(GRID), tmp_path)
+        sweep(plan(GRID), tmp_path, pool=within())
     with pytest.raises(OutputError, match="got a file, expected a folder"):
-        sweep(plan(GRID), tmp_path / "thesis.txt")
+        sweep(plan(GRID), tmp_path / "thesis.txt", pool=within())
     assert listed(tmp_path) == ["thesis.txt"]
 
 
@@ -159,19 +159,19 @@ def test_two_runs_in_one_folder_are_refused(tmp_path):
         if not seen:
             seen.append(done)
             with pytest.raises(OutputError, match="another run is at work"):
-                sweep(plan(GRID), tmp_path / "out")
+                sweep(plan(GRID), tmp_path / "out", pool=within())
 
-    assert sweep(plan(GRID), tmp_path / "out", progress=second) == 12
+    assert sweep(plan(GRID), tmp_path / "out", progress=second, pool=within()) == 12
 
 
 def test_what_a_killed_run_left_is_removed(whole, tmp_path):
     """Requirement: half-written files of a run that was killed are not taken for results."""
     out = tmp_path / "out"
     with pytest.raises(Stopped):
-        sweep(plan(RANDOM), out, progress=stop_after(60))
+        sweep(plan(RANDOM), out, progress=stop_after(60), pool=within())
     (out / "parts" / ".part-00000006.parquet.x7").write_bytes(b"half")
     (out / ".designs.parquet.q3").write_bytes(b"half")
-    sweep(plan(RANDOM), out)
+    sweep(plan(RANDOM), out, pool=within())
     assert listed(out) == ["designs.parquet", "sweep.json"]
     assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
@@ -185,7 +185,7 @@ def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
     resource.setrlimit(resource.RLIMIT_FSIZE, (room, limits[1]))
     try:
         with pytest.raises(OutputError, match="cannot be written") as full:
-            sweep(plan(RANDOM), out)
+            sweep(plan(RANDOM), out, pool=within())
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert "\n" not in str(full.value)
@@ -195,7 +195,7 @@ def test_a_full_disk_is_one_line_and_leaves_whole_files(room, whole, tmp_path):
     assert [name for name in listed(out) if "/." in name or name.startswith(".")] == []
     expected = {1000: 0, 5000: 0, 20000: 7}[room]
     assert len(list(out.rglob("part-*.parquet"))) == expected
-    sweep(plan(RANDOM), out)
+    sweep(plan(RANDOM), out, pool=within())
     assert (out / "designs.parquet").read_bytes() == (whole / "designs.parquet").read_bytes()
 
 
@@ -209,5 +209,5 @@ def test_chunks_that_no_worker_can_solve_are_named(tmp_path, monkeypatch):
 
     monkeypatch.setattr(run, "solve_chunk", faulty)
     with pytest.raises(SweepError, match=r"points 64 to 95: .* \(MemoryError: no room"):
-        sweep(plan(RANDOM), tmp_path / "out", pool=local_pool(plan(RANDOM), 1))
+        sweep(plan(RANDOM), tmp_path / "out", pool=within())
     assert len(list((tmp_path / "out" / "parts").iterdir())) >= 2

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from studies.errors import BadInput
@@ -88,15 +89,15 @@ def demo_film() -> Film:
     def draw(k: int) -> Picture:
         light = ground.copy()
         _lay(light, plane, 1, poses[k])
-        light = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
-        seen = 255.0 * (shade * cv2.GaussianBlur(light, (0, 0), 0.8)) ** (1.0 / GAMMA)
+        small = cv2.resize(light, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)
+        seen = 255.0 * (shade * cv2.GaussianBlur(small, (0, 0), 0.8)) ** (1.0 / GAMMA)
         noise = np.random.default_rng(k).standard_normal(seen.shape, dtype=np.float32)
         return np.asarray(np.clip(np.rint(seen + 4.0 * noise), 0, 255), dtype=np.uint8)
 
     return Film(draw=draw, frames=FRAMES)
 
 
-def _lay(light: Array, plane: Array, number: int, pose: Array) -> None:
+def _lay(light: NDArray[np.float32], plane: Array, number: int, pose: Array) -> None:
     """Lay a marker with its white margin at `pose` (3,) into the picture of the plane, float32."""
     bits = cells(number).repeat(TEXELS, axis=0).repeat(TEXELS, axis=1)
     paper = np.where(np.pad(bits, 3 * TEXELS // 2, constant_values=True), WHITE, BLACK).astype(np.float32)

@@ -16,9 +16,7 @@ from studies.errors import BadInput
 from studies.interactive import presets
 from studies.interactive.input import DRIVES, MOST_STEPS, checked
 from studies.interactive.mechanics import Mechanics
-from studies.interactive.motion import SOLVERS
-from studies.interactive.recording import Recorder
-from studies.interactive.session import Session
+from studies.interactive.session import Recorder, Session
 from studies.interactive.tracking.edges import Picture
 from studies.interactive.tracking.films import Shot, Source
 from studies.interactive.tracking.tracker import Tracker
@@ -43,9 +41,7 @@ class Connection:
         source = settings.source
         self.session = Session(settings.preset, lock_step=source is not None and source.lock_step)
         self._tracker = Tracker(camera=settings.calibration)
-        self._recorders: dict[str, Recorder] = {}
-        if first and settings.keep is not None:
-            self._recorders["file"] = Recorder(self.session, settings.keep)
+        self._recorder = Recorder(self.session, settings.keep) if first and settings.keep else None
         self._begin, self._lock = time.monotonic(), asyncio.Lock()
         self._pending: tuple[int, float, Picture] | None = None
         self._late: dict[str, Any] | None = None
@@ -64,7 +60,6 @@ class Connection:
                 "camera": self._settings.camera,
                 "shared": self._settings.share is not None,
                 "drives": list(DRIVES),
-                "solvers": SOLVERS,
                 "side": self._tracker.side,
                 **presets.catalogue(),
             }
@@ -122,8 +117,6 @@ class Connection:
             self._room.release()
         elif name == "save":
             await self._say({"kind": "case", "text": self.session.mechanics.piece.as_case()})
-        elif name == "record":
-            await self._record(event.get("on") is True)
         elif name == "size":
             side = checked(event, protocol.PAGE_EVENTS["size"])["side_mm"] / 1e3
             self._tracker = Tracker(side=side, camera=self._settings.calibration)
@@ -162,14 +155,6 @@ class Connection:
         if session.mechanics is mechanics:
             await self._feed({"do": "critical", "force": force}, None)
 
-    async def _record(self, on: bool) -> None:
-        """Begin a recording, or end it and send its lines."""
-        if on:
-            self._recorders["page"] = Recorder(self.session)
-            await self._say({"kind": "recording", "on": True})
-        elif (ended := self._recorders.pop("page", None)) is not None:
-            await self._say({"kind": "recording", "on": False, "lines": ended.lines})
-
     async def _feed(self, event: dict[str, Any], seq: object, **more: Any) -> None:
         """Give one event to the session and send its state."""
         await self._say({**await self._state_after(event), **more, "seq": seq})
@@ -199,8 +184,8 @@ class Connection:
             self._costs.append(took / steps)
         elif not self.session.mechanics.moving:
             self._costs.clear()
-        for recorder in tuple(self._recorders.values()):
-            recorder.write(event, state)
+        if self._recorder is not None:
+            self._recorder.write(event, state)
         return {"kind": "state", **state, "solve_ms": 1e3 * took}
 
     async def _tracked(self, picture: Picture, captured: float) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from studies.cases.rules import TRUTH, number
+from studies.cases.rules import number
 from studies.errors import BadInput
 from studies.interactive.input import ANYTHING, EVENTS, Events, Fields, fields
 
@@ -39,7 +39,6 @@ _ALWAYS: Fields = {"seq?": ANYTHING}
 PAGE_EVENTS: Events = {
     "hello": {"version": ANYTHING, "token": ANYTHING},
     **EVENTS,
-    "record": {"on": TRUTH},
     "size": {"side_mm": number("a printed side from 10 to 300 mm", 10.0, 300.0, closed="low and high")},
     **{do: {} for do in ("shown", "save")},
 }

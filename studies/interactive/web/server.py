@@ -27,7 +27,6 @@ from starlette.websockets import WebSocket, WebSocketClose, WebSocketDisconnect
 
 from spline_model.reduced import many
 from studies.errors import BadInput
-from studies.interactive.motion import SOLVERS
 from studies.interactive.session import Session
 from studies.interactive.web import protocol
 from studies.interactive.web.connection import Connection
@@ -211,13 +210,10 @@ def warm_up() -> None:
 def _enter_kernels() -> None:
     """Enter what a session calls: a pivot is held, squeezed and turned, and released."""
     session = Session()
-    for name in SOLVERS:
-        events = (
-            {"do": "solver", "name": name},
-            {"do": "pose", "pose": [0.0, -0.002, 0.1]},
-            {"do": "release"},
-            {"do": "step"},
-            {"do": "reset"},
-        )
-        for event in events:
-            session.feed({**event, "t": 0.0})
+    events: tuple[dict[str, object], ...] = (
+        {"do": "pose", "pose": [0.0, -0.002, 0.1]},
+        {"do": "release"},
+        {"do": "tick"},
+    )
+    for event in events:
+        session.feed({**event, "t": 0.0})

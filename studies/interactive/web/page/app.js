@@ -33,12 +33,13 @@ const camera = new Camera(socket, say);
 const controls = new Controls(send, wrong);
 const pointer = new Pointer(at("stage"), view, studio, send, controls, redraw);
 
-function send(event) {
+// A change that is part of a drag leaves the ghost of the design before alone.
+function send(event, part = false) {
   if (studio.wrong && event.do !== "tick") say(""); // an error is of what was sent before
   if (event.do !== "pose") pointer.forget();
-  if (["preset", "undo", "redo"].includes(event.do)) controls.settle();
+  if (event.do === "preset") controls.settle();
   if (!ring.live && !["pose", "tick"].includes(event.do)) actions.live(); // no change of a state that is not shown
-  if (["preset", "parameter", "undo", "redo"].includes(event.do) && !event.part) studio.fresh = true;
+  if (["preset", "parameter"].includes(event.do) && !part) studio.fresh = true;
   socket.send(event);
 }
 function say(text, error = false) {
@@ -59,7 +60,6 @@ function received(message, picture) {
   }
   if (message.kind === "curve") return curve(message);
   if (message.kind === "case") return files.save("pivot.toml", message.text, "application/toml");
-  if (message.kind === "recording") return recorded(message);
   const bitmap = picture ?? camera.picture(message.seq);
   camera.answered(message.seq);
   studio.state = message;
@@ -87,7 +87,6 @@ function show(state, picture) {
   at("release").firstChild.textContent = state.mode === "released" ? "Catch " : "Release ";
   at("pause").firstChild.textContent = state.paused ? "Resume " : "Pause ";
   at("pause").disabled = state.mode !== "released" && !state.paused;
-  at("step").disabled = state.mode !== "released";
   at("scrub").max = ring.length - 1;
   at("scrub").value = ring.place;
   at("when").textContent = ring.live ? "live" : `${ring.age.toFixed(1)} s ago`;
@@ -147,43 +146,16 @@ function lost(text) {
   wrong(text);
 }
 
-function recorded(message) {
-  at("record").classList.toggle("on", message.on);
-  at("record").firstChild.textContent = message.on ? "Stop " : "Record ";
-  if (message.on) say("Recording: poses and events, no pictures.");
-  else files.save("session.jsonl", message.lines.join(""), "application/jsonl");
-}
-
 const actions = {
-  release: () =>
-    send(
-      studio.state?.mode === "released"
-        ? { do: "catch" }
-        : { do: "release", speed: at("hand").checked ? "hand" : "zero" },
-    ),
+  release: () => send({ do: studio.state?.mode === "released" ? "catch" : "release" }),
   pause: () => send({ do: studio.state?.paused ? "resume" : "pause" }),
-  step: () => send({ do: "step" }),
   reset: () => send({ do: "reset" }),
-  undo: () => send({ do: "undo" }),
-  redo: () => send({ do: "redo" }),
-  record: () => send({ do: "record", on: !at("record").classList.contains("on") }),
   rest: () => send({ do: "rest" }),
   csv: () => files.save("pivot.csv", files.csv(ring.states), "text/csv"),
   png: () => {
     captioned(true);
     at("stage").toBlob((blob) => files.save("pivot.png", blob, "image/png"));
     captioned(false);
-  },
-  video: () => {
-    if (studio.video) return studio.video.stop();
-    studio.video = files.video(at("stage"), (good) => {
-      studio.video = null;
-      filming(false);
-      if (!good) say("Too short: nothing was recorded yet.");
-    });
-    if (!studio.video) return say("This browser records no videos.");
-    filming(true);
-    say("Recording a video of the picture.");
   },
   shape: () => {
     at("shape").checked = !at("shape").checked;
@@ -223,13 +195,8 @@ function redraw() {
 
 // What leaves the page has its words with it.
 function captioned(on) {
-  view.caption = on || Boolean(studio.video);
+  view.caption = on;
   if (ring.live && studio.state) view.draw(studio.state, studio.picture, ring.centres);
-}
-function filming(on) {
-  at("video").classList.toggle("on", on);
-  at("video").firstChild.textContent = on ? "Stop " : "Video ";
-  captioned(on);
 }
 
 function shape() {
@@ -249,24 +216,7 @@ async function scrub(place) {
   picture.close();
 }
 
-for (const id of [
-  "release",
-  "pause",
-  "step",
-  "reset",
-  "undo",
-  "redo",
-  "record",
-  "rest",
-  "csv",
-  "png",
-  "video",
-  "save",
-  "open",
-  "live",
-  "help",
-  "home",
-]) {
+for (const id of ["release", "pause", "reset", "rest", "csv", "png", "save", "open", "live", "help", "home"]) {
   at(id).addEventListener("click", actions[id]);
 }
 at("scrub").addEventListener("input", () => scrub(Number(at("scrub").value)));

@@ -28,14 +28,8 @@ export class Controls {
   build(welcome) {
     this.welcome = welcome;
     at("preset").replaceChildren(...Object.entries(welcome.presets).map(([name, p]) => new Option(p.title, name)));
-    at("solver").replaceChildren(...Object.entries(welcome.solvers).map(([name, title]) => new Option(title, name)));
     at("preset").onchange = () => this.send({ do: "preset", name: at("preset").value });
     at("drive").onchange = () => this.send({ do: "drive", by: at("drive").value });
-    at("solver").onchange = () => this.send({ do: "solver", name: at("solver").value });
-    at("sweeps").onchange = () =>
-      at("sweeps").checkValidity() &&
-      at("sweeps").value &&
-      this.send({ do: "solver", name: at("solver").value, sweeps: Number(at("sweeps").value) });
     Object.assign(this, { seen: "", flying: null, next: null, drag: null });
     at("material").replaceChildren(
       new Option("other", ""),
@@ -110,8 +104,7 @@ export class Controls {
     return Math.min(high, Math.max(low, value));
   }
 
-  // The newest event goes up as soon as the one before is answered; those of one drag, by its key, are undone
-  // together.
+  // The newest event goes up as soon as the one before is answered; those of one drag have its key.
   change(event, key, end) {
     this.next = { event, key, end };
     this.flush();
@@ -129,10 +122,10 @@ export class Controls {
       part = this.drag === key;
     this.next = null;
     this.drag = end ? null : key;
-    this.send({ ...event, part, seq: (this.flying = -++this.count) });
+    this.send({ ...event, seq: (this.flying = -++this.count) }, part);
   }
 
-  // What waits goes up at once: what comes behind it, an undo say, is of after it.
+  // What waits goes up at once: what comes behind it is of after it.
   settle() {
     this.flying = null;
     this.flush();
@@ -179,9 +172,6 @@ export class Controls {
       range.disabled = number.disabled = h.place < 2 ? state.drive === "rotation" : state.drive === "pull";
     }
     at("drive").value = state.drive;
-    at("solver").value = state.solver;
-    at("sweeps-row").hidden = state.solver !== "published";
-    if (document.activeElement !== at("sweeps")) at("sweeps").value = state.sweeps;
     if (this.flying !== null || this.next) return;
     const seen = JSON.stringify([state.preset, state.values]),
       renewed = state.preset !== this.preset;

@@ -1,4 +1,4 @@
-// What leaves the page and what comes in: CSV, pictures, designs and session files. Nothing is sent anywhere else.
+// What leaves the page and what comes in: CSV, pictures and designs. Nothing is sent anywhere else.
 export function save(name, content, type) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type }));
@@ -10,27 +10,6 @@ export function save(name, content, type) {
     size: content.size ?? content.length,
     text: typeof content === "string" ? content : null,
   };
-}
-
-// Record a canvas as a video until the recorder that is returned is stopped; null where the browser cannot.
-export function video(canvas, done) {
-  const type = ["video/webm", "video/mp4"].find((name) => window.MediaRecorder?.isTypeSupported(name)),
-    parts = [];
-  if (!type) return null;
-  const stream = canvas.captureStream(),
-    recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 4e6 });
-  recorder.kept = 0;
-  recorder.ondataavailable = (event) => {
-    parts.push(event.data);
-    recorder.kept += event.data.size;
-  };
-  recorder.onstop = () => {
-    for (const track of stream.getTracks()) track.stop();
-    if (recorder.kept) save(`pivot.${type.slice(6)}`, new Blob(parts, { type }), type);
-    done(recorder.kept > 0);
-  };
-  recorder.start(250);
-  return recorder;
 }
 
 const COLUMNS = [

@@ -3,7 +3,6 @@ const DEGREE = Math.PI / 180;
 const KEYS = [
   ["R", "release, or catch", (a) => a.release()],
   [" ", "pause and resume", (a) => a.pause(), "Space"],
-  [".", "one step", (a) => a.step()],
   ["0", "reset to rest", (a) => a.reset()],
   [
     "ArrowLeft",
@@ -30,8 +29,6 @@ const KEYS = [
     "↓",
   ],
   ["M", "next set of prescribed coordinates", (a) => a.drive()],
-  ["Z", "undo", (a) => a.undo()],
-  ["Y", "redo", (a) => a.redo()],
   ["[", "back in the last minute", (a) => a.back()],
   ["]", "forth in the last minute", (a) => a.forth()],
   ["L", "back to live", (a) => a.live()],
@@ -39,8 +36,6 @@ const KEYS = [
   ["+", "zoom in; so does Ctrl and the wheel", (a) => a.zoom(1.25)],
   ["-", "zoom out", (a) => a.zoom(0.8)],
   ["H", "show the whole design; Ctrl and a drag move the picture", (a) => a.home()],
-  ["V", "begin or end a recording", (a) => a.record()],
-  ["F", "begin or end a video", (a) => a.video()],
   ["C", "save the last minute as CSV", (a) => a.csv()],
   ["P", "save the picture", (a) => a.png()],
   ["K", "save the design as a case file", (a) => a.save()],
