@@ -21,15 +21,14 @@ from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
-from .mechanism import compliant_mechanism, cross_axis_pivot
-from .model import ELEMENTS, BodyDesign, Model
+from .model import ELEMENTS, BodyDesign, Model, compliant_mechanism, cross_axis_pivot
 from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
+from .response import CriticalPoint
 from .section_forces import StripFields, strip_fields
-from .solid import SolidStrip
-from .solid_path import SolidPath, solve_solids
-from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
+from .solid import SolidPath, SolidStrip, solve_solids
+from .solution import ErrorEstimate, StaticSolution, Status
 from .statics import solve_mechanism, solve_statics
 from .strip import StripDesign
 

@@ -13,8 +13,7 @@ import numpy as np
 from .arrays import Array, Indices, inlined, kernel
 from .effects import StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
-from .links import add_links, link_forces
-from .loads import Histories, Pulls, load_power, pull, put_factors
+from .loads import Histories, Pulls, add_links, link_forces, load_power, pull, put_factors
 from .mass import couple
 from .matrix import Symmetric
 from .places import carry, carry_velocity, gather

@@ -51,7 +51,7 @@ def solve_release(pivot: Model, *, start: float | None, duration: float, **optio
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> motion.time.shape
@@ -112,7 +112,7 @@ def solve_motion(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> motion = solve_motion(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> bool(motion.rotation[-1] < 0.1)

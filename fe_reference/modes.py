@@ -8,6 +8,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
+from .control import NothingHolds, loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
@@ -16,7 +17,6 @@ from .matrix import Symmetric
 from .model import Model, require_model
 from .places import GROUND
 from .refined import Quantities, missed, refine
-from .rigid import NothingHolds, loose_coordinates
 from .solution import ErrorEstimate
 from .statics import settled_state
 from .structure import Structure, structure_of
@@ -116,7 +116,7 @@ def natural_frequencies(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> print(f"{natural_frequencies(pivot, count=1).frequency[0]:.2f} Hz")
     11.55 Hz

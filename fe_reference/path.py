@@ -22,11 +22,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
-from .critical import critical_point, limit_point, tipping
 from .errors import InvalidParameter
 from .matrix import GRAIN, Singular
-from .response import respond
-from .solution import CriticalPoint
+from .response import CriticalPoint, critical_point, limit_point, respond, tipping
 
 Progress = Callable[[int, int], None]
 #: What is counted on a path.

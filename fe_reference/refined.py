@@ -17,7 +17,8 @@ from .arrays import Array
 from .errors import positive
 from .model import Model
 from .motion import Trajectory
-from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
+from .response import CriticalPoint
+from .solution import ErrorEstimate, StaticSolution, Status
 
 Answer = TypeVar("Answer")
 Solved = TypeVar("Solved", StaticSolution, Trajectory)

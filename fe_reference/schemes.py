@@ -41,7 +41,7 @@ from .arrays import Array, Flags
 from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
-from .links import fastest
+from .loads import fastest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme

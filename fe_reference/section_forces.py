@@ -102,7 +102,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> path = solve_statics(pivot, rotation=0.1, increments=1)
     >>> strip_fields(pivot, path.states).bending_moment.shape

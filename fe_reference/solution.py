@@ -11,7 +11,7 @@ import numpy as np
 from .arrays import Array, Indices
 from .errors import ConvergenceError, InvalidParameter
 from .model import Model
-from .response import body_stiffness
+from .response import CriticalPoint, body_stiffness
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,27 +32,6 @@ class Status(StrEnum):
             Status.NOT_CONVERGED: "not converged: the path ends early; use more increments or a finer mesh.",
             Status.UNSTABLE: "unstable: the energy grew without bound; use a smaller time step.",
         }[self]
-
-
-@dataclass(frozen=True, kw_only=True)
-class CriticalPoint:
-    """Where a path loses or regains stability, or a driven body its own stiffness.
-
-    kind: "limit point" of the load factor, or where a driven rotation has no stiffness at fixed loads;
-    "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
-    load_factor [1]; rotation of the driven body [rad], nan without one; inertia: negative eigenvalues after
-    it; turns (B,) of all bodies [rad]; preload: share of gravity and natural strains that acts there [1];
-    text: what happens at which load, "" for the stationary torque of a path without loads, which is not
-    unstable.
-    """
-
-    kind: str
-    load_factor: float
-    rotation: float
-    inertia: int
-    text: str
-    turns: Array
-    preload: float = 1.0
 
 
 class Stopwatch:

@@ -7,14 +7,13 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
-from .control import Control, spans
+from .control import Control, require_balance, spans
+from .effects import WAYS, DrivenDisplacement, Prescribed
 from .errors import InvalidParameter, choice, count, finite, pair, several
 from .law import FORCES
-from .loading import WAYS, DrivenDisplacement, Prescribed
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import NOTHING, confirmed, limit_of, places_of
-from .rigid import require_balance
 from .section_forces import strip_fields
 from .solution import ENERGIES, StaticSolution, Status, Stopwatch
 from .structure import structure_of
@@ -52,7 +51,7 @@ def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options:
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> path = solve_statics(pivot, rotation=0.3, increments=5)
     >>> path.torque.shape
@@ -131,7 +130,7 @@ def solve_mechanism(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
     [0.0, 0.05, 0.1, 0.05, 0.0]

@@ -20,8 +20,7 @@ from .arrays import Array, Flags, Indices, kernel
 from .bending import CURL
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT, Energies, Given, Written, elements
-from .links import Links, add_links, link_forces, links_of
-from .loads import Loads, Pulls, pull, pulls_of
+from .loads import Links, Loads, Pulls, add_links, link_forces, links_of, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import Elements, root_stiffness, strip_basis
 from .model import Model
