@@ -2,11 +2,11 @@
 
 Data flow one way, and so do the imports:
 
-    loading -> effects; strip, effects -> model (mechanism) -> mesh
-    mesh, law (bending), places (loads, links), matrix -> structure -> control
-    control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, drives -> actions -> motion -> schemes, run -> dynamics
-    statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
+    strip, effects -> model -> mesh
+    mesh, law (bending), places, loads, matrix -> structure -> control
+    control (with Newton's method) -> response (with critical points) -> path -> statics
+    structure -> mass, drives -> actions -> motion -> schemes -> dynamics
+    statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes
     plate: one strip as a plate, the stiffness that beam theory neglects, and the rigidity with it -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the

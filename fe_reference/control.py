@@ -1,15 +1,13 @@
 """How a structure is led along an equilibrium path, what is held and loaded, and Newton's method to it.
 
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
-values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
-span says otherwise. The residual is r = f(y) - a F, with f the gradient of the potential. While a scene
-settles, p is the share of gravity and natural strains instead, and nothing else acts.
-
-Rigid motions that nothing resists, and the coordinates that are held in their place.
+values at its beginning to those at its end, and so does the load a F with its share a. The residual is
+r = f(y) - a F, with f the gradient of the potential. While a scene settles, p is the share of gravity and
+natural strains instead, and nothing else acts.
 
 Strips and bodies can move rigidly along x, along y and about the origin. What the ends of strips, springs and
 held coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones
-that the null space moves, make a path determinate. In equilibrium they bear nothing.
+that the null space moves, are held and make a path determinate. In equilibrium they bear nothing.
 """
 
 from collections import Counter
@@ -89,8 +87,7 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load (K,): factors of the loads that make F, or None. shares: of it at both,
-            by default the parameters.
+        span: parameter at both. load (K,): factors of the loads that make F, or None. shares: of it at both.
         watched: coordinate of the driven turn, whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
         props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
@@ -103,18 +100,17 @@ class Control:
     load: Array | None = None
     watched: int | None = None
     settling: bool = False
-    shares: tuple[float, float] | None = None
+    shares: tuple[float, float] = (0.0, 1.0)
     props: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def growth(self) -> float:
         """Rate of the load's share in p."""
-        shares = self.span if self.shares is None else self.shares
-        return (shares[1] - shares[0]) / (self.span[1] - self.span[0])
+        return (self.shares[1] - self.shares[0]) / (self.span[1] - self.span[0])
 
     def share(self, parameter: float) -> float:
         """Return the share of the load that acts at p."""
-        return parameter if self.shares is None else self.shares[0] + self.growth * (parameter - self.span[0])
+        return self.shares[0] + self.growth * (parameter - self.span[0])
 
     @cached_property
     def is_held(self) -> Flags:
@@ -177,12 +173,12 @@ class Control:
 
 def spans(
     structure: Structure,
+    body: int | None,
+    rotations: Sequence[float] | None,
+    load: Array | None,
     *,
-    body: int | None = None,
-    rotations: Sequence[float] | None = None,
-    load: Array | None = None,
-    first: bool = False,
-    starts: bool = False,
+    first: bool,
+    starts: bool,
 ) -> list[Control]:
     """Return the spans of a path on which a body is driven through `rotations` [rad], one leg each.
 

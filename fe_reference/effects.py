@@ -1,8 +1,7 @@
-"""Effects of which a model definition may have any number: loads, drives, supports and springs.
+"""Names and parameters of the effects that a scene of finite elements may be made of.
 
-Names and parameters of the effects that a scene of finite elements may be made of.
-
-A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units.
+A scene names its effects; what is not named is not assembled. Parameters are frozen values in SI units. Of
+loads, drives, supports and springs a scene may have any number.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -313,7 +312,7 @@ class Effects:
         """
         names = tuple(effects)
         for name in names:
-            _known(name)
+            choice("effects", name, tuple(KNOWN))
         rotary = "section_rotary_inertia" not in names or "strip_inertia" in names
         for holds, expected in (
             (len(set(names)) == len(names), "every name once"),
@@ -352,32 +351,6 @@ class Effects:
         """Return the effect of this class, or None if it is not named."""
         return next(iter(self.every(kind)), None)
 
-    def changed(self, name: str, *effects: Effect) -> "Effects":
-        """Return the effects with others of this name."""
-        return Effects(named={**self.named, name: effects})
-
-    def prescribed(self, bodies: Sequence[str], body: int | None) -> dict[int, tuple[float, History | None]]:
-        """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
-
-        Coordinate k of body b stands under 3 b + k.
-
-        Args:
-            bodies: names of all bodies.
-            body: number of the body where the effects name none; None: the only one.
-
-        Raises:
-            InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
-        """
-        found: dict[int, tuple[float, History | None]] = {}
-        for effect in self.every(Prescribed):
-            index = body if effect.body is None and body is not None else index_of(bodies, effect.body)
-            for at, end in enumerate(effect.ends, start=3 * index):
-                if at in found and end is not None:
-                    raise twice(bodies, at)
-                if end is not None:
-                    found[at] = (end, effect.history)
-        return found
-
 
 def index_of(bodies: Sequence[str], name: str | None) -> int:
     """Return the place of a body among the names of all; None means the only one there is.
@@ -395,15 +368,6 @@ def twice(bodies: Sequence[str], at: int) -> InvalidParameter:
     """Return the refusal of a coordinate, numbered as in `Effects.prescribed`, that is prescribed twice."""
     told = f"{WAYS[at % 3]} of {bodies[at // 3]}"
     return InvalidParameter("prescribed", told, "one drive or support for each coordinate [name]")
-
-
-def _known(name: str) -> None:
-    there = f"one of {', '.join(KNOWN)} [name]"
-    if name == "inextensible":
-        raise InvalidParameter(
-            "effects", name, f"{there}: these elements stretch, and a penalty would only hide that"
-        )
-    choice("effects", name, tuple(KNOWN))
 
 
 def _each(name: str, given: Given) -> Iterable[Effect]:

@@ -4,8 +4,7 @@ A dead force F at an offset o from the point of its row has the potential -F.(d 
 and a stiffness that depend on the turn. A follower R F has no potential: its tangent is the product
 -R' F (x) 1 of its rate in the turn and the turn's unit vector, which is not symmetric.
 
-Springs and dampers between two places: roots that give way, springs of a scene, dampers of bodies.
-
+Links are springs and dampers between two places: roots that give way, springs of a scene, dampers of bodies.
 A link between the points of two rows stretches by
 
     e = (u_1 - u_2, theta_1 - theta_2)

@@ -1,11 +1,8 @@
 """What a finite-element model is made of: strips of two-node beam elements, rigid bodies, and effects.
 
 Each end of a strip is clamped to or hinged on ground or a body, or free. The parameters are plain SI numbers
-and radians.
-
-Mechanisms of any number of strips and rigid bodies, from designs that name what is joined to what.
-
-The cross-axis flexural pivot is the one of two straight strips that cross without touching, and their body.
+and radians. A mechanism is made from designs that name what is joined to what. The cross-axis flexural pivot
+is the one of two straight strips that cross without touching, and their body.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,6 +25,7 @@ from .effects import (
     Spring,
     TipForce,
     index_of,
+    twice,
 )
 from .errors import (
     History,
@@ -133,7 +131,7 @@ class Model:
             name = next(name for name, same in effects.named.items() if led[0] in same)
             raise InvalidParameter(name, "no bodies", "a body to lead [name]")
         # those that name no body are of the one that is driven, which only a solve knows
-        Effects(named={"": tuple(each for each in led if each.body is not None)}).prescribed(bodies, None)
+        self.prescribed(None, [each for each in led if each.body is not None])
 
     def _check_sides(self) -> None:
         """Refuse effects of the strips' sides where they do not hold."""
@@ -195,18 +193,33 @@ class Model:
         """Names of the bodies in order."""
         return tuple(body.name for body in self.bodies)
 
-    @property
-    def body(self) -> BodyDesign:
-        """The one body of a model that has one."""
-        return self.bodies[self.body_index(None)]
-
     def body_index(self, name: str | None) -> int:
         """Return the place of the body of this name; None means the only one there is."""
         return index_of(self.body_names, name)
 
-    def prescribed(self, body: int | None) -> dict[int, tuple[float, History | None]]:
-        """Return what drives and supports prescribe [m, rad], as `Effects.prescribed`."""
-        return self.effects.prescribed(self.body_names, body)
+    def prescribed(
+        self, body: int | None, led: Sequence[Prescribed] | None = None
+    ) -> dict[int, tuple[float, History | None]]:
+        """Return what drives and supports prescribe: end [m, rad] and history of a coordinate.
+
+        Coordinate k of body b stands under 3 b + k.
+
+        Args:
+            body: number of the body where the effects name none; None: the only one.
+            led: the drives and supports, by default all.
+
+        Raises:
+            InvalidParameter: a coordinate is prescribed twice, or a name is unknown.
+        """
+        found: dict[int, tuple[float, History | None]] = {}
+        for effect in self.effects.every(Prescribed) if led is None else led:
+            index = body if effect.body is None and body is not None else self.body_index(effect.body)
+            for at, end in enumerate(effect.ends, start=3 * index):
+                if at in found and end is not None:
+                    raise twice(self.body_names, at)
+                if end is not None:
+                    found[at] = (end, effect.history)
+        return found
 
     def strip_index(self, name: str) -> int:
         """Return the place of the strip of this name."""

@@ -1,6 +1,6 @@
 """States of equilibrium: rates, torque and stiffness along their path, and the stiffness of a body.
 
-Critical points between or beyond the states of a path, and what is said of them in words of design.
+Critical points lie between or beyond the states of a path; they are named in words of design.
 """
 
 import math

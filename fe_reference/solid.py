@@ -15,11 +15,10 @@ at the edges of the clamps; therefore the error decreases slowly with the mesh, 
 
 Source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis (2008), chapters 6 to 9.
 
-A rigid body on solid strips: equilibrium along a prescribed rotation.
-
-The root faces of the strips are fixed to the ground, the tip faces move with the body in the plane. The
-interior of each strip is condensed to the three coordinates of the body. Newton's method for the body and
-for the interiors is one loop: the torque from the condensed force is then of second order in the error.
+A rigid body on solid strips is led along a prescribed rotation. The root faces of the strips are fixed to the
+ground, the tip faces move with the body in the plane. The interior of each strip is condensed to the three
+coordinates of the body. Newton's method for the body and for the interiors is one loop: the torque from the
+condensed force is then of second order in the error.
 """
 
 import math
