@@ -2,11 +2,11 @@
 
 Data flow one way, and so do the imports:
 
-    loading -> effects; strip, effects -> model (mechanism) -> mesh
-    mesh, law (bending), places (loads, links), matrix -> structure -> control
-    control (with Newton's method) -> response -> critical -> path -> statics
-    structure -> mass, drives -> actions -> motion -> schemes, run -> dynamics
-    statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes, dynamics
+    strip, effects -> model -> mesh
+    mesh, law (bending), places, loads, matrix -> structure -> control
+    control (with Newton's method) -> response (with critical points) -> path -> statics
+    structure -> mass, drives -> actions -> motion -> schemes -> dynamics
+    statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes
     plate: one strip as a plate, the stiffness that beam theory neglects, and the rigidity with it -> mesh
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
@@ -21,15 +21,14 @@ from .drives import DrivenRotation
 from .dynamics import solve_motion, solve_release
 from .effects import DEFAULT_EFFECTS
 from .errors import ConvergenceError, InvalidParameter
-from .mechanism import compliant_mechanism, cross_axis_pivot
-from .model import ELEMENTS, BodyDesign, Model
+from .model import ELEMENTS, BodyDesign, Model, compliant_mechanism, cross_axis_pivot
 from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
+from .response import CriticalPoint
 from .section_forces import StripFields, strip_fields
-from .solid import SolidStrip
-from .solid_path import SolidPath, solve_solids
-from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
+from .solid import SolidPath, SolidStrip, solve_solids
+from .solution import ErrorEstimate, StaticSolution, Status
 from .statics import solve_mechanism, solve_statics
 from .strip import StripDesign
 

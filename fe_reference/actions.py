@@ -13,8 +13,7 @@ import numpy as np
 from .arrays import Array, Indices, inlined, kernel
 from .effects import StripDamping, StripDrag
 from .law import FORCES, MATERIAL, Written, elements
-from .links import add_links, link_forces
-from .loads import Histories, Pulls, load_power, pull, put_factors
+from .loads import Histories, Pulls, add_links, link_forces, load_power, pull, put_factors
 from .mass import couple
 from .matrix import Symmetric
 from .places import carry, carry_velocity, gather
@@ -26,7 +25,7 @@ Acting = tuple[Tables, tuple[Array, Array], Pulls, Histories, Written, Array]
 State = tuple[Array, Array]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Instant:
     """A motion at an instant, and what resists it there.
 
@@ -79,18 +78,9 @@ class Actions:
             time: instant [s], which gives the factors of the loads.
         """
         s, state = self.structure, (self.structure.displacement(y), self.structure.velocity(y, v))
-        strain, gravity, power, loss = _act(self.acting, state, time)
+        energies = _act(self.acting, state, time)
         couple(self.coupled, *state, self.written[0])
-        return Instant(
-            time=time,
-            y=y,
-            v=v,
-            force=s.gathered(self.written[0]),
-            strain=strain,
-            gravity=gravity,
-            load_power=power,
-            loss_power=loss,
-        )
+        return Instant(time, y, v, s.gathered(self.written[0]), *energies)
 
     def damping_matrix(self, y: Array) -> Symmetric:
         """Return the derivative of the damping force in the velocities (size, size) [N s/m, N m s]."""

@@ -27,7 +27,7 @@ import math
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial, chebyshev
 
-from .arrays import Array, inlined, kernel
+from .arrays import Array, inlined
 
 Shares = tuple[float, float, float]
 Bent = tuple[float, float, float, float, float, float]
@@ -70,8 +70,6 @@ def _table() -> Array:
 
 #: Handed to the compiled functions, which reach all of an array by its one address.
 CURL = _table()
-#: At most so many Newton steps to the curvature of a moment.
-STEPS = 50
 #: Two Gauss points of an element, whose end turns a, b make the curvature ((6 xi - 4) a + (6 xi - 2) b) / l.
 ROOT_3 = math.sqrt(3.0)
 
@@ -138,27 +136,3 @@ def bent_element(curl: Array, row: Array, rate: float, first: float, second: flo
     both, apart = rate * (s_2 + s_1), ROOT_3 * rate * (s_2 - s_1)
     energy = 0.5 * row[2] * (u_1 + u_2)
     return energy, unlike - equal, unlike + equal, 2.0 * both - apart, both, 2.0 * both + apart
-
-
-@kernel()
-def curve(curl: Array, rigidity: Array, left: Array, reach: Array, moments: Array) -> None:
-    """Write the curvatures [1/m] of the sections of N nodes (N,) in place of their moments (S, N) [N m].
-
-    Args:
-        curl: CURL, as of `section`.
-        rigidity: of the sections held flat (N,), D [N m^2].
-        left, reach: coefficients of P (N, TERMS) [1] and reach c (N,) of the sections, as of `section`.
-        moments: bending moments (S, N) [N m], overwritten by curvatures [1/m].
-    """
-    for n in range(len(rigidity)):
-        for k in range(len(moments)):
-            moment, last = moments[k, n], math.inf
-            curvature = moment / rigidity[n]
-            # M grows with kappa everywhere: Newton's steps, until they grow no smaller
-            for _ in range(STEPS):
-                parts = section(curl, rigidity[n], left[n], reach[n], curvature)
-                step = (parts[1] - moment) / parts[2]
-                if not abs(step) < last:
-                    break
-                curvature, last = curvature - step, abs(step)
-            moments[k, n] = curvature

@@ -1,23 +1,28 @@
 """How a structure is led along an equilibrium path, what is held and loaded, and Newton's method to it.
 
 The path is followed in one parameter p. On a span p_0 to p_1 the held coordinates go linearly from their
-values at its beginning to those at its end, and so does the load a F, whose share a is p itself unless the
-span says otherwise. The residual is r = f(y) - a F, with f the gradient of the potential. While a scene
-settles, p is the share of gravity and natural strains instead, and nothing else acts.
+values at its beginning to those at its end, and so does the load a F with its share a. The residual is
+r = f(y) - a F, with f the gradient of the potential. While a scene settles, p is the share of gravity and
+natural strains instead, and nothing else acts.
+
+Strips and bodies can move rigidly along x, along y and about the origin. What the ends of strips, springs and
+held coordinates leave free of this is the null space of their rows. As many coordinates more, the first ones
+that the null space moves, are held and make a path determinate. In equilibrium they bear nothing.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import null_space
 
 from .arrays import Array, Flags, Indices
-from .effects import twice
-from .loading import ALWAYS_FULL, factor_of
+from .effects import ALWAYS_FULL, factor_of, twice
+from .errors import InvalidParameter
 from .matrix import Factors, Singular
-from .rigid import loose_coordinates
+from .places import FREE, GROUND
 from .structure import Evaluation, Structure
 
 #: Newton's iterations of one increment; from a tangent predictor a sound increment takes one to four.
@@ -82,8 +87,7 @@ class Control:
     Args:
         structure: what is led, reduced about the centres of its bodies.
         held (H,): coordinates that are prescribed. values (2, H): at the beginning and the end of the span.
-        span: parameter at both. load (K,): factors of the loads that make F, or None. shares: of it at both,
-            by default the parameters.
+        span: parameter at both. load (K,): factors of the loads that make F, or None. shares: of it at both.
         watched: coordinate of the driven turn, whose torque and stiffness are reported, or None.
         settling: whether the parameter is the share of gravity and natural strains.
         props (P,): held coordinates that nothing else determines; in equilibrium they bear nothing.
@@ -96,18 +100,17 @@ class Control:
     load: Array | None = None
     watched: int | None = None
     settling: bool = False
-    shares: tuple[float, float] | None = None
+    shares: tuple[float, float] = (0.0, 1.0)
     props: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def growth(self) -> float:
         """Rate of the load's share in p."""
-        shares = self.span if self.shares is None else self.shares
-        return (shares[1] - shares[0]) / (self.span[1] - self.span[0])
+        return (self.shares[1] - self.shares[0]) / (self.span[1] - self.span[0])
 
     def share(self, parameter: float) -> float:
         """Return the share of the load that acts at p."""
-        return parameter if self.shares is None else self.shares[0] + self.growth * (parameter - self.span[0])
+        return self.shares[0] + self.growth * (parameter - self.span[0])
 
     @cached_property
     def is_held(self) -> Flags:
@@ -170,12 +173,12 @@ class Control:
 
 def spans(
     structure: Structure,
+    body: int | None,
+    rotations: Sequence[float] | None,
+    load: Array | None,
     *,
-    body: int | None = None,
-    rotations: Sequence[float] | None = None,
-    load: Array | None = None,
-    first: bool = False,
-    starts: bool = False,
+    first: bool,
+    starts: bool,
 ) -> list[Control]:
     """Return the spans of a path on which a body is driven through `rotations` [rad], one leg each.
 
@@ -259,3 +262,79 @@ def equilibrate(control: Control, start: Array, parameter: float, counters: Coun
         if not done:
             counters["newton_iterations"] += 1
     return replace(found, y=y, norms=tuple(norms), failure=failure, factors=factors)
+
+
+#: Largest part of a row of unit size that is round-off.
+RIGID = 1e-9
+#: Largest force over EI/L^2, or moment over EI/L, that is none, beside that part of the largest load.
+NONE = 1e-8
+DIRECTIONS = ("in the direction x", "in the direction y", "against turning")
+UNITS = ("N", "N", "N m")
+
+
+class NothingHolds(InvalidParameter):
+    """A load along a rigid motion that nothing resists."""
+
+    def __init__(self, body: str, axis: int, load: float) -> None:
+        expected = f"none, or a clamp or a drive that bears it: nothing holds body {body} {DIRECTIONS[axis]}"
+        super().__init__(f"load on body {body}", f"{load:.4g} {UNITS[axis]}", f"{expected} [{UNITS[axis]}]")
+
+
+def loose_coordinates(structure: Structure, held: Iterable[int]) -> Indices:
+    """Return coordinates of bodies that, held beside the `held` ones, leave no rigid motion free."""
+    first, strips, places = structure.first_body, len(structure.model.strips), structure.points
+    motions = [_motions(structure, k, place) for k, place in enumerate(places, start=strips)]
+    rates = np.vstack([np.zeros((0, 3 * (strips + len(places)))), *motions])
+    free = null_space(np.vstack([*_tied(structure), rates[[at - first for at in held]]]), rcond=RIGID)
+    chosen: list[int] = []
+    for place, row in enumerate(rates, start=first):
+        if np.abs(row @ free).max(initial=0.0) > RIGID:
+            chosen.append(place)
+            free = free @ null_space((row @ free)[None], rcond=RIGID)
+    return np.array(chosen, dtype=np.int64)
+
+
+def _tied(structure: Structure) -> Iterable[Array]:
+    """Yield the rates (K, 3 (G + B)) that ends of strips and springs resist in rigid motions of all parts."""
+    model, strips = structure.model, len(structure.model.strips)
+    ground = strips + len(model.bodies)
+    for (strip, end), there in np.ndenumerate(model.ends):
+        if there != FREE:
+            place, on = model.rest[strip, -end], ground if there == GROUND else strips + int(there)
+            ties = _motions(structure, strip, place) - _motions(structure, on, place)
+            yield ties[: 2 if model.strips[strip].hinges[end] else 3]
+    (roots, rows, _, stiffnesses, _), centres = structure.links, np.vstack([model.centres, np.zeros(2)])
+    for pair, stiffness in zip(rows[roots:] - structure.nodes, stiffnesses[roots:], strict=True):
+        one, other = (_motions(structure, strips + b, centres[b]) for b in pair)
+        yield (one - other)[stiffness > 0.0]
+
+
+def _motions(structure: Structure, part: int, point: Array) -> Array:
+    """Return the rates (3, 3 (G + B)) of a point [over L] and a turn in the rigid motions of its part.
+
+    Parts are the strips, then the bodies, and last the ground, which does not move.
+    """
+    many = len(structure.model.strips) + len(structure.model.bodies)
+    rates, (x, y) = np.zeros((3, 3 * many + 3)), point / structure.length
+    rates[:, 3 * part : 3 * part + 3] = [[1.0, 0.0, -y], [0.0, 1.0, x], [0.0, 0.0, 1.0]]
+    return rates[:, : 3 * many]
+
+
+def require_balance(structure: Structure, props: Indices, residual: Array, load: Array | None) -> None:
+    """Check that coordinates that are held for want of anything else bear no force.
+
+    Args:
+        structure: reduced model.
+        props: these coordinates (P,).
+        residual: forces of the state (size,) [N, N m].
+        load: factors of the loads (K,) [1], or None.
+
+    Raises:
+        NothingHolds: such a coordinate bears a force.
+    """
+    rest = np.zeros(structure.size)
+    largest = 0.0 if load is None else float(np.abs(structure.load_force(rest, load)[0]).max())
+    for k in props:
+        if abs(residual[k]) > NONE * (structure.scale[k] + largest):
+            body, axis = divmod(int(k) - structure.first_body, 3)
+            raise NothingHolds(structure.model.body_names[body], axis, abs(float(residual[k])))

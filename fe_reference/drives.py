@@ -15,9 +15,8 @@ from typing import Annotated
 import numpy as np
 
 from .arrays import Array, Flags
-from .effects import twice
+from .effects import ALWAYS_FULL, factor_of, twice
 from .errors import Checked, History, InvalidParameter, finite, read_history
-from .loading import ALWAYS_FULL, factor_of
 from .mass import RigidBodies
 from .model import Model
 from .structure import Structure

@@ -1,26 +1,148 @@
-"""Motion of a model after its drives are removed, or from the shape at rest."""
+"""Motion of a model after its drives are removed, or from the shape at rest, and how far it is resolved.
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import cache, partial
-from typing import Any
+Errors of elements and of steps go with their squares. A companion with half of the elements, and steps in
+proportion, errs four times as much: the difference is three times the error, or less where errors do not fall
+like that. Elements make a motion too fast and implicit steps too slow: one more companion with the motion's
+own steps tells one from the other, lest they cancel. A mesh of few elements, or one whose companions fail,
+has companions of twice as many.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
+from math import ceil
+from time import perf_counter
+from typing import Annotated, Any
 
 import numpy as np
 
 from .arrays import Array, Flags
-from .companions import with_companions
 from .drives import DrivenRotation, Span, drive_spans
-from .errors import require_kind
+from .errors import (
+    Checked,
+    ConvergenceError,
+    InvalidParameter,
+    choice,
+    count,
+    finite,
+    flag,
+    optional,
+    positive,
+    require_kind,
+)
 from .mass import about_mass_centre, carried_over, couplings
 from .model import Model, require_model
 from .modes import first_frequency
-from .motion import ENERGIES, Samples, Scheme, Trajectory, course, trajectory
-from .refined import limit_of, places_of
-from .run import STEPS_PER_PERIOD, Run
-from .schemes import Explicit, Implicit, critical_step
-from .solution import Stopwatch
+from .motion import Progress, Samples, Scheme, Trajectory, course, trajectory
+from .places import FREE
+from .schemes import RADIUS, Explicit, Implicit, critical_step
+from .solution import Status
 from .statics import settled_state
 from .structure import Structure, structure_of
+
+INTEGRATORS = ("central-difference", "generalised-alpha")
+#: Part of the critical step that an explicit motion takes.
+SAFETY = 0.9
+#: Default of the implicit step: so many in the first period of small motion; strips are fifty times as fast.
+STEPS_PER_PERIOD = 6000
+#: Most steps of one run unless more are allowed, some 25 s with 20 elements. Most numbers kept of a run.
+MOST_STEPS, MOST_NUMBERS = 20_000_000, 200_000_000
+#: Estimated error over the swing that is not remarked on.
+UNRESOLVED = 0.05
+#: Error of a motion that hardly is one [rad, or of strip lengths]: its start alone has it.
+STILL = 1e-6
+#: Fewest elements of a strip in a companion.
+FEWEST = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run(Checked):
+    """What is asked of a motion.
+
+    Attributes:
+        duration: [s].
+        start: rotation at which a body is held until the start [rad]; None: none is held, and under loads
+            without a history the mechanism stands still.
+        body: name of the held body; None: the only one.
+        drive: a rotation that is held or driven in a part of the motion, if any.
+        settled: whether the start is in equilibrium; if not it is the shape at rest, where gravity, natural
+            strains and loads act at once.
+        increments: of the static path to the start.
+        step: time step [s]. Default: for "central-difference" 0.9 times the smaller critical step of the
+            start and of rest; for "generalised-alpha" a 6000th of the first period of small motion about
+            the shape at rest, without gravity and loads. The default is shortened so that whole steps fill
+            the duration.
+        integrator: "central-difference" (explicit) or "generalised-alpha" (implicit).
+        samples: states kept beside the start, at most.
+        aligned: whether any step is shortened so that whole steps fill the time between two samples.
+        most_steps: beyond which a run is refused before it begins.
+        progress: called as progress(done, total) after every sample.
+    """
+
+    duration: Annotated[float, positive, "s"]
+    start: Annotated[float | None, optional, finite, "rad"] = None
+    body: str | None = None
+    drive: DrivenRotation | None = None
+    settled: bool = True
+    increments: Annotated[int, count] = 20
+    step: Annotated[float | None, optional, positive, "s"] = None
+    integrator: Annotated[str, choice, INTEGRATORS] = INTEGRATORS[0]
+    samples: Annotated[int, count] = 1000
+    aligned: bool = False
+    most_steps: Annotated[int, count] = MOST_STEPS
+    progress: Progress | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.drive is not None:
+            require_kind("drive", self.drive, DrivenRotation, "a DrivenRotation or None")
+        if self.start is not None and not self.settled:
+            raise InvalidParameter("settled", self.settled, "True for a start at a held rotation [1]")
+
+    @property
+    def explicit(self) -> bool:
+        """Whether the integrator is the explicit one."""
+        return self.integrator == INTEGRATORS[0]
+
+    def steps(self, longest: float) -> tuple[float, int]:
+        """Return step [s] and number of steps; `longest` stands for a step that is not given."""
+        parts = self.samples if self.aligned else 1
+        steps = parts * max(1, ceil(self.duration / parts / (self.step or longest) * (1.0 - 1e-12)))
+        return self.duration / steps if self.aligned or self.step is None else self.step, steps
+
+    def chunks(self, steps: int) -> list[int]:
+        """Return the numbers of steps between samples: equal ones, the last perhaps shorter."""
+        every = -(-steps // self.samples)
+        whole, rest = divmod(steps, every)
+        return [every] * whole + ([rest] if rest else [])
+
+    def require_affordable(self, model: Model, step: float, steps: int, size: int) -> None:
+        """Check the cost of a motion.
+
+        Args:
+            model: the model that moves.
+            step: time step [s].
+            steps: number of steps.
+            size: number of coordinates.
+
+        Raises:
+            InvalidParameter: too many steps, or too many numbers to keep of so many coordinates.
+        """
+        if steps > self.most_steps:
+            way = "take longer steps"
+            if self.explicit:
+                implicit = max(self.duration * STEPS_PER_PERIOD * first_frequency(model), 1.0)
+                way = f"--integrator generalised-alpha takes about {implicit:.2g}"
+            raise InvalidParameter(
+                "duration",
+                self.duration,
+                f"at most {self.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: {way}; "
+                "or allow more by --most-steps (most_steps) [s]",
+            )
+        samples = min(self.samples, steps)
+        if 2 * samples * size > MOST_NUMBERS:
+            most = MOST_NUMBERS // (2 * size)
+            raise InvalidParameter("samples", samples, f"at most {most} samples of {size} coordinates [1]")
 
 
 def solve_release(pivot: Model, *, start: float | None, duration: float, **options: Any) -> Trajectory:
@@ -51,7 +173,7 @@ def solve_release(pivot: Model, *, start: float | None, duration: float, **optio
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> motion.time.shape
@@ -80,12 +202,11 @@ def solve_motion(
     check : bool, default True
         Compute companion motions of other elements and steps. They estimate `rotation_error` and
         `displacement_error`, and set `resolution` where these are large. They cost about a third of the
-        motion, an implicit one nearly as much as itself, or eight times as much with few elements. None is
-        made with an accuracy.
+        motion, an implicit one nearly as much as itself, or eight times as much with fewer than 8 elements.
     raise_on_failure : bool, default True
         Raise an error for a motion that ends early, or return it with its status.
     asked
-        Duration [s], and the other attributes of ``fe_reference.run.Run``.
+        Duration [s], and the other attributes of ``fe_reference.dynamics.Run``.
 
     Returns
     -------
@@ -99,7 +220,7 @@ def solve_motion(
         inertia in the explicit integrator, a start that is held but not settled.
     ConvergenceError
         Statics does not reach the start. Or, unless `raise_on_failure` is False, the motion blew up, a step
-        had no solution or the accuracy was not reached; it carries the part that was computed.
+        had no solution; it carries the part that was computed.
 
     Notes
     -----
@@ -112,46 +233,65 @@ def solve_motion(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> motion = solve_motion(pivot, start=0.1, duration=1e-4, samples=5, check=False)
     >>> bool(motion.rotation[-1] < 0.1)
     True
     """
     require_model(mechanism)
-    require_kind("check", check, bool, "True or False")
+    mechanism.effects.require_inertia()
     run = Run(**asked)
-    if run.accuracy is not None:
-        return _limit(mechanism, run, run.accuracy).checked(raise_on_failure)
-    motion = _moved(mechanism, run).checked(raise_on_failure)
-    if not check or not run.settled:
+    y, remark = np.zeros(structure_of(mechanism).size), ""
+    if run.settled:
+        y, remark = settled_state(mechanism, run.start, run.body, run.increments, starts=True)
+    samples, settings = _integrate(mechanism, y, run)
+    begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
+    remarks = [f"the way to the start: {remark}"] if remark else []
+    motion = trajectory(samples, begin | settings, remarks).checked(raise_on_failure)
+    if not flag("check", check) or not run.settled:
         return motion
     return checked(mechanism, motion, start=run.start, body=run.body, drive=run.drive)
 
 
-def _limit(model: Model, run: Run, accuracy: float) -> Trajectory:
-    """Return the limit of a motion's meshes at the same instants; its rotations and places are judged."""
-    units = {**dict.fromkeys((*ENERGIES, "bodies", "rates"), 1.0), "shape": structure_of(model).length}
-    turns: dict[str, Callable[[Trajectory], Array]] = {"rotation": lambda found: places_of(found)[..., 2]}
-    judged = ("rotation", "shape")
-    motion = limit_of(model, accuracy, partial(_moved, run=run), units, turns, judged, relative=False)
-    errors = {} if motion.estimate is None else motion.estimate.errors
-    places = errors.get("shape", np.nan) * structure_of(model).length
-    return replace(motion, rotation_error=errors.get("rotation", np.nan), displacement_error=places)
+def _integrate(model: Model, y: Array, run: Run) -> tuple[Samples, dict[str, float | str]]:
+    """Integrate from rest at y; return the samples and the settings."""
+    own = structure_of(model)
+
+    @cache
+    def scheme_of(led: tuple[int, ...]) -> Explicit | Implicit:
+        about = about_mass_centre(own, led)
+        return Explicit(*about) if run.explicit else Implicit(*about)
+
+    home = scheme_of(()).structure
+    choices: dict[str, float] = {"spectral_radius": RADIUS}
+    longest = run.duration
+    if run.explicit:
+        still = Span(begin=0.0, end=0.0, rates={}, begins=False)
+        parts = {tuple(each.rates): each for each in (still, *drive_spans(model, run.drive, run.duration))}
+        limit = min(
+            _critical(scheme_of(span.led), span.held(scheme_of(span.led).structure), own, state)
+            for span in parts.values()
+            for state in (y, np.zeros_like(y))
+        )
+        choices, longest = {"critical_step_s": limit, "safety": SAFETY}, SAFETY * limit
+    elif run.step is None:
+        longest = 1.0 / (STEPS_PER_PERIOD * first_frequency(model))
+    h, steps = run.steps(longest)
+    run.require_affordable(model, h, steps, y.size)
+    spans = drive_spans(model, run.drive, steps * h)
+    began = perf_counter()
+    rest = carried_over(own, y, home), np.zeros_like(y)
+    samples = course(scheme_of, spans, *rest, h, run.chunks(steps), run.progress)
+    samples.seconds = perf_counter() - began
+    settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
+    return samples, settings | choices
 
 
-def _moved(model: Model, run: Run) -> Trajectory:
-    """Return the motion of a model, however it ended."""
-    model.effects.require_inertia()
-    watch = Stopwatch()
-    y, remark = np.zeros(structure_of(model).size), ""
-    if run.settled:
-        y, remark = settled_state(model, run.start, run.body, run.increments, starts=True)
-    watch.stop("start")
-    samples, settings = _integrate(model, y, run, watch)
-    begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
-    remarks = [f"the way to the start: {remark}"] if remark else []
-    return trajectory(samples, begin | settings, remarks, watch)
+def _critical(scheme: Scheme, held: Flags, own: Structure, y: Array) -> float:
+    """Return the critical step [s] at coordinates y of a model's `own` structure, with what is held."""
+    at, bodies = scheme.structure, scheme.bodies
+    return critical_step(at, bodies, carried_over(own, y, at), couplings(at, bodies, held))
 
 
 def checked(
@@ -162,53 +302,77 @@ def checked(
     body: str | None = None,
     drive: DrivenRotation | None = None,
 ) -> Trajectory:
-    """Return a motion with its estimated errors [rad, 1] and `resolution`, by companions of fewer elements.
+    """Return a motion with its estimated errors [rad, m] and `resolution`, by companions of other elements.
+
+    A motion that stopped and one of a few instants are returned as they are.
 
     Args:
         model, body, drive: of the motion, which began in equilibrium.
         start: rotation at the start [rad]; None: no rotation is driven.
     """
-    names = ("integrator", "spectral_radius")
-    settings: dict[str, Any] = {name: motion.settings[name] for name in names if name in motion.settings}
-    settings |= {"start": start, "body": body, "drive": drive, "check": False, "raise_on_failure": False}
-    return with_companions(model, motion, partial(solve_motion, **settings))
+    if motion.status is not Status.CONVERGED or len(motion.time) < 3:
+        return motion
+    asked = {"start": start, "body": body, "drive": drive, "integrator": motion.settings["integrator"]}
+    remark = ""
+    for elements in (model.elements // 2, 2 * model.elements):
+        if elements >= FEWEST:
+            try:
+                return _compared(model, motion, replace(model, elements=elements), asked)
+            except (ConvergenceError, InvalidParameter) as refusal:
+                remark = f"error not estimated: a companion of other elements: {refusal}"
+    return replace(motion, resolution="; ".join(each for each in (motion.resolution, remark) if each))
 
 
-def _integrate(model: Model, y: Array, run: Run, watch: Stopwatch) -> tuple[Samples, dict[str, float | str]]:
-    """Integrate from rest at y; return the samples and the settings."""
-    own = structure_of(model)
-
-    @cache
-    def scheme_of(led: tuple[int, ...]) -> Explicit | Implicit:
-        about = about_mass_centre(own, led)
-        return Explicit(*about) if run.explicit else Implicit(*about, run.spectral_radius)
-
-    home = scheme_of(()).structure
-    choices: dict[str, float] = {"spectral_radius": run.spectral_radius}
-    longest = run.duration
-    if run.explicit:
-        rest = Span(begin=0.0, end=0.0, rates={}, begins=False)
-        parts = {tuple(each.rates): each for each in (rest, *drive_spans(model, run.drive, run.duration))}
-        limit = min(
-            _critical(scheme_of(span.led), span.held(scheme_of(span.led).structure), own, state)
-            for span in parts.values()
-            for state in (y, np.zeros_like(y))
-        )
-        choices, longest = {"critical_step_s": limit, "safety": run.safety}, run.safety * limit
-    elif run.step is None:
-        longest = 1.0 / (STEPS_PER_PERIOD * first_frequency(model))
-    h, steps = run.steps(longest)
-    run.require_affordable(model, h, steps, y.size)
-    spans = drive_spans(model, run.drive, steps * h)
-    watch.stop("compile")
-    began = carried_over(own, y, home), np.zeros_like(y)
-    samples = course(scheme_of, spans, *began, h, run.chunks(steps), run.progress)
-    watch.stop("solve")
-    settings: dict[str, float | str] = {"integrator": run.integrator, "duration_s": run.duration, "step_s": h}
-    return samples, settings | choices
+def _compared(model: Model, motion: Trajectory, mesh: Model, asked: dict[str, Any]) -> Trajectory:
+    """Return the motion with its errors, by the differences to companions of a mesh, or raise a refusal."""
+    ratio, spacing = model.elements / mesh.elements, float(motion.time[1])
+    own = float(motion.settings["step_s"])
+    stride = max(1, ceil(ratio * own / spacing * (1.0 - 1e-9)))
+    samples = (len(motion.time) - 2) // stride  # the last may be shorter
+    asked = asked | {"duration": samples * stride * spacing, "samples": samples, "aligned": True}
+    # explicit companions take the steps that are stable for them
+    steps = (None,) if "critical_step_s" in motion.settings else (own, ratio * own)
+    runs = [solve_motion(mesh, check=False, step=step, **asked) for step in steps]
+    found = [moves(model, motion, stride), *(moves(mesh, run) for run in runs)]
+    part = max(1.0, 1.0 / (1.0 - ratio**2)) if ratio < 1.0 else 1.0
+    turns, places = (
+        part
+        * np.sum([np.abs(one[: samples + 1] - two[: samples + 1]) for one, two in pairwise(each)], axis=0)
+        for each in zip(*found, strict=True)
+    )
+    places = np.linalg.norm(places, axis=2)
+    remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]
+    return replace(
+        motion,
+        rotation_error=float(turns.max(initial=0.0)),
+        displacement_error=float(places.max(initial=0.0)),
+        resolution="; ".join(each for each in remarks if each),
+    )
 
 
-def _critical(scheme: Scheme, held: Flags, own: Structure, y: Array) -> float:
-    """Return the critical step [s] at coordinates y of a model's `own` structure, with what is held."""
-    at, bodies = scheme.structure, scheme.bodies
-    return critical_step(at, bodies, carried_over(own, y, at), couplings(at, bodies, held))
+def moves(model: Model, motion: Trajectory, stride: int = 1) -> tuple[Array, Array]:
+    """Return rotations of all bodies (T, B) [rad], and places of them and of free ends (T, P, 2) [m]."""
+    poses = np.array([*motion.bodies.values()]).reshape(-1, len(motion.time), 3)[:, ::stride].swapaxes(0, 1)
+    free = np.flatnonzero(model.ends[:, 1] == FREE)
+    return poses[..., 2], np.concatenate((poses[..., :2], motion.shape[::stride, free, -1]), axis=1)
+
+
+def _remark(model: Model, motion: Trajectory, turns: Array, places: Array, stride: int) -> str:
+    """Return what is to be said of the estimated errors (T, B) [rad] and (T, P) [m], or nothing.
+
+    They are held against the swing: half the range of the rotation, or of the nodes over the longest strip,
+    whichever is more.
+    """
+    length = float(model.lengths.max())
+    travel = float(np.ptp(motion.shape, axis=0).max()) / length
+    turned = np.ptp(moves(model, motion)[0], axis=0)
+    swing = 0.5 * max(float(turned.max(initial=0.0)), travel)
+    apart = np.hstack((turns, places / length)).max(axis=1, initial=0.0)
+    much = np.flatnonzero(apart > max(UNRESOLVED * swing, STILL))
+    if not much.size:
+        return ""
+    return (
+        f"rotations are uncertain by up to {np.degrees(turns.max(initial=0.0)):.3g} deg and displacements by "
+        f"up to {places.max(initial=0.0):.3g} m, by more than {UNRESOLVED:.0%} of the swing from "
+        f"{motion.time[stride * much[0]]:.3g} s on: the motion is not resolved; take more elements"
+    )

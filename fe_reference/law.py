@@ -49,90 +49,60 @@ FORCES, TANGENT, MATERIAL = 0, 1, 2
 
 
 @inlined()
-def _turns(given: Given, u: Array, ends: Array) -> None:
-    """Write how far both ends are turned from the chord, and the second from the first [rad].
-
-    In `ends` they stand where the moments and the largest turn come.
-    """
-    _, table, nodes, _ = given
-    for e in range(len(nodes)):
-        row, f, i = table[e], ends[e], nodes[e]
-        j = i + 1
-        x, y = row[0] + (u[j, 0] - u[i, 0]), row[1] + (u[j, 1] - u[i, 1])
-        turn = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y)
-        first, second = u[i, 2] - turn, u[j, 2] - turn
-        # less whole turns: nodes and chords may turn by any amount
-        first -= 2.0 * math.pi * math.floor(first / (2.0 * math.pi) + 0.5)
-        second -= 2.0 * math.pi * math.floor(second / (2.0 * math.pi) + 0.5)
-        f[2], f[3], f[4] = first, second, u[j, 2] - u[i, 2]
+def _turned(turn: float) -> float:
+    """Return a turn [rad] less whole turns: nodes and chords may turn by any amount."""
+    return turn - 2.0 * math.pi * math.floor(turn / (2.0 * math.pi) + 0.5)
 
 
 @inlined()
-def _moments(given: Given, share: float, asked: int, ends: Array, matrices: Array) -> float:
-    """Write the moments for the turns, and the largest of these; return the energy of bending.
+def _corotational(
+    curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array
+) -> Energies:
+    """Write the ends (5,) of a corotational element; return bending, axial and shear energy.
 
-    Also the slopes of the moments in the turns, where they stand in the tangents, if it is asked for.
+    Also the tangent (4, 4) in `moved`, if it is asked for.
     """
-    (_, table, _, curl), energy = given, 0.0
-    for e in range(len(table)):
-        row, f, bend = table[e], ends[e], share * table[e, 7]
-        rate, natural, first, second, apart = 1.0 / row[2], row[4] * bend, f[2], f[3], f[4]
-        if row[8] == row[4]:
-            stiff = rate * row[4]
-            moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
-            bending = 0.5 * (moment_1 * first + moment_2 * second)
-            k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
-        elif asked == FORCES:  # without the slopes
-            bending, moment_1, moment_2, _, _, _ = bent_element(curl, row, rate, first, second)
-            k_11, k_12, k_22 = 0.0, 0.0, 0.0
-        else:
-            bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first, second)
-        f[2], f[3] = moment_1 + natural, moment_2 - natural
-        # half the turn between the ends is more than the larger only where a node has gained a whole turn
-        f[4] = max(abs(first), abs(second), 0.5 * abs(apart))
-        energy += bending + natural * (0.5 * bend * row[2] - apart)
-        if asked != FORCES:
-            matrices[e, 2, 2], matrices[e, 2, 5], matrices[e, 5, 5] = k_11, k_12, k_22
-    return energy
+    step_x, step_y, turn_1, turn_2 = moved
+    x, y = row[0] + step_x, row[1] + step_y
+    length, rate, bend = math.sqrt(x * x + y * y), 1.0 / row[2], share * row[7]
+    turn, natural = math.atan2(row[0] * y - row[1] * x, row[0] * x + row[1] * y), row[4] * bend
+    first, second, apart = _turned(turn_1 - turn), _turned(turn_2 - turn), turn_2 - turn_1
+    if row[8] == row[4]:
+        stiff = rate * row[4]
+        moment_1, moment_2 = stiff * (4.0 * first + 2.0 * second), stiff * (2.0 * first + 4.0 * second)
+        bending = 0.5 * (moment_1 * first + moment_2 * second)
+        k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
+    elif asked == FORCES:  # without the slopes
+        bending, moment_1, moment_2, _, _, _ = bent_element(curl, row, rate, first, second)
+        k_11, k_12, k_22 = 0.0, 0.0, 0.0
+    else:
+        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first, second)
+    bending += natural * (0.5 * bend * row[2] - apart)
+    # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
+    strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + row[2]) / row[2]
+    strain -= share * row[6]
+    axial, shear = row[3] * strain, (moment_1 + moment_2) / (length * length)
+    stretching = 0.5 * axial * row[2] * strain
+    axial /= length
+    f[0], f[1] = axial * x + shear * y, axial * y - shear * x
+    # half the turn between the ends is more than the larger only where a node has gained a whole turn
+    f[2], f[3], f[4] = moment_1 + natural, moment_2 - natural, max(abs(first), abs(second), 0.5 * abs(apart))
+    if asked != FORCES:
+        c, s, along = x / length, y / length, row[3] / row[2]
+        turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
+        if asked == TANGENT:
+            turning, mixed = turning + axial, shear
+        h[0, 0] = along * c * c + turning * s * s - 2.0 * mixed * c * s
+        h[1, 1] = along * s * s + turning * c * c + 2.0 * mixed * c * s
+        h[0, 1] = (along - turning) * c * s + mixed * (c * c - s * s)
+        lever_1, lever_2 = (k_11 + k_12) / length, (k_12 + k_22) / length
+        h[0, 2], h[0, 3] = lever_1 * s, lever_2 * s
+        h[1, 2], h[1, 3] = -lever_1 * c, -lever_2 * c
+        h[2, 2], h[2, 3], h[3, 3] = k_11, k_12, k_22
+    return bending, stretching, 0.0
 
 
 @inlined()
-def _forces(given: Given, share: float, asked: int, u: Array, written: Written) -> float:
-    """Write the force at the second node that balances both moments; return the energy of stretching.
-
-    Also the tangent, if it is asked for.
-    """
-    (_, table, first, _), (_, ends, matrices, h), energy = given, written, 0.0
-    for e in range(len(first)):
-        row, f, i = table[e], ends[e], first[e]
-        step_x, step_y = u[i + 1, 0] - u[i, 0], u[i + 1, 1] - u[i, 1]
-        x, y = row[0] + step_x, row[1] + step_y
-        length = math.sqrt(x * x + y * y)
-        # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
-        strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + row[2]) / row[2]
-        strain -= share * row[6]
-        axial, shear = row[3] * strain, (f[2] + f[3]) / (length * length)
-        energy += 0.5 * axial * row[2] * strain
-        axial /= length
-        f[0], f[1] = axial * x + shear * y, axial * y - shear * x
-        if asked != FORCES:
-            k_11, k_12, k_22 = matrices[e, 2, 2], matrices[e, 2, 5], matrices[e, 5, 5]
-            c, s, stretching = x / length, y / length, row[3] / row[2]
-            turning, mixed = (k_11 + 2.0 * k_12 + k_22) / (length * length), 0.0
-            if asked == TANGENT:
-                turning, mixed = turning + axial, shear
-            h[0, 0] = stretching * c * c + turning * s * s - 2.0 * mixed * c * s
-            h[1, 1] = stretching * s * s + turning * c * c + 2.0 * mixed * c * s
-            h[0, 1] = (stretching - turning) * c * s + mixed * (c * c - s * s)
-            lever_1, lever_2 = (k_11 + k_12) / length, (k_12 + k_22) / length
-            h[0, 2], h[0, 3] = lever_1 * s, lever_2 * s
-            h[1, 2], h[1, 3] = -lever_1 * c, -lever_2 * c
-            h[2, 2], h[2, 3], h[3, 3] = k_11, k_12, k_22
-            _spread(h, matrices[e])
-    return energy
-
-
-@kernel()
 def _reissner(
     curl: Array, row: Array, share: float, moved: Moved, asked: int, f: Array, h: Array
 ) -> Energies:
@@ -177,22 +147,6 @@ def _reissner(
 
 
 @inlined()
-def _sheared(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
-    """Write ends and tangents of all shear-deformable elements; return their energies."""
-    (_, table, first, curl), (_, ends, matrices, h) = given, written
-    bending, axial, sliding = 0.0, 0.0, 0.0
-    for e in range(len(first)):
-        i, f = first[e], ends[e]
-        j = i + 1
-        moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
-        parts = _reissner(curl, table[e], share, moved, asked, f, h)
-        bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
-        if asked != FORCES:
-            _spread(h, matrices[e])
-    return bending, axial, sliding
-
-
-@inlined()
 def elements(given: Given, share: float, asked: int, u: Array, written: Written) -> Energies:
     """Evaluate all elements at once.
 
@@ -208,25 +162,28 @@ def elements(given: Given, share: float, asked: int, u: Array, written: Written)
     Returns:
         Bending, axial and shear energy [J].
     """
-    (shear, _, first, _), (force, ends, matrices, _) = given, written
-    if shear:
-        energies = _sheared(given, share, asked, u, written)
-    else:  # in three passes: what takes long in an element waits for nothing of the one before
-        _turns(given, u, ends)
-        bending = _moments(given, share, asked, ends, matrices)
-        energies = (bending, _forces(given, share, asked, u, written), 0.0)
+    (shear, table, first, curl), (force, ends, matrices, h) = given, written
+    bending, axial, sliding = 0.0, 0.0, 0.0
     for i in range(len(force)):
         force[i, 0] = force[i, 1] = force[i, 2] = 0.0
     for e in range(len(first)):
         i, f = first[e], ends[e]
         j = i + 1
+        moved = (u[j, 0] - u[i, 0], u[j, 1] - u[i, 1], u[i, 2], u[j, 2])
+        if shear:
+            parts = _reissner(curl, table[e], share, moved, asked, f, h)
+        else:
+            parts = _corotational(curl, table[e], share, moved, asked, f, h)
+        bending, axial, sliding = bending + parts[0], axial + parts[1], sliding + parts[2]
+        if asked != FORCES:
+            _spread(h, matrices[e])
         force[i, 0] -= f[0]
         force[i, 1] -= f[1]
         force[i, 2] += f[2]
         force[j, 0] += f[0]
         force[j, 1] += f[1]
         force[j, 2] += f[3]
-    return energies
+    return bending, axial, sliding
 
 
 @kernel()

@@ -32,8 +32,6 @@ from .places import swept, turned
 from .structure import Structure
 
 MASSES = ("consistent", "lumped")
-#: Integrals of the products of the slopes of the four cubics, times 30 l.
-SLOPES = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]], dtype=float)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -71,10 +69,16 @@ def lumped_elements(structure: Structure) -> Array:
     e, effects = structure.elements, structure.model.effects
     if "strip_inertia" not in effects:
         return np.zeros((6, len(e.length)))
-    half = 0.5 * e.linear_density * e.length
-    physical = structure.shear or "section_rotary_inertia" in effects
-    rotary = 0.5 * e.rotary_density * e.length if physical else e.linear_density * e.length**3 / 78.0
+    half, rotary = 0.5 * e.linear_density * e.length, 0.5 * _rotary(structure) * e.length
+    if not rotary.any():
+        rotary = e.linear_density * e.length**3 / 78.0
     return np.stack([half, half, rotary, half, half, rotary])
+
+
+def _rotary(structure: Structure) -> Array:
+    """Return the rotary inertia of the sections per length (E,) [kg m], zero where it is neglected."""
+    named = structure.shear or "section_rotary_inertia" in structure.model.effects
+    return named * structure.elements.rotary_density
 
 
 def lumped_nodes(structure: Structure) -> Array:
@@ -189,10 +193,8 @@ def mass_matrix(structure: Structure, y: Array, kind: str) -> Symmetric:
     "lumped"."""
     if kind == "lumped" or "strip_inertia" not in structure.model.effects:
         masses = np.eye(6)[:, :, None] * lumped_elements(structure)
-    elif structure.shear:
-        masses = _linear_elements(structure)
     else:
-        masses = _cubic_elements(structure, y)
+        masses = _consistent_elements(structure, y)
     blocks = np.pad(masses, ((0, 2), (0, 2), (0, 0))).transpose(2, 0, 1)
     whole = structure.reduced_matrix(blocks, structure.displacement(y))
     for k, (mass, inertia) in enumerate(_own_inertia(structure)):
@@ -208,34 +210,26 @@ def _block(mass: float, arm: tuple[float, float], inertia: float) -> Array:
     return np.array([[mass, 0.0, -y], [0.0, mass, x], [-y, x, inertia]])
 
 
-def _linear_elements(structure: Structure) -> Array:
-    """Return consistent masses (6, 6, E) of linear u_x, u_y and phi."""
-    e = structure.elements
-    line = np.stack([e.linear_density, e.linear_density, e.rotary_density]) * e.length / 6.0
-    blocks = np.array([[2.0, 1.0], [1.0, 2.0]])
-    masses: Array = np.einsum("ab,ie,ij->aibje", blocks, line, np.eye(3)).reshape(6, 6, -1)
-    return masses
-
-
-def _cubic_elements(structure: Structure, y: Array) -> Array:
-    """Return consistent masses (6, 6, E) of linear stretching and cubic bending in the frame of the chord."""
-    e = structure.elements
+def _consistent_elements(structure: Structure, y: Array) -> Array:
+    """Return consistent masses (6, 6, E) of linear stretching and, in the frame of the chord, cubic bending;
+    of shear-deformable elements those of linear fields."""
+    e, (places, weights) = structure.elements, np.polynomial.legendre.leggauss(4)
+    x, l_0, one = 0.5 * (places[:, None] + 1.0), e.length, np.ones_like(e.length)
+    line = np.stack([(1.0 - x) * one, x * one])
+    fields = np.zeros((3, 6, len(x), len(l_0)))  # along, across and turn
+    fields[0, [0, 3]] = line
+    if structure.shear:
+        fields[1, [1, 4]] = fields[2, [2, 5]] = line
+    else:
+        cubics = (1.0 - 3.0 * x**2 + 2.0 * x**3) * one, (x - 2.0 * x**2 + x**3) * l_0
+        fields[1, [1, 2, 4, 5]] = *cubics, (3.0 * x**2 - 2.0 * x**3) * one, (x**3 - x**2) * l_0
+        slopes = 6.0 * (x**2 - x) / l_0, (1.0 - 4.0 * x + 3.0 * x**2) * one
+        fields[2, [1, 2, 4, 5]] = *slopes, 6.0 * (x - x**2) / l_0, (3.0 * x**2 - 2.0 * x) * one
+    density = np.stack([e.linear_density, e.linear_density, _rotary(structure)]) * 0.5 * l_0
+    local = np.einsum("kiqe,kjqe,ke,q->ije", fields, fields, density, weights)
     nodes = structure.displacement(y)[structure.basis.mesh.t, :2]
     c, s = (chord := e.chord + (nodes[1] - nodes[0]).T) / np.hypot(*chord)
-    one, zero = np.ones_like(c), np.zeros_like(c)
-    along, across = np.array([0, 3]), np.array([1, 2, 4, 5])
-    local = np.zeros((6, 6, len(c)))
-    local[np.ix_(along, along)] = np.array([[140.0, 70.0], [70.0, 140.0]])[..., None]
-    numbers = np.array(
-        [[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]], dtype=float
-    )
-    lever = np.stack([one, e.length, one, e.length])
-    local[np.ix_(across, across)] = numbers[..., None] * lever[:, None] * lever[None, :]
-    if "section_rotary_inertia" in structure.model.effects:
-        ratio = 14.0 * e.rotary_density / (e.linear_density * e.length**2)  # 420 / 30, in units of mu l / 420
-        local[np.ix_(across, across)] += ratio * SLOPES[..., None] * lever[:, None] * lever[None, :]
-    frame = np.array([[c, s, zero], [-s, c, zero], [zero, zero, one]])
-    turn = np.zeros((6, 6, len(c)))
-    turn[:3, :3] = turn[3:, 3:] = frame
-    masses: Array = np.einsum("kie,kle,lje->ije", turn, local, turn) * e.linear_density * e.length / 420.0
+    turn = np.zeros_like(local)
+    turn[:3, :3] = turn[3:, 3:] = [[c, s, 0.0 * c], [-s, c, 0.0 * c], [0.0 * c, 0.0 * c, one]]
+    masses: Array = np.einsum("kie,kle,lje->ije", turn, local, turn)
     return masses

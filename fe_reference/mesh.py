@@ -16,7 +16,7 @@ from .bending import TERMS
 from .effects import CURL, PreStrain, RootCompliance
 from .model import Model
 from .places import FREE
-from .plate import left_by_clamps, left_in_elements
+from .plate import left_in_elements
 
 #: One-point rule: what the shear-deformable element is free of locking by.
 MIDPOINT = (np.array([[0.5]]), np.array([1.0]))
@@ -87,23 +87,6 @@ def strip_basis(model: Model) -> Basis:
     return Basis(mesh, ElementVector(ElementLineP1(), 3), quadrature=MIDPOINT)
 
 
-def nodal_terms(model: Model) -> Array:
-    """Return the factors by which clamps reduce the curl of sections at the nodes (G, P, TERMS) [1], as in
-    `bending`."""
-    if "clamped_width" in model.effects:
-        return np.array([left_by_clamps(*_clamped(model, k)) for k in range(len(model.strips))])
-    rows = np.zeros((*model.arcs.shape, TERMS))
-    rows[..., 0] = [[strip.poisson_ratio**2] for strip in model.strips]
-    return rows
-
-
-def _clamped(model: Model, k: int) -> tuple[float, float, Array, bool]:
-    """Return width over length and Poisson's ratio of a strip, the parts of its length at the nodes, and
-    whether it flattens."""
-    strip, length, flattens = model.strips[k], float(model.lengths[k]), "anticlastic" in model.effects
-    return (strip.width or 0.0) / length, strip.poisson_ratio, model.arcs[k] / length, flattens
-
-
 def _plate(model: Model, k: int) -> Array:
     """Return what the sections of a strip curl in its elements (E, 2 + 2 TERMS)."""
     strip, rows = model.strips[k], np.zeros((model.elements, 2 + 2 * TERMS))
@@ -112,7 +95,9 @@ def _plate(model: Model, k: int) -> Array:
     nu = strip.poisson_ratio
     rows[:, [0, 2, 2 + TERMS]] = nu**2
     if "clamped_width" in model.effects:
-        left = left_in_elements(*_clamped(model, k), 1 if model.element == "reissner" else 2)
+        ends, flattens = model.arcs[k] / model.lengths[k], "anticlastic" in model.effects
+        ratio, points = float(strip.width / model.lengths[k]), 1 if model.element == "reissner" else 2
+        left = left_in_elements(ratio, nu, ends, flattens, points)
         rows[:, 2:] = np.broadcast_to(left, (model.elements, 2, TERMS)).reshape(model.elements, -1)
     if "anticlastic" in model.effects:
         rows[:, 1] = np.sqrt(3.0 * (1.0 - nu**2)) * strip.width**2 / strip.thickness

@@ -8,6 +8,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import eigsh, splu
 
 from .arrays import Array, Flags
+from .control import NothingHolds, loose_coordinates
 from .effects import DEFAULT_EFFECTS, Effects
 from .errors import ConvergenceError, InvalidParameter, choice
 from .errors import count as at_least_one
@@ -16,7 +17,6 @@ from .matrix import Symmetric
 from .model import Model, require_model
 from .places import GROUND
 from .refined import Quantities, missed, refine
-from .rigid import NothingHolds, loose_coordinates
 from .solution import ErrorEstimate
 from .statics import settled_state
 from .structure import Structure, structure_of
@@ -116,7 +116,7 @@ def natural_frequencies(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> print(f"{natural_frequencies(pivot, count=1).frequency[0]:.2f} Hz")
     11.55 Hz
@@ -138,9 +138,19 @@ def natural_frequencies(
         except NothingHolds:  # under the loads in full
             y, _ = settled_state(model, rotation, body, increments, starts=True)
             time = 0.0
-        modes = _modes(structure, y, _held(model, body, held), kind, count, structure.loads.factors(time))
-        count = len(modes.frequency)  # of finer meshes as many as of the first
-        return replace(modes, rotation=np.nan if rotation is None else float(rotation), held=held)
+        tangent = structure.evaluate(y, load=structure.loads.factors(time)).tangent
+        values, full = _lowest(structure, y, tangent, ~_held(model, body, held), kind, count)
+        count = len(values)  # of finer meshes as many as of the first
+        moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
+        return Modes(
+            rotation=np.nan if rotation is None else float(rotation),
+            held=held,
+            mass=kind,
+            frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
+            shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
+            body_shapes=structure.bodies(full).reshape(len(full), -1),
+            state=y,
+        )
 
     if accuracy is None:
         return solve(pivot)
@@ -164,22 +174,6 @@ def first_frequency(model: Model) -> float:
     if not (found > 0.0).any():
         raise InvalidParameter("step", None, "a step: the model can move freely and has no first period [s]")
     return float(found[found > 0.0][0])
-
-
-def _modes(structure: Structure, y: Array, held: Flags, kind: str, count: int, load: Array | None) -> Modes:
-    """Return the modes about a state whose coordinates are free but for those that are `held` (size,)."""
-    tangent = structure.evaluate(y, load=load).tangent
-    values, full = _lowest(structure, y, tangent, ~held, kind, count)
-    moves = np.array([structure.velocity(y, mode)[: structure.nodes, :2] for mode in full])
-    return Modes(
-        rotation=np.nan,
-        held=False,
-        mass=kind,
-        frequency=np.sign(values) * np.sqrt(np.abs(values)) / (2.0 * np.pi),
-        shapes=moves.reshape(len(full), structure.strips, structure.stations, 2),
-        body_shapes=structure.bodies(full).reshape(len(full), -1),
-        state=y,
-    )
 
 
 def _frequencies(modes: Modes) -> Quantities:

@@ -12,7 +12,7 @@ from .actions import Actions, Instant
 from .arrays import Array, Flags
 from .drives import Piece, Span
 from .mass import RigidBodies, carried_over, couplings
-from .solution import Answer, ErrorEstimate, Status, Stopwatch
+from .solution import Answer, Status
 from .structure import Structure, structure_of
 
 Progress = Callable[[int, int], None]
@@ -107,6 +107,7 @@ class Samples:
         books: work of loads and drives, and what dampers took, until now [J]. content: sums of a.M a and
             v.M v over implicit steps.
         still: whether it starts at rest in equilibrium. stake: largest energy at stake so far [J].
+        seconds: that the steps took [s].
     """
 
     home: Scheme
@@ -122,6 +123,7 @@ class Samples:
     content: Array = field(default_factory=lambda: np.zeros(2))
     still: bool = False
     stake: float = 0.0
+    seconds: float = 0.0
 
     @property
     def floor(self) -> float:
@@ -226,18 +228,15 @@ class Trajectory(Answer):
         work, dissipated (T,): by loads and dampers since the start [J].
         shape (T, G, P, 2): positions of the nodes [m].
         states (T, size): reduced coordinates, for `section_forces`.
-        effects: names of the effects of the scene.
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.
-        seconds: by part (`Stopwatch`), "start" the static state that is released.
+        seconds: "solve", of the steps alone [s].
         starts_still: whether it starts at rest in equilibrium, to round-off.
         resolution: empty, or what elements and steps leave unresolved.
         rotation_error, displacement_error: estimated errors of the rotations of all bodies [rad] and of the
-            places of all bodies and free ends [m], by companions with fewer elements and longer steps, or by
-            the meshes of an accuracy; nan without.
-        estimate: of the error, where an accuracy was asked for: then all but `states` are limits of meshes,
-            at the nodes of the coarsest.
+            places of all bodies and free ends [m], by companions with fewer elements and longer steps; nan
+            without.
 
     Clamps and attachments are eliminated exactly, not enforced: there are no residuals of constraints.
     """
@@ -254,7 +253,6 @@ class Trajectory(Answer):
     dissipated: Array
     shape: Array
     states: Array
-    effects: tuple[str, ...]
     counters: Mapping[str, int]
     settings: Mapping[str, float | str]
     history: tuple[tuple[float, ...], ...]
@@ -263,7 +261,6 @@ class Trajectory(Answer):
     resolution: str = ""
     rotation_error: float = math.nan
     displacement_error: float = math.nan
-    estimate: ErrorEstimate | None = None
 
     @property
     def reached(self) -> float:
@@ -293,14 +290,11 @@ class Trajectory(Answer):
         }
 
 
-def trajectory(
-    motion: Samples, settings: Mapping[str, float | str], remarks: list[str], watch: Stopwatch
-) -> Trajectory:
+def trajectory(motion: Samples, settings: Mapping[str, float | str], remarks: list[str]) -> Trajectory:
     """Return the motion of all bodies from samples in the reduced coordinates [m, rad].
 
     Args:
         settings: of the integrator, by names with units. remarks: on the start.
-        watch: seconds by part so far.
     """
     model = motion.home.structure.model
     own, states = structure_of(model), np.array(motion.y)
@@ -317,11 +311,10 @@ def trajectory(
         **energies,
         shape=model.rest + moved.reshape(-1, *model.rest.shape),
         states=states,
-        effects=model.effects.names,
         counters=dict(motion.counters),
         history=tuple(motion.history),
         settings=settings,
-        seconds=watch.stop("recover"),
+        seconds={"solve": motion.seconds},
         starts_still=motion.still,
         resolution="; ".join([*motion.home.remarks(motion, float(settings["step_s"])), *remarks]),
     )

@@ -15,6 +15,7 @@ from the third increment on, so that one or two iterations are left of an increm
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from time import perf_counter
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -22,11 +23,9 @@ from scipy.interpolate import CubicHermiteSpline
 
 from .arrays import Array
 from .control import LAST, Control, State, equilibrate
-from .critical import critical_point, limit_point, tipping
 from .errors import InvalidParameter
 from .matrix import GRAIN, Singular
-from .response import respond
-from .solution import CriticalPoint
+from .response import CriticalPoint, critical_point, limit_point, respond, tipping
 
 Progress = Callable[[int, int], None]
 #: What is counted on a path.
@@ -80,6 +79,7 @@ class Path:
         last: the last good state of a path that stopped, at its load factor [1].
         critical: the critical points that were passed.
         message: why the path stopped ("" if it did not).
+        seconds: that following it took [s].
     """
 
     control: Control
@@ -88,6 +88,7 @@ class Path:
     failures: list[tuple[float, ...]] = field(default_factory=list)
     critical: list[CriticalPoint] = field(default_factory=list)
     message: str = ""
+    seconds: float = 0.0
     last: State = field(init=False)
 
     def begin(self, control: Control, y: Array | None = None) -> None:
@@ -123,7 +124,7 @@ class Path:
         control, y = self.control, None
         if control.structure.constant_words:
             still = replace(control, values=np.stack([control.values[0]] * 2), load=None)
-            self.begin(replace(still, span=(0.0, 1.0), shares=None, settling=True))
+            self.begin(replace(still, span=(0.0, 1.0), settling=True))
             if all(self.advance(k / increments) for k in range(1, increments + 1)):
                 y = self.states[-1].y
             self.counters["settling_increments"] = self.counters.pop("increments", 0)
@@ -167,7 +168,11 @@ class Path:
         self.failures.append(outcome.norms)
         if depth >= HALVINGS and abs(step) <= SMALLEST:
             self.last = state
-            self.message = self._stopped(failure, state.parameter, target, depth, outcome)
+            self.message = (
+                f"{failure} between {self.control.describe(state.parameter)} and "
+                f"{self.control.describe(target)} after {depth} halvings of the increment; "
+                f"last residual {outcome.norms[-1]:.3g}"
+            )
             return None
         self.counters["halvings"] += 1
         middle = self._reach(state, 0.5 * (state.parameter + target), depth + 1)
@@ -192,12 +197,6 @@ class Path:
         if crossed:
             self.critical.append(critical_point(self.control, before, after))
         return ""
-
-    def _stopped(self, failure: str, begin: float, target: float, depth: int, outcome: State) -> str:
-        return (
-            f"{failure} between {self.control.describe(begin)} and {self.control.describe(target)}"
-            f" after {depth} halvings of the increment; last residual {outcome.norms[-1]:.3g}"
-        )
 
     def _worked(self, before: State, after: State) -> State:
         """Return a state with the work done until then, and those before it."""
@@ -275,7 +274,7 @@ def follow(controls: Sequence[Control], increments: int, progress: Progress | No
 
     A path that cannot be followed to its end is returned with the reason.
     """
-    path, total = Path(control=controls[0]), increments * len(controls)
+    path, total, began = Path(control=controls[0]), increments * len(controls), perf_counter()
     path.settle(increments)
     for done in range(0 if path.message else total):
         leg, k = divmod(done, increments)
@@ -285,4 +284,5 @@ def follow(controls: Sequence[Control], increments: int, progress: Progress | No
             break
         if progress is not None:
             progress(done + 1, total)
+    path.seconds = perf_counter() - began
     return path

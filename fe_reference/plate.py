@@ -204,27 +204,21 @@ def _released(basis: Basis, energy: Any, nu: float, antisymmetric: bool) -> floa
     return float(z @ (energy @ z) / beam)
 
 
-def left_by_clamps(width_ratio: float, poisson_ratio: float, places: Array, flattens: bool) -> Array:
-    """Return P at places s in [0, 1] of a strip of width over length b/L and a Poisson ratio.
-
-    Coefficients (..., TERMS) of f, f^2, ...; of the first alone if the strip never `flattens`, so that f = 1.
-
-    Raises:
-        InvalidParameter: a width or a Poisson ratio that no such strip has.
-    """
-    return _in_powers(lambda f: _left(f, width_ratio, poisson_ratio, places), flattens)
-
-
 def left_in_elements(
     width_ratio: float, poisson_ratio: float, ends: Array, flattens: bool, points: int
 ) -> Array:
     """Return P [1] at the points of elements between the places `ends` (E + 1,) [1]: (E, points, TERMS).
 
+    Coefficients of f, f^2, ...; of the first alone if the strip never `flattens`, so that f = 1.
+
     One point has the mean compliance of its element. Two Gauss points have its first moment as well: the
     response to a linear moment is then that of the strip to second order, even with a thin layer at a clamp.
 
     Args:
-        width_ratio, poisson_ratio, flattens: as of `left_by_clamps`. points: 1 or 2.
+        width_ratio: width over length b/L. poisson_ratio: [1]. points: 1 or 2.
+
+    Raises:
+        InvalidParameter: a width or a Poisson ratio that no such strip has.
     """
     x, weights = np.polynomial.legendre.leggauss(ELEMENT_POINTS)
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)

@@ -14,13 +14,14 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .arrays import Array
+from .effects import WAYS
 from .errors import positive
 from .model import Model
-from .motion import Trajectory
-from .solution import CriticalPoint, ErrorEstimate, StaticSolution, Status
+from .response import CriticalPoint
+from .solution import ENERGIES, ErrorEstimate, StaticSolution, Status
+from .structure import structure_of
 
 Answer = TypeVar("Answer")
-Solved = TypeVar("Solved", StaticSolution, Trajectory)
 #: Quantities by name: values at the same places on every mesh, and a unit, below which all is round-off.
 Quantities = Mapping[str, tuple[Array, float]]
 #: Elements of a strip at which the refinement ends.
@@ -43,15 +44,13 @@ def refine(
     solve: Callable[[Model], Answer],
     quantities: Callable[[Answer], Quantities],
     judged: Collection[str] | None = None,
-    relative: bool = True,
 ) -> tuple[Answer, dict[str, Array], ErrorEstimate | None]:
     """Double the elements until the estimated errors are below the accuracy or do not decrease.
 
     Args:
-        model: the coarsest mesh. accuracy: wanted error [1, or the unit of the quantities].
+        model: the coarsest mesh. accuracy: wanted error, in parts of a quantity's largest value [1].
         solve: answers a model. quantities: of an answer; none if the answer is not complete.
-        judged: names of the quantities whose errors count, all by default. relative: whether errors are parts
-            of a quantity's largest value, or in its unit.
+        judged: names of the quantities whose errors count, all by default.
 
     Returns:
         The answer of the best mesh, the limits (S, ...) of all quantities by name, and the estimate of their
@@ -68,7 +67,7 @@ def refine(
         if len(known) > 1:
             limits, changes = _limit(known[-3:])
             errors = {
-                name: float(np.abs(change).max(initial=0.0)) / (_size(limit, unit) if relative else unit)
+                name: float(np.abs(change).max(initial=0.0)) / _size(limit, unit)
                 for (name, (_, unit)), limit, change in zip(here.items(), limits, changes, strict=True)
                 if judged is None or name in judged
             }
@@ -114,55 +113,67 @@ def _size(values: Array, unit: float) -> float:
 
 #: What is given at the nodes.
 ALONG = ("shape", "axial_force", "shear_force", "bending_moment")
+#: What an accuracy is asked of.
+JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress", "exerted")
 
 
-def places_of(answer: StaticSolution | Trajectory, name: str = "bodies") -> Array:
-    """Return the places (B, S, 3) of the bodies of an answer [m, m, rad], or of what else is so called."""
-    return np.array([*getattr(answer, name).values()]).reshape(-1, len(answer.shape), 3)
-
-
-def limit_of(
-    model: Model,
-    accuracy: float,
-    solve: Callable[[Model], Solved],
-    units: Mapping[str, float],
-    derived: Mapping[str, Callable[[Solved], Array]],
-    judged: Collection[str],
-    relative: bool = True,
-) -> Solved:
-    """Return the limit of an answer's meshes, at the nodes of the coarsest, or the first that has none.
+def limit_of(model: Model, accuracy: float, solve: Callable[[Model], StaticSolution]) -> StaticSolution:
+    """Return the limit of a path's meshes, at the nodes of the coarsest, or the first that has none.
 
     Args:
-        model, accuracy, solve, judged, relative: as in `refine`.
-        units: of the answer's attributes that are taken to their limits. derived: quantities of one, by what
-            makes them from it (S, ..., D); none of those without a column.
+        model, accuracy, solve: as in `refine`.
     """
+    structure, section, solved = structure_of(model), model.strips[0], list[StaticSolution]()
+    length, force, moment = structure.length, structure.force_unit, structure.moment_unit
+    units = dict.fromkeys((*ENERGIES, "strain_energy", "torque", "stiffness", "bending_moment"), moment)
+    units |= dict.fromkeys(("clamp_reactions", "reactions", "axial_force", "shear_force"), force)
+    units |= dict.fromkeys(("bodies", "tips", "shape"), length)
+    units["largest_stress"] = moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area))
 
-    def quantities(answer: Solved) -> Quantities:
+    def kept(mesh: Model) -> StaticSolution:
+        solved.append(solve(mesh))
+        return solved[-1]
+
+    def quantities(answer: StaticSolution) -> Quantities:
         if answer.status is not Status.CONVERGED:
             return {}
-        every, found = (answer.shape.shape[2] - 1) // model.elements, {}
+        every, found = (len(answer.stations) - 1) // model.elements, {}
         for name, unit in units.items():
             values = getattr(answer, name)
             if isinstance(values, Mapping):
-                values = places_of(answer, name)
+                values = np.array([*values.values()]).reshape(-1, len(answer.shape), 3)
             if np.isfinite(values).all():
                 found[name] = (values[:, :, ::every] if name in ALONG else values, unit)
-        made = {name: (make(answer), 1.0) for name, make in derived.items()}
-        return found | {name: own for name, own in made.items() if own[0].shape[-1]}
+        places = found["bodies"][0]
+        found["path"] = ((places - places[:, :1]) / np.array([length, length, 1.0]), 1.0)
+        exerted = _shares(answer, solved[0], np.array([force, moment]))
+        return found | ({"exerted": (exerted, 1.0)} if exerted.size else {})
 
-    found, refined, estimate = refine(model, accuracy, solve, quantities, judged, relative)
-    if estimate is None:
-        return found
-    own = {each.name for each in fields(found)}
-    limits: dict[str, Any] = {name: refined[name] for name in own & set(refined)}
-    for name in limits:
-        if isinstance(places := getattr(found, name), Mapping):
-            limits[name] = dict(zip(places, limits[name], strict=True))
-    told = missed(estimate)
-    status = Status.NOT_CONVERGED if told else found.status
-    message = "; ".join(each for each in (found.message, told) if each)
-    return replace(found, status=status, message=message, estimate=estimate, **limits)
+    found, refined, estimate = refine(model, accuracy, kept, quantities, JUDGED)
+    if estimate is not None:
+        limits: dict[str, Any] = {each.name: refined.get(each.name) for each in fields(found)}
+        limits = {name: values for name, values in limits.items() if values is not None}
+        for name in ("bodies", "tips"):
+            limits[name] = dict(zip(getattr(found, name), limits[name], strict=True))
+        told = missed(estimate)
+        limits["message"] = "; ".join(each for each in (found.message, told) if each)
+        limits["status"] = Status.NOT_CONVERGED if told else found.status
+        limits["stations"] = found.stations[:: (len(found.stations) - 1) // model.elements]
+        found = replace(found, estimate=estimate, **limits)
+    return confirmed(found.model, found, solved, solve)
+
+
+def _shares(answer: StaticSolution, first: StaticSolution, unit: Array) -> Array:
+    """Return what is exerted on bodies (S, D), but the torque of the drive, in parts of what is largest.
+
+    That is the largest force of a `first` answer, of moments its largest moment; the unit where none is.
+    """
+    own = [at for at, part in enumerate(answer.prescribed) if part != (answer.driven, WAYS[2])]
+    turns = np.array([answer.prescribed[at][1] == WAYS[2] for at in own], dtype=np.int64)
+    largest = np.zeros(2)
+    np.maximum.at(largest, turns, np.abs(first.reactions[:, own]).max(axis=0, initial=0.0))
+    shares: Array = answer.reactions[:, own] / np.where(largest > NOTHING * unit, largest, unit)[turns]
+    return shares
 
 
 #: Critical points of two meshes are the same within this part of load factor, preload and rotation.

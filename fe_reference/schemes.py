@@ -41,7 +41,7 @@ from .arrays import Array, Flags
 from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
-from .links import fastest
+from .loads import fastest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
 from .motion import Samples, Scheme
@@ -142,6 +142,10 @@ class Explicit(Scheme):
         return [f"the energy drifts by {drift:.1%}: the step of {step:.3g} s is too long: take a shorter one"]
 
 
+#: Spectral radius of the implicit scheme at infinite frequency, and the constants that follow from it.
+RADIUS = 0.9
+AM, AF = (2.0 * RADIUS - 1.0) / (RADIUS + 1.0), RADIUS / (RADIUS + 1.0)
+GAMMA, BETA = 0.5 - AM + AF, 0.25 * (1.0 - AM + AF) ** 2
 #: Error of the balance of energies of explicit steps, over the energy at stake, that is not remarked on.
 DRIFT = 1e-3
 #: Iterations of one step. The tangent of an earlier step serves until the residual falls less than tenfold.
@@ -160,16 +164,12 @@ COARSEST = 20.0
 
 
 class Implicit(Scheme):
-    """The scheme at a spectral radius, for a structure reduced about the centres of mass of its `bodies`."""
+    """The scheme for a structure reduced about the centres of mass of its `bodies`."""
 
     blow_up = GAIN
 
-    def __init__(self, structure: Structure, bodies: RigidBodies, spectral_radius: float) -> None:
+    def __init__(self, structure: Structure, bodies: RigidBodies) -> None:
         super().__init__(structure, bodies)
-        r = spectral_radius
-        self.am, self.af = (2.0 * r - 1.0) / (r + 1.0), r / (r + 1.0)
-        self.gamma = 0.5 - self.am + self.af
-        self.beta = 0.25 * (1.0 - self.am + self.af) ** 2
         rest = structure.evaluate(np.zeros(structure.size)).tangent
         self.least = TOLERANCE * structure.scale + structure.round_off(rest)
         self._factor: tuple[float, Factors] | None = None
@@ -227,16 +227,16 @@ class Implicit(Scheme):
     def _single(self, now: Instant, h: float, samples: Samples) -> Instant | None:
         """Return the instant after one step of h [s], or None if the iteration does not converge."""
         mass, scale, time = self.mass, self.structure.scale, now.time + h
-        coasting = now.y + h * now.v + h**2 * (0.5 - self.beta) * now.a
-        drifting = now.v + h * (1.0 - self.gamma) * now.a
-        held = self.am * mass * now.a + self.af * now.force
-        reach = self.beta * h**2
+        coasting = now.y + h * now.v + h**2 * (0.5 - BETA) * now.a
+        drifting = now.v + h * (1.0 - GAMMA) * now.a
+        held = AM * mass * now.a + AF * now.force
+        reach = BETA * h**2
         # the unknown is the acceleration: taken from differences of positions it would drown in round-off
         a, norms = now.a, [np.inf]
         for _ in range(ITERATIONS):
-            y, v = coasting + reach * a, drifting + self.gamma * h * a
+            y, v = coasting + reach * a, drifting + GAMMA * h * a
             after = replace(self.actions.resist(y, v, time), a=a)
-            residual = (1.0 - self.am) * mass * a + (1.0 - self.af) * after.force + held
+            residual = (1.0 - AM) * mass * a + (1.0 - AF) * after.force + held
             residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
             samples.counters["force_evaluations"] += 1
@@ -266,10 +266,10 @@ class Implicit(Scheme):
         """
         tangent = self.structure.evaluate(y, load=self.structure.loads.factors(time)).tangent
         if self.actions.damped:
-            tangent.data += self.gamma / (self.beta * h) * self.actions.damping_matrix(y).data
-        tangent.data *= 1.0 - self.af
-        tangent.left *= 1.0 - self.af
-        tangent.data[tangent.pattern.diagonal] += (1.0 - self.am) / (self.beta * h**2) * self.mass
+            tangent.data += GAMMA / (BETA * h) * self.actions.damping_matrix(y).data
+        tangent.data *= 1.0 - AF
+        tangent.left *= 1.0 - AF
+        tangent.data[tangent.pattern.diagonal] += (1.0 - AM) / (BETA * h**2) * self.mass
         samples.counters["factorisations"] += 1
         return tangent.factors(self.held)
 

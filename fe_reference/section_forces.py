@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .bending import CURL, TERMS, curve
 from .effects import PreStrain
 from .errors import InvalidParameter
 from .law import FORCES
-from .mesh import nodal_terms
 from .model import Model, require_model
 from .places import FREE
 from .structure import Structure, structure_of
@@ -24,8 +22,8 @@ class StripFields:
         shape (S, G, P, 2): positions [m].
         rotation (S, G, P): turn of the section from rest, as the nodes have it, without wrapping [rad]; at an
             end whose root gives way that of the strip's section, not the body's.
-        curvature (S, G, P): d theta / d s0, that at rest and M / EI + natural curvature [1/m], or what the
-            law of sections that do not curl freely makes of M.
+        curvature (S, G, P): d theta / d s0, that at rest and M / EI + natural curvature [1/m]; of sections
+            that do not curl freely the means of the adjacent elements' turns over their lengths.
         stretch (S, G, P): 1 + N / EA + natural strain [1].
         axial_force, shear_force (S, G, P): N = n.t, V = n.normal [N] at the nodes: n is the force of the part
             beyond on the part before, t the normal of the cross-section, normal = t turned by +90 deg.
@@ -102,7 +100,7 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> path = solve_statics(pivot, rotation=0.1, increments=1)
     >>> strip_fields(pivot, path.states).bending_moment.shape
@@ -122,15 +120,19 @@ def strip_fields(model: Model, states: Array, ends: Array | None = None) -> Stri
     angle = _nodal_angles(structure)
     c, s = np.cos(angle + nodal[..., 2]), np.sin(angle + nodal[..., 2])
     axial, beyond = force_x * c + force_y * s, np.stack([force_x, force_y, moment], axis=-1)
-    natural, elements = model.effects.find(PreStrain) or PreStrain(), structure.elements
-    turning = np.diff(angle, axis=1) / elements.length.reshape(rows)
+    natural, length = model.effects.find(PreStrain) or PreStrain(), structure.elements.length.reshape(rows)
+    area, inertia = _sections(model)
+    bent = moment / (_moduli(model) * inertia)
+    if structure.elements.plate[:, 0].any():  # where it is no multiple of the moment
+        bent = _midpoints(np.diff(nodal[..., 2]) / length)
+    turning = np.diff(angle, axis=1) / length
     return StripFields(
         arc_length=structure.basis.mesh.p[0].reshape(grid),
         rest_shape=model.rest,
         shape=model.rest + nodal[..., :2],
         rotation=nodal[..., 2],
-        curvature=_at_nodes(turning, turning) + _bent(model, moment) + natural.curvature,
-        stretch=1.0 + axial / (_moduli(model) * _sections(model)[0]) + natural.strain,
+        curvature=_at_nodes(turning, turning) + bent + natural.curvature,
+        stretch=1.0 + axial / (_moduli(model) * area) + natural.strain,
         axial_force=axial,
         shear_force=force_y * c - force_x * s,
         bending_moment=moment,
@@ -151,23 +153,6 @@ def _sections(model: Model) -> tuple[Array, Array]:
     own = [(strip, *strip.growth(places)) for strip, places in growths]
     area = np.array([strip.area * growth for strip, growth, _ in own])
     return area, np.array([strip.second_moment_of_area * growth for strip, _, growth in own])
-
-
-def _bent(model: Model, moment: Array) -> Array:
-    """Return the curvatures that moments at the nodes (S, G, P) bend the strips by."""
-    rigidity = _moduli(model) * _sections(model)[1]
-    plate = structure_of(model).elements.plate.reshape(len(rigidity), model.elements, -1)[:, :1]
-    if not plate[..., 0].any():
-        free: Array = moment / rigidity
-        return free
-    square, reach = plate[..., 0], plate[..., 1]
-    flat, reach = (
-        np.broadcast_to(each, moment.shape[1:]).ravel() for each in (rigidity / (1.0 - square), reach)
-    )
-    left = nodal_terms(model).reshape(-1, TERMS)
-    curvature = moment.reshape(len(moment), -1).copy()
-    curve(CURL, flat, left, reach, curvature)
-    return curvature.reshape(moment.shape)
 
 
 def _nodal_angles(structure: Structure) -> Array:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from time import perf_counter
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from .arrays import Array, Indices
 from .errors import ConvergenceError, InvalidParameter
 from .model import Model
-from .response import body_stiffness
+from .response import CriticalPoint, body_stiffness
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,44 +33,6 @@ class Status(StrEnum):
         }[self]
 
 
-@dataclass(frozen=True, kw_only=True)
-class CriticalPoint:
-    """Where a path loses or regains stability, or a driven body its own stiffness.
-
-    kind: "limit point" of the load factor, or where a driven rotation has no stiffness at fixed loads;
-    "turning point" of a drive, where the driven coordinate itself goes back; "bifurcation" otherwise.
-    load_factor [1]; rotation of the driven body [rad], nan without one; inertia: negative eigenvalues after
-    it; turns (B,) of all bodies [rad]; preload: share of gravity and natural strains that acts there [1];
-    text: what happens at which load, "" for the stationary torque of a path without loads, which is not
-    unstable.
-    """
-
-    kind: str
-    load_factor: float
-    rotation: float
-    inertia: int
-    text: str
-    turns: Array
-    preload: float = 1.0
-
-
-class Stopwatch:
-    """Seconds by part: "compile" (structure and spans), "solve" (the path or motion alone), "recover" (fields
-    of the solved states).
-    """
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-        self.since = perf_counter()
-
-    def stop(self, part: str) -> dict[str, float]:
-        """Book what passed since the last stop to a part and return all parts so far [s]."""
-        now = perf_counter()
-        self.seconds[part] = self.seconds.get(part, 0.0) + now - self.since
-        self.since = now
-        return self.seconds
-
-
 class Answer:
     """Common part of solutions and trajectories.
 
@@ -87,7 +48,7 @@ class Answer:
     message: str
     bodies: Mapping[str, Array]
     history: tuple[tuple[float, ...], ...]
-    estimate: "ErrorEstimate | None"
+    estimate: "ErrorEstimate | None" = None
 
     def __post_init__(self) -> None:
         """Make all arrays read only."""
@@ -167,11 +128,10 @@ class StaticSolution(Answer):
         shape, axial_force, shear_force, bending_moment: as in `section_forces.StripFields`.
         states (S, size): reduced coordinates, for `section_forces`, of the finest mesh: that of `model`.
         driven: name of the body whose turn is led or watched; None without one. led: whether it is led.
-        effects: names of the effects of the scene.
         counters: increments, halvings, newton_iterations, evaluations, factorisations, and
             settling_increments: of the way to the first state. history: residual norms of the increments,
             and of the attempts that failed.
-        seconds: by part, see `Stopwatch`.
+        seconds: "solve", of following the path alone [s].
         estimate: of the error, where an accuracy was asked for: then all arrays but `states` and `inertia`
             are limits of meshes, at the nodes of the coarsest.
     """
@@ -204,7 +164,6 @@ class StaticSolution(Answer):
     model: Model
     driven: str | None
     led: bool
-    effects: tuple[str, ...]
     counters: Mapping[str, int]
     history: tuple[tuple[float, ...], ...]
     seconds: Mapping[str, float]
@@ -264,8 +223,7 @@ class ErrorEstimate:
     Attributes:
         accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
         stopped: elements of a finer mesh that round-off stopped early; 0 for none.
-        errors: by quantity, the largest over the states in parts of its largest value [1]; of a motion the
-            largest over the instants, of the rotations [rad] and of the places in strip lengths [1].
+        errors: by quantity, the largest over the states in parts of its largest value [1].
     """
 
     accuracy: float

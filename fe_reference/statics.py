@@ -1,28 +1,24 @@
 """Static solution of a model: a body driven along a path, or dead loads raised in steps."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array
-from .control import Control, spans
-from .errors import InvalidParameter, choice, count, finite, pair, several
+from .control import require_balance, spans
+from .effects import WAYS, Prescribed
+from .errors import choice, count, finite, several
 from .law import FORCES
-from .loading import WAYS, DrivenDisplacement, Prescribed
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
-from .refined import NOTHING, confirmed, limit_of, places_of
-from .rigid import require_balance
+from .refined import confirmed, limit_of
 from .section_forces import strip_fields
-from .solution import ENERGIES, StaticSolution, Status, Stopwatch
+from .solution import ENERGIES, StaticSolution, Status
 from .structure import structure_of
 
 #: How loads and a rotation meet.
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
-#: What an accuracy is asked of.
-JUDGED = ("path", "torque", "stiffness", "strain_energy", "largest_stress", "exerted")
 
 
 def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options: Any) -> StaticSolution:
@@ -52,7 +48,7 @@ def solve_statics(pivot: Model, *, rotation: float | Sequence[float], **options:
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> path = solve_statics(pivot, rotation=0.3, increments=5)
     >>> path.torque.shape
@@ -70,7 +66,6 @@ def solve_mechanism(
     *,
     body: str | None = None,
     rotation: float | Sequence[float] | None = None,
-    displacement: Sequence[float] | None = None,
     increments: int = 20,
     order: str = LOADS_FIRST,
     accuracy: float | None = None,
@@ -92,9 +87,6 @@ def solve_mechanism(
         Driven body; None: the only one.
     rotation : float or sequence of float, rad, default None
         End of the path, or ends of several legs, one after the other; None: free.
-    displacement : (2,) m, default None
-        Prescribed displacement of the body's centre; None: that of the effect driven_displacement, or free if
-        this is not named.
     increments : int, default 20
         Equal increments of each leg, and of the loads before it.
     order : str
@@ -119,8 +111,7 @@ def solve_mechanism(
     Raises
     ------
     InvalidParameter
-        A rotation that is not finite, fewer than one increment, an unknown body, a drive without a body, a
-        displacement given twice.
+        A rotation that is not finite, fewer than one increment, an unknown body, a drive without a body.
     ConvergenceError
         The path ended early; it carries the converged part. Or the accuracy was not reached; it carries the
         best answer.
@@ -131,72 +122,23 @@ def solve_mechanism(
 
     Examples
     --------
-    With ``pivot`` of the example of ``fe_reference.mechanism.cross_axis_pivot``:
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
 
     >>> solve_mechanism(pivot, rotation=[0.1, 0.0], increments=2).rotation.round(3).tolist()
     [0.0, 0.05, 0.1, 0.05, 0.0]
     """
     require_model(mechanism)
     ends = None if rotation is None else several("rotation", rotation, "rad")
-    if displacement is not None:
-        if "driven_displacement" in mechanism.effects:
-            expected = "none beside the effect driven_displacement [m]"
-            raise InvalidParameter("displacement", displacement, expected)
-        led = DrivenDisplacement(displacement=pair("displacement", displacement, "m"))
-        mechanism = replace(mechanism, effects=mechanism.effects.changed("driven_displacement", led))
 
     def solve(model: Model) -> StaticSolution:
         return _solved(model, body, ends, increments, progress, order=order)
 
-    return _answered(mechanism, accuracy, solve, check).checked(raise_on_failure)
-
-
-def _answered(
-    model: Model, accuracy: float | None, solve: Callable[[Model], StaticSolution], check: bool
-) -> StaticSolution:
-    """Return the solution of a model, or to an accuracy the limit of its meshes, at the first one's nodes."""
-    if accuracy is None:
-        answer = solve(model)
-        return confirmed(model, answer, (), solve) if check else answer
-    structure = structure_of(model)
-    length, force, moment = structure.length, structure.force_unit, structure.moment_unit
-    section = model.strips[0]
-    units = dict.fromkeys((*ENERGIES, "strain_energy", "torque", "stiffness", "bending_moment"), moment)
-    units |= dict.fromkeys(("clamp_reactions", "reactions", "axial_force", "shear_force"), force)
-    units |= dict.fromkeys(("bodies", "tips", "shape"), length)
-    units["largest_stress"] = moment * np.sqrt(3.0 / (section.area * section.second_moment_of_area))
-
-    def path(answer: StaticSolution) -> Array:
-        places = places_of(answer)
-        moved: Array = (places - places[:, :1]) / np.array([length, length, 1.0])
-        return moved
-
-    solved: list[StaticSolution] = []
-
-    def exerted(answer: StaticSolution) -> Array:
-        return _shares(answer, solved[0], np.array([force, moment]))
-
-    def kept(mesh: Model) -> StaticSolution:
-        solved.append(solve(mesh))
-        return solved[-1]
-
-    found = limit_of(model, accuracy, kept, units, {"path": path, "exerted": exerted}, JUDGED)
-    found = confirmed(found.model, found, solved, solve)
-    every = (len(found.stations) - 1) // (found.shape.shape[2] - 1)
-    return replace(found, stations=found.stations[::every])
-
-
-def _shares(answer: StaticSolution, first: StaticSolution, unit: Array) -> Array:
-    """Return what is exerted on bodies (S, D), but the torque of the drive, in parts of what is largest.
-
-    That is the largest force of a `first` answer, of moments its largest moment; the unit where none is.
-    """
-    own = [at for at, part in enumerate(answer.prescribed) if part != (answer.driven, WAYS[2])]
-    turns = np.array([answer.prescribed[at][1] == WAYS[2] for at in own], dtype=np.int64)
-    largest = np.zeros(2)
-    np.maximum.at(largest, turns, np.abs(first.reactions[:, own]).max(axis=0, initial=0.0))
-    shares: Array = answer.reactions[:, own] / np.where(largest > NOTHING * unit, largest, unit)[turns]
-    return shares
+    if accuracy is not None:
+        answer = limit_of(mechanism, accuracy, solve)
+    else:
+        answer = solve(mechanism)
+        answer = confirmed(mechanism, answer, (), solve) if check else answer
+    return answer.checked(raise_on_failure)
 
 
 def settled_state(
@@ -244,28 +186,20 @@ def _solved(
     starts: bool = False,
 ) -> StaticSolution:
     """Follow the path through the rotations [rad], one leg each, under the loads in full or as they start."""
-    clock, steps, structure = Stopwatch(), count("increments", increments), structure_of(model)
+    steps, structure = count("increments", increments), structure_of(model)
     led = model.effects.every(Prescribed)
     driven = rotations is not None or any(each.body is None for each in led)
     which = model.body_index(body) if driven or body is not None else None
     acting = structure.loads.factors(0.0 if starts else None)
     first = choice("order", order, ORDERS) == LOADS_FIRST and rotations is not None and any(rotations)
     first = first and acting is not None and not _moving(led)  # a body that is led goes where both lead it
-    controls = spans(
-        structure,
-        body=which,
-        rotations=rotations,
-        load=acting,
-        first=first,
-        starts=starts,
-    )
-    clock.stop("compile")
+    controls = spans(structure, which, rotations, acting, first=first, starts=starts)
     path = follow(controls, steps, progress)
-    clock.stop("solve")
     for state in () if starts else reversed(path.states):  # the load in full is named
         require_balance(structure, path.control.props, state.residual, acting)
-    name = None if which is None else model.body_names[which]
-    return _packed(path, controls, steps, clock, driven=name, led=rotations is not None)
+    shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
+    driven_body = None if which is None else model.body_names[which]
+    return _packed(path, np.array([0.0, *shares]), driven_body, rotations is not None)
 
 
 def _moving(led: Sequence[Prescribed]) -> bool:
@@ -273,15 +207,11 @@ def _moving(led: Sequence[Prescribed]) -> bool:
     return any(any(each.ends) for each in led)
 
 
-def _packed(
-    path: Path, controls: Sequence[Control], steps: int, clock: Stopwatch, *, driven: str | None, led: bool
-) -> StaticSolution:
-    """Gather the states of a path into arrays."""
-    total = steps * len(controls)
-    shares = [c.share(p) for c in controls for p in np.linspace(*c.span, steps + 1)[1:]]
+def _packed(path: Path, shares: Array, driven: str | None, led: bool) -> StaticSolution:
+    """Gather the states of a path into arrays; `shares` are the load factors of the whole path."""
     structure, states = path.control.structure, path.states
     model, here = structure.model, [structure.evaluate(state.y, asked=FORCES) for state in states]
-    y, strain = np.array([state.y for state in states]), np.array([at.strain for at in here])
+    y = np.array([state.y for state in states])
     fields = strip_fields(model, y, np.array([at.ends for at in here]))
     held = [
         (k, at - structure.first_body)
@@ -293,17 +223,13 @@ def _packed(
         for name in ("torque", "stiffness", "inertia", "work")
     }
     return StaticSolution(
-        status=Status.CONVERGED if len(states) == total + 1 else Status.NOT_CONVERGED,
+        status=Status.CONVERGED if len(states) == len(shares) else Status.NOT_CONVERGED,
         message=path.remark(),
         critical_points=tuple(path.critical),
-        load_factor=np.array([0.0, *shares])[: len(states)],
+        load_factor=shares[: len(states)],
         bodies={name: fields.bodies[:, k] for k, name in enumerate(model.body_names)},
         **answers,
-        bending_energy=strain[:, 0],
-        axial_energy=strain[:, 1],
-        shear_energy=strain[:, 2],
-        spring_energy=np.array([at.spring for at in here]),
-        gravity_energy=np.array([at.gravity for at in here]),
+        **dict(zip(ENERGIES, np.array([(*at.strain, at.spring, at.gravity) for at in here]).T, strict=False)),
         prescribed=tuple((model.body_names[at // 3], WAYS[at % 3]) for _, at in held),
         reactions=np.array([state.drive for state in states])[:, [k for k, _ in held]],
         tips=fields.tips(model),
@@ -315,8 +241,7 @@ def _packed(
         model=model,
         driven=driven,
         led=led,
-        effects=model.effects.names,
         counters={name: path.counters[name] for name in (*COUNTERS, "settling_increments")},
         history=(*(state.norms for state in states[1:]), *path.failures),
-        seconds=clock.stop("recover"),
+        seconds={"solve": path.seconds},
     )

@@ -10,8 +10,8 @@ the shape at rest to the state under both.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +20,7 @@ from .arrays import Array, Flags, Indices, kernel
 from .bending import CURL
 from .effects import Gravity, PreStrain
 from .law import FORCES, TANGENT, Energies, Given, Written, elements
-from .links import Links, add_links, link_forces, links_of
-from .loads import Loads, Pulls, pull, pulls_of
+from .loads import Links, Loads, Pulls, add_links, link_forces, links_of, pull, pulls_of
 from .matrix import Envelope, Symmetric, assemble
 from .mesh import Elements, root_stiffness, strip_basis
 from .model import Model
@@ -31,8 +30,7 @@ from .places import FREE, Carried, carry, carry_velocity, gather
 Tables = tuple[Given, Carried, Pulls, Links]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Evaluation:
+class Evaluation(NamedTuple):
     """What the potential is at a state.
 
     Attributes:
@@ -244,17 +242,8 @@ class Structure:
                 add_links(self.links, u, self.links[3], tangent)
             if load is not None and self.loads.follows:
                 tangent.left, tangent.right = self.loads.tangent(acts, self.numbers, u, self.size)
-        return Evaluation(
-            gradient=self.gathered(force),
-            tangent=tangent,
-            strain=strain,
-            spring=spring,
-            gravity=gravity,
-            work=work,
-            ends=ends,
-            matrices=matrices,
-            curvature=curvature,
-        )
+        gradient = self.gathered(force)
+        return Evaluation(gradient, tangent, strain, spring, gravity, work, ends, matrices, curvature)
 
     def reduced_matrix(self, matrices: Array, u: Array) -> Symmetric:
         """Return element matrices (E, 8, 8) [N/m, N, N m] assembled as P^T K P (size, size).

@@ -85,8 +85,8 @@ def answer_release(
         check: whether a companion motion estimates how well control points, or elements, resolve the motion.
         swings: whether a body is required, whose free vibration is reported; if not, strips without bodies
             are followed too.
-        options: `step` [s], `integrator`, `accuracy` [rad] and the largest number of `records`, which the
-            model checks; None for its default.
+        options: `step` [s], `integrator`, `accuracy` [rad, of the splines] and the largest number of
+            `records`, which the model checks; None for its default.
 
     Raises:
         BadInput: a setting or option that the model rejects, or a design without bodies; one line.
@@ -97,6 +97,9 @@ def answer_release(
     start, model = design.rotation if start is None else start, model_of(settings)
     how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
     if isinstance(settings, FeSettings):
+        if "accuracy" in how:
+            expected = "none for a motion of the finite elements, whose --elements are as given [rad]"
+            raise BadInput(f"accuracy: got {how['accuracy']!r}, expected {expected}")
         how = {"samples" if name == "records" else name: value for name, value in how.items()}
         how["raise_on_failure"] = False
 

@@ -64,7 +64,7 @@ class FeSettings:
         return "fe-shear" if self.element == "reissner" else "fe"
 
     def keywords(self) -> dict[str, Any]:
-        """Return the discretisation keywords of `fe_reference.mechanism.cross_axis_pivot`."""
+        """Return the discretisation keywords of `fe_reference.model.cross_axis_pivot`."""
         return asdict(self)
 
 

@@ -81,8 +81,8 @@ LINES = 20
     take.STEP,
     take.INTEGRATOR,
     take.ACCURACY.but(
-        "wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
-        "the elements (default: none is asked for)"
+        "wanted error of the rotation, in rad: chooses steps and raises the control points "
+        "(splines; default: none is asked for)"
     ),
     Argument("--no-check", "omit the companion motions that estimate the resolution"),
     Argument(
@@ -214,8 +214,7 @@ def _readable(answers: list[Motion]) -> Iterator[str]:
         yield "errors of rotations and displacements: not estimated"
     if answer.estimate is not None:
         told = {name: f"{value:.1e} rad" for name, value in answer.estimate.items() if name in ANGLES}
-        parts = f"{told['time']} by steps, {told['space']} by control points" if "time" in told else ""
-        parts = parts or f"elements tried: {', '.join(map(str, answer.estimate['meshes']))}"
+        parts = f"{told['time']} by steps, {told['space']} by control points"
         yield f"estimated error of the rotation {told['rotation']}: {parts}"
     if answer.resolution:
         yield answer.resolution

@@ -143,9 +143,10 @@ def _let_turn(model: Model, frame: Frame, control: Control) -> Path:
     held = np.append(control.held, turn)
     values = np.zeros((3, len(held)))
     values[1:, -1], values[2, :-1] = frame.tilt, control.values[1]
+    parts = ((0.0, 0.5), (0.5, 1.0))
     legs = [
-        replace(control, held=held, values=values[leg : leg + 2], span=(leg / 2, (leg + 1) / 2))
-        for leg in range(2)
+        replace(control, held=held, values=values[leg : leg + 2], span=part, shares=part)
+        for leg, part in enumerate(parts)
     ]
     before = follow(legs, frame.design.increments)
     outcome = equilibrate(control, before.states[-1].y, control.span[1], Counter())

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_reference import dynamics as elements
-from fe_reference.companions import moves
+from fe_reference.dynamics import moves
 from spline_model import dynamics as splines
 from spline_model.errors import InvalidParameter
 from studies.answers.models import put

@@ -68,15 +68,18 @@ def test_an_implicit_step_that_is_too_long_is_told() -> None:
 def test_explicit_is_stable_and_keeps_its_energy() -> None:
     """At 0.9 of the limit the energy after release from 90 degrees stays; at 1.1 it does not."""
 
+    brief = solve_release(pivot(), start=QUARTER, duration=1e-5, check=False)
+    limit = float(brief.settings["critical_step_s"])
+
     def error(safety: float = 0.9) -> float:
         motion = solve_release(
-            pivot(), start=QUARTER, duration=0.01, samples=200, safety=safety, raise_on_failure=False
+            pivot(), start=QUARTER, duration=0.01, samples=200, step=safety * limit, raise_on_failure=False
         )
         return motion.energy_error if motion.status is Status.CONVERGED else np.inf
 
     hold("fe_explicit_energy", error)
     with pytest.raises(ConvergenceError, match=r"the energy grew from .* use a smaller time step") as failure:
-        solve_release(pivot(), start=QUARTER, duration=0.002, safety=1.1)
+        solve_release(pivot(), start=QUARTER, duration=0.002, step=1.1 * limit)
     assert failure.value.solution.status is Status.UNSTABLE
 
 
@@ -146,7 +149,6 @@ def test_start_from_rest_and_settled() -> None:
     falling = solve_motion(model, duration=1e-4, settled=False)
     assert falling.kinetic_energy[-1] > 0.0
     assert falling.gravity_energy[-1] < 0.0
-    assert falling.effects[-1] == "gravity"
     assert falling.bodies["crank"].shape == falling.rates["crank"].shape == (len(falling.time), 3)
 
 

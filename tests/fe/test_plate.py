@@ -34,9 +34,9 @@ def test_limits():
 @pytest.mark.slow
 def test_a_narrow_strip_has_the_rigidity_of_its_plate():
     """Requirement: a strip whose clamps do not see each other is as much stiffer as its plate is."""
-    x, weights = np.polynomial.legendre.leggauss(400)
-    compliance = 0.91 / (1.0 - plate.left_by_clamps(0.01, 0.3, 0.5 * (x + 1.0), False)[:, 0])
-    excess = 1.0 / (0.5 * weights @ compliance) - 1.0
+    ends = np.linspace(0.0, 1.0, 401)
+    compliance = 0.91 / (1.0 - plate.left_in_elements(0.01, 0.3, ends, False, 1)[:, 0, 0])
+    excess = 1.0 / compliance.mean() - 1.0
     assert excess == pytest.approx(plate_factors(0.01, 0.3).constant - 1.0, rel=0.02)
 
 
