@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
 from spline_model.continuation.follower import LARGEST_STEP, ArcFollower, Follower
-from spline_model.continuation.point import reached, stand
+from spline_model.continuation.points import reached, stand
 from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.newton import Newton, solve
@@ -97,7 +97,7 @@ def follow_arc(
             progress(taken + 1, MOST_STEPS)
     else:
         message = f"load factor {end:g} is not reached in {MOST_STEPS} steps"
-    rows = watch.work.rows(follower.points, follower.done[: len(follower.points)])
+    rows = watch.work.rows(follower.points, follower.done)
     return _path(watch, rows, message, follower.history)
 
 
@@ -146,10 +146,7 @@ class _Track:
         if more := follower.points[known:]:
             done = [before + each for each in follower.done[known:]]
             self._keep(self.work.rows(more, done), done[-1])
-        if message:
-            while self.states > 1 and not self.watch.is_resolved(self._point(self.states - 1)):
-                self.states -= 1
-        else:
+        if not message:
             self.work.counters.increments += 1
             if (work := self._compiled) is not None:
                 self._run(work, work.y(follower.here.z))

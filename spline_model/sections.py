@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.compile import System
-from spline_model.continuation.resolution import balance
+from spline_model.continuation.followed import balance
 from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
 from spline_model.read_only import read_only
 from spline_model.scene import Scene, Strip

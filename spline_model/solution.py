@@ -115,7 +115,7 @@ class Path:
         Negative eigenvalues of the reduced tangent with the drives held: 0 for a stable state, -1 if the
         published forces have no potential.
     moment_defect : (S,) 1
-        Relative deviation of the strips' moments from balance (``continuation.resolution``).
+        Relative deviation of the strips' moments from balance (``continuation.followed``).
     critical_points : tuple of CriticalPoint
         In the order of the path.
     grown : float, 1
@@ -218,7 +218,7 @@ def body_columns(bodies: Mapping[str, Array]) -> dict[str, Array]:
 def resolution(defect: NDArray[np.float64]) -> str:
     """Return a message on the uncertainty of a path with moment defects (S,) [1]; empty if it is resolved.
 
-    The defect (``continuation.resolution``) is the error of the moments in the energy norm, and the error of
+    The defect (``continuation.followed``) is the error of the moments in the energy norm, and the error of
     torque and energy is proportional to its square.
     """
     worst = int(np.argmax(defect))

@@ -12,10 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.continuation.critical import BIFURCATION, corrected
 from spline_model.continuation.followed import Point
-from spline_model.continuation.point import directed, done_by_load_factor, reached
-from spline_model.continuation.watch import Watch
+from spline_model.continuation.points import BIFURCATION, corrected, directed, done_by_load_factor, reached
+from spline_model.continuation.watch import Watch, place
 from spline_model.newton import Newton, correct, solve
 from spline_model.solution import CriticalPoint
 
@@ -41,8 +40,7 @@ class Follower:
     """The state of a path while it is followed in a parameter, by default its load factor.
 
     at: the parameter here; known: the last states, with their parameters. ``points`` holds the states that
-    were asked for, ``trail`` those on the way to the next one; ``done``: int P_lambda d(lambda) from the
-    first state to each of points, and to here [J].
+    were asked for; ``done``: int P_lambda d(lambda) from the first state to each of points, and to here [J].
     """
 
     at = 0.0
@@ -51,8 +49,7 @@ class Follower:
         self.work, self.watch, self.here = watch.work, watch, begin
         self.at = self._parameter(begin)
         self.known: deque[tuple[float, Point]] = deque([(self.at, begin)], maxlen=KNOWN_STATES)
-        self.points, self.trail = [begin], []  # type: list[Point], list[Point]
-        self.done, self.done_here = [0.0], 0.0
+        self.points, self.done, self.done_here = [begin], [0.0], 0.0
         self.history = [norms]
 
     def _parameter(self, point: Point) -> float:
@@ -104,7 +101,6 @@ class Follower:
                 self.known.clear()
             self.at, self.here = self._parameter(end), end
             self.known.append((self.at, end))
-            self.trail.append(end)
         return found, reason
 
     def advance(self, target: float) -> str:
@@ -112,26 +108,25 @@ class Follower:
 
         Returns why it failed, or nothing.
         """
-        begin = self.at
-        step = whole = target - begin
+        begin, whole, parts, done = self.at, target - self.at, 1, 0
         if len(self.known) > 1 and whole * (begin - self.known[-2][0]) < 0:
             self.known = deque([(begin, self.here)], maxlen=KNOWN_STATES)  # the path turns back
         while self.at != target:
-            at = self.at
-            aim = target if abs(target - at) <= abs(step) * (1 + 1e-9) else at + step
+            aim = target if done + 1 == parts else begin + whole * ((done + 1) / parts)
             _, reason = self.try_to(aim)
+            if not reason and self.at == aim:
+                done += 1
+                if done % 2 == 0:  # after an easy part the next may be twice as long, on the grid of halves
+                    parts, done = parts // 2, done // 2
+                continue
             if reason:
                 self.work.counters.halved_increments += 1
-                step /= 2
-                if abs(step) < SMALLEST_STEP * abs(whole):
-                    if told := self._turn(target, at + 2 * step, reason):
-                        return told
-                    begin, step = self.at, target - self.at
-            elif self.at != aim:  # on another branch, and somewhere else
-                begin = self.at
-                step = whole = target - begin
-            elif (abs(aim - begin) / abs(step)) % 2 == 0 and abs(step) < abs(whole):
-                step *= 2  # after an easy part the next may be twice as long, on the grid of halves
+                parts, done = 2 * parts, 2 * done
+                if parts * SMALLEST_STEP <= 1.0:
+                    continue
+                if told := self._turn(target, aim, reason):
+                    return told
+            begin, whole, parts, done = self.at, target - self.at, 1, 0  # somewhere else
         self._keep()
         return ""
 
@@ -139,7 +134,6 @@ class Follower:
         """Keep the state here as one that was asked for."""
         self.points.append(self.here)
         self.done.append(self.done_here)
-        self.trail.clear()
 
     def _turn(self, target: float, aim: float, reason: str) -> str:
         """Go on in the arc length where the path turns too sharply for steps of its load factor, as that of a
@@ -147,23 +141,18 @@ class Follower:
 
         A limit point that lies ahead is kept as a critical point.
         """
-        limit, onward = None, None
-        if self.watch.is_resolved(self.here):
-            limit, onward = _beyond(self.watch, self.here, aim, target)
+        limit, onward = _beyond(self.watch, self.here, aim, target)
         if onward is not None:
             self.here, self.at = onward.here, onward.here.load_factor
             self.done_here += onward.done_here
             self.known = deque([(self.at, self.here)], maxlen=KNOWN_STATES)
-            self.trail.append(self.here)
             return ""
-        while self.trail and not self.watch.is_resolved(self.trail[-1]):
-            self.trail.pop()
-        self.points += self.trail[-1:]
-        self.done += [self.done_here] * len(self.trail[-1:])
+        if self.here is not self.points[-1]:
+            self._keep()
         if limit is not None:
             self.watch.critical.append(limit)
             reason = f"it buckles, a {limit.kind}: the stiffness vanishes there ({reason})"
-        return f"stopped between {self.watch.place.between(self.here.load_factor, aim)}: {reason}"
+        return f"stopped between {place(self.work, aim, last=self.here.load_factor)}: {reason}"
 
 
 def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
@@ -210,8 +199,6 @@ class ArcFollower(Follower):
             self.work.counters.halved_increments += 1
             self.step /= 2
             if self.step < SMALLEST_STEP * self.first:
-                while len(self.points) > 1 and not self.watch.is_resolved(self.points[-1]):
-                    self.points.pop()
                 return f"stopped at load factor {self.here.load_factor:.6g}: {reason}"
         self._keep()
         self.work.counters.increments += 1

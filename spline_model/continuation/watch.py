@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,10 +11,10 @@ from numpy.typing import NDArray
 
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
-from spline_model.continuation.critical import BIFURCATION, LIMIT, Bracket, Crossing, between, corrected
 from spline_model.continuation.followed import Followed, Point
-from spline_model.continuation.place import Place
-from spline_model.continuation.point import directed, jumped, reached
+from spline_model.continuation.points import BIFURCATION, LIMIT, Crossing, between, directed, jumped, reached
+from spline_model.effects import AppliedForce, AppliedMoment, Driven, DrivenRotation
+from spline_model.effects.base import Load
 from spline_model.newton import correct
 from spline_model.solution import CriticalPoint, Path, Status
 
@@ -23,32 +24,27 @@ BRANCHES = ("primary", "follow")
 AMPLITUDES = (0.1, 0.03, 0.01)
 """How far from the bifurcation the branch is entered, in lengths of a strip or rad: large, because
 close to it Newton has two solutions to choose from."""
-UNCONFIRMED = "a {kind} that is not found with twice the Gauss points (use more gauss_points)"
-LARGEST_CHANGE = 0.02
-"""Largest relative change of stiffness with twice the Gauss points of a state that is kept."""
 NO_CROSSING = "the stability changes in a jump, the state lies on another branch"
+PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "u", -9: "n"}
+"""Prefixes by their powers of ten."""
+PLAIN = 1e-2, 1e4
+"""Sizes of forces and moments that are readable without one."""
 
 
 class Watch:
     """The checks of one path, and the critical points that were met on it.
 
-    Too few Gauss points do not see a bend between them. The tangent then loses its stiffness there while all
-    else still looks sound, and ends in a critical point that the strips do not have: the same system with
-    twice the points, whose unknowns are the same ones, has to agree.
-
     by_load: whether the load factor is the path's parameter, and only goes one way; leaves:
-    whether the path is to leave its branch at the next bifurcation; place: what a load factor is
-    called; before: what is to be said of what came before the path, and settled: its critical points;
-    grown: share of weight and pre-strain that the path begins under.
+    whether the path is to leave its branch at the next bifurcation; before: what is to be said of what came
+    before the path, and settled: its critical points; grown: share of weight and pre-strain that the path
+    begins under.
     """
 
     def __init__(self, work: Followed, *, leaves: bool, by_load: bool) -> None:
         self.work, self.leaves, self.by_load = work, leaves, by_load
-        self.place, self.before = Place(system=None if work.grows else work.system), ""
         self.critical: list[CriticalPoint] = []
         self.settled: tuple[CriticalPoint, ...] = ()
-        self.note, self.grown = "", 1.0
-        self._finer: Followed | None = None
+        self.before, self.note, self.grown = "", "", 1.0
 
     def refuse(self, here: Point, predicted: Array, z: Array, load_factor: float) -> str:
         """Return why a converged state is not the next one; empty if it may be.
@@ -70,8 +66,6 @@ class Watch:
         found = between(self.work, here, point, step)
         if found is None:
             return here, NO_CROSSING
-        if found and self.work.judged and not self._confirmed(here, point, step):
-            return here, UNCONFIRMED.format(kind=found[0].told.kind)
         crossing = next((c for c in found if c.told.kind == BIFURCATION), None) if self.leaves else None
         if crossing is not None:
             found = found[: found.index(crossing) + 1]
@@ -89,7 +83,7 @@ class Watch:
         onward = branched.load_factor - at
         if self.by_load and onward * step <= 0.0:
             return here, f"the branch that crosses at load factor {at:.6g} goes back there"
-        where = self.place.at(at, crossing.told.rotation)
+        where = place(self.work, at, crossing.told.rotation)
         self.leaves = False
         self.note = (
             f"{BIFURCATION} at {where}: it buckles, the path goes on along the branch that crosses there"
@@ -99,26 +93,6 @@ class Watch:
         away = (branched.z - crossing.z) / self.work.unit
         return directed(self.work, branched, away, onward), ""
 
-    def _confirmed(self, here: Point, point: Point, step: float) -> bool:
-        """Whether a critical point lies between two states with twice the Gauss points as well."""
-        self._finer = self._finer or self.work.finer()
-        plane = Bracket(work=self.work, before=here, after=point, step=step).plane()
-        ends = [corrected(self._finer, p.z, p.load_factor, *plane) for p in (here, point)]
-        if ends[0] is None or ends[1] is None:
-            return False
-        return bool(between(self._finer, ends[0], ends[1], step))
-
-    def is_resolved(self, point: Point) -> bool:
-        """Whether a point near a vanishing stiffness, the rate of what does work on the load factor, keeps it
-        with twice the Gauss points."""
-        if self._finer is None:
-            return True
-        other = corrected(self._finer, point.z, point.load_factor, 0.0 * point.z, 1.0)
-        if other is None:
-            return False
-        change = abs(other.conjugate_rate * point.slope - point.conjugate_rate)
-        return change <= LARGEST_CHANGE * abs(other.conjugate_rate * point.slope)
-
     def remark(self, inertia: int = 0) -> str:
         """Return where a path that reached its end passed critical points, and whether its end is unstable.
 
@@ -126,7 +100,7 @@ class Watch:
         """
         said, told = [self.before, self.note], () if self.note else self.critical
         for kind in dict.fromkeys(c.kind for c in told):
-            places = ", ".join(self.place.at(c.load_factor, c.rotation) for c in told if c.kind == kind)
+            places = ", ".join(place(self.work, c.load_factor, c.rotation) for c in told if c.kind == kind)
             said.append(f"{kind} at {places}: {_meaning(self.work.system, kind)}")
         if inertia > 0:
             said.append("the last state is unstable: it buckles unless it is held")
@@ -184,3 +158,50 @@ def _meaning(system: System, kind: str) -> str:
     if system.scene.driven_row is None:
         return "the load is the largest or least around, under a dead load it snaps through"
     return "the driven body's own stiffness vanishes: released, it tips over"
+
+
+def place(
+    work: Followed, load_factor: float, rotation: float = math.nan, *, last: float | None = None
+) -> str:
+    """Return what a load factor [1] stands for, in words: rotation, way, force and moment that act there.
+
+    rotation [rad] of the driven body, if it is known better than by the load factor. last: load factor of the
+    place before it, where the way from there is meant.
+    """
+    factors = [load_factor] if last is None else [last, load_factor]
+    if work.grows:
+        return " and ".join(f"{100 * each:.6g}" for each in factors) + " % of weight and pre-strain"
+    effects, system = work.system.scene.effects, work.system
+    if any(getattr(effect, "steady", False) for effect in effects):  # and the rotation's alone grows
+        return " and ".join(", ".join(_acting(system, each, rotation)) for each in factors)
+    if system.scene.driven_row is not None:  # the size of a rotation, to whichever side it goes
+        factors = [abs(each) for each in factors]
+    acting = ", ".join(_acting(system, load_factor, rotation))
+    return (
+        "load factor " + " and ".join(f"{each:.6g}" for each in factors) + (f" ({acting})" if acting else "")
+    )
+
+
+def _acting(system: System, load_factor: float, rotation: float) -> list[str]:
+    """What drives and loads come to, in words."""
+    parts = []
+    for effect in (*system.scene.of(Driven), *system.scene.of(Load)):
+        share = 1.0 if getattr(effect, "steady", False) else load_factor
+        if isinstance(effect, DrivenRotation) and effect.moves:
+            known = not (effect.beside or math.isnan(rotation))
+            parts.append(f"rotation {math.degrees(rotation if known else share * effect.angle):.5g} deg")
+        elif isinstance(effect, Driven) and effect.moves:
+            parts.append(f"displacement {1e3 * abs(share) * math.hypot(*effect.parts.values()):.4g} mm")
+        elif isinstance(effect, AppliedMoment) and effect.moment:
+            parts.append(f"moment {_sized(share * effect.moment)}N m")
+        elif isinstance(effect, AppliedForce) and any(effect.force):
+            parts.append(f"force {_sized(abs(share) * math.hypot(*effect.force))}N")
+    return parts
+
+
+def _sized(value: float) -> str:
+    """A number with four digits and the prefix that spares it a power of ten."""
+    if value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]:
+        return f"{value:.4g} "
+    power = max(-9, min(9, 3 * math.floor(math.log10(abs(value)) / 3)))
+    return f"{value / 10.0**power:.4g} {PREFIXES[power]}"

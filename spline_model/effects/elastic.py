@@ -10,13 +10,8 @@ from numpy.typing import NDArray
 
 from spline_model.basis import AxialModes
 from spline_model.effects.base import Potential
-from spline_model.effects.curl import curl_terms, rigidity_of
-from spline_model.errors import (
-    InvalidParameter,
-    require_choice,
-    require_count,
-    require_not_negative,
-)
+from spline_model.effects.plate import curl_terms, rigidity_of
+from spline_model.errors import InvalidParameter
 from spline_model.strip.laws import TERMS, curl_factors
 
 Array = NDArray[np.float64]
@@ -102,11 +97,6 @@ class StrainEnergy(Potential):
     measure: str = "material"
     gauss_points: int
 
-    def require_sum(self, *measures: str) -> None:
-        """Refuse another measure, and no Gauss points."""
-        require_choice("measure", self.measure, measures)
-        require_count("gauss_points", self.gauss_points, 1)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bending(StrainEnergy):
@@ -132,7 +122,7 @@ class Bending(StrainEnergy):
     roots : length of the root at start and end over the strip's, 0 where there is none: a strip that is cut
         from the same block as its bodies turns in its roots as if it were longer, by 0.416 t at a sharp
         corner (half-plane in plane stress). Their compliance is a peak at the clamp, which is projected
-        along the strip (``spline_model.effects.curl``). Neglected: the compliance of a support along and
+        along the strip (``spline_model.effects.plate``). Neglected: the compliance of a support along and
         across the strip. Source: O'Donnell, J Appl Mech 27 (1960) 461.
     gauss_points : Gauss points.
 
@@ -147,10 +137,6 @@ class Bending(StrainEnergy):
     taper: Taper | None = None
     curl: Curl | None = None
     roots: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        require_not_negative("flexural_rigidity", self.flexural_rigidity, "N m^2")
-        self.require_sum(*MEASURES)
 
     def rigidity_at(self, degree: int, u: Array) -> Array:
         """Return the rigidity at u (P,) of a strip of that degree [N m^2]."""
@@ -200,10 +186,6 @@ class Stretching(StrainEnergy):
     axial_rigidity: float
     natural_strain: float = 0.0
 
-    def __post_init__(self) -> None:
-        require_not_negative("axial_rigidity", self.axial_rigidity, "N")
-        self.require_sum(*MEASURES)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MixedStretching(StrainEnergy):
@@ -233,10 +215,6 @@ class MixedStretching(StrainEnergy):
     modes: AxialModes
     natural_strain: float = 0.0
     taper: Taper | None = None
-
-    def __post_init__(self) -> None:
-        require_not_negative("axial_compliance", self.axial_compliance, "1/N")
-        self.require_sum(MEASURES[0])
 
     def compliance_at(self, u: Array) -> Any:
         """Return the axial compliance at u (P,) [1/N]."""

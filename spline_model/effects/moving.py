@@ -25,9 +25,6 @@ class StripInertia(Inertia):
     strip: str
     linear_density: float
 
-    def __post_init__(self) -> None:
-        require_not_negative("linear_density", self.linear_density, "kg/m")
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SectionRotaryInertia(Inertia):
@@ -45,9 +42,6 @@ class SectionRotaryInertia(Inertia):
     strip: str
     rotary_density: float
 
-    def __post_init__(self) -> None:
-        require_not_negative("rotary_density", self.rotary_density, "kg m")
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyInertia(Inertia):
@@ -59,10 +53,6 @@ class BodyInertia(Inertia):
     body: str
     mass: float
     moment_of_inertia: float
-
-    def __post_init__(self) -> None:
-        require_not_negative("mass", self.mass, "kg")
-        require_not_negative("moment_of_inertia", self.moment_of_inertia, "kg m^2")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -146,3 +146,9 @@ def spring(
         stiffness=(*stiffness, rotational_stiffness),
         damping=(*damping, rotational_damping),
     )
+
+
+LOADS = applied_force, applied_moment, tip_force
+PLACES = driven_displacement, driven_rotation, support, spring
+SEVERAL = {each.__name__: each for each in (*LOADS, *PLACES)}
+"""Effects that may act several times, each with parameters of its own."""

@@ -32,6 +32,9 @@ A and l are such that the strip has both factors of its plate in the linear rang
 
 so that nothing is fitted to an answer. Neglected: all other nonlinear effects of the plate at large
 rotations.
+
+Curve: clamps and roots act in layers at the ends of a strip. Their compliance is projected on polynomials
+along the strip, as a curve of some degree follows it.
 """
 
 from __future__ import annotations
@@ -45,6 +48,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from spline_model.basis import gauss_legendre
+from spline_model.strip.laws import TERMS
 
 Array = NDArray[Any]
 
@@ -60,6 +64,10 @@ NARROWEST = 0.005
 """Width over length below which the profile is the same in widths."""
 STEP = 1e-40
 """Of derivatives by a complex step: its square is beyond any round-off."""
+ROOT_DEGREE = 4
+"""Of the polynomial that a root's compliance is projected on: within 3.5e-4 of springs up to 45 degrees."""
+LEAST = 0.25
+"""Part of the compliance without roots below which that with roots does not fall between their peaks."""
 
 
 class Factors(NamedTuple):
@@ -166,14 +174,10 @@ class _Profile:
     reach: complex
     poisson_ratio: float
 
-    def share(self, s: Array) -> Array:
-        """g at s (P,), zero at the clamps."""
-        return self.size * (1.0 - _decay(np.asarray(s), self.reach))
-
     def compliance(self, s: Array, filled: float = 1.0) -> Array:
         """EI / R at s (P,); filled: part of the width that curls."""
-        square = self.poisson_ratio**2
-        return np.asarray((1.0 - square) / (1.0 - square * filled * self.share(s)))
+        square, share = self.poisson_ratio**2, self.size * (1.0 - _decay(s, self.reach))
+        return np.asarray((1.0 - square) / (1.0 - square * filled * share))
 
 
 def _decay(s: Array, reach: complex) -> Array:
@@ -197,34 +201,21 @@ def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
         own, share = profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
         size, reach = 1.0 + (own.size - 1.0) * share, own.reach * share
         return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
-    if ratio.imag != 0.0:
-        own = profile_of(ratio.real, poisson_ratio)
-        part = 1j * ratio.imag / ratio.real * _by_ratio(ratio.real, poisson_ratio)
-        size, reach = np.array((own.size, own.reach)) * np.exp(part)
-        return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
     aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
-    ratio, logs = ratio.real, np.log([1.0, 0.2 * ratio.real])
-    square = poisson_ratio**2
-    for _ in range(MOST_STEPS if square > 0.0 else 0):
-        found = _compliances(logs, ratio, poisson_ratio)
-        if np.abs(found - aim).max() < TOLERANCE:
-            break
-        change = np.linalg.solve(_rates(logs, ratio, poisson_ratio), aim - found)
-        logs += change * min(1.0, 0.5 / np.abs(change).max())
-    else:
-        assert square == 0.0, f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}"
-    return _Profile(size=np.exp(logs[0]), reach=np.exp(logs[1]), poisson_ratio=poisson_ratio)
-
-
-@lru_cache(maxsize=256)
-def _by_ratio(ratio: float, poisson_ratio: float) -> Array:
-    """Derivatives (2,) of log A and log l by log(b/L)."""
-    if poisson_ratio == 0.0:
-        return np.zeros(2)
-    own = profile_of(ratio, poisson_ratio)
-    aim = 1.0 / np.array(plate_factors(ratio * (1.0 + 1j * STEP), poisson_ratio))
-    rates = _rates(np.log([own.size, own.reach]), ratio, poisson_ratio)
-    return np.asarray(np.linalg.solve(rates, aim.imag / STEP))
+    logs = np.log([1.0, 0.2 * ratio.real])
+    if poisson_ratio != 0.0:
+        for _ in range(MOST_STEPS):
+            off = aim.real - _compliances(logs, ratio.real, poisson_ratio)
+            if np.abs(off).max() < TOLERANCE:
+                break
+            change = np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), off)
+            logs += change * min(1.0, 0.5 / np.abs(change).max())
+        else:
+            raise AssertionError(f"no profile for b/L = {ratio:g}, nu = {poisson_ratio:g}")
+        if ratio.imag != 0.0:
+            logs = logs + 1j * np.linalg.solve(_rates(logs, ratio.real, poisson_ratio), aim.imag)
+    size, reach = np.exp(logs)
+    return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
 
 
 def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
@@ -253,3 +244,87 @@ def graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array
     nodes, weights = gauss_legendre(points)
     width = np.diff(edges)[:, None]
     return (edges[:-1, None] + width * (nodes + 1.0) / 2.0).ravel(), (width * weights / 2.0).ravel()
+
+
+@lru_cache(maxsize=256)
+def rigidity_of(
+    ratio: complex,
+    poisson_ratio: float,
+    degree: int,
+    at: bytes,
+    reach: tuple[float, float],
+    roots: tuple[complex, complex],
+) -> Array:
+    """Return R / EI of a piece of a strip, as a curve of a degree follows it; it is computed once.
+
+    Parameters
+    ----------
+    ratio : width over length b/L; 0 where no clamp holds the section flat.
+    poisson_ratio : of the material.
+    degree : degree of the curve.
+    at : places u along the piece (P,), 0 to 1, as bytes.
+    reach : where the piece begins and ends, in parts of the strip's length.
+    roots : lengths of the roots at both ends over the strip's length. Their compliance stands there as delta
+        functions.
+
+    Returns
+    -------
+    R / EI at u (P,), read-only.
+
+    Notes
+    -----
+    The compliance EI / R is projected on polynomials. Their degree is one less than that of the curvature
+    under a linear moment, so that the strip can take its own curvature M EI / R and has both factors exactly,
+    however thin the layers are. With more control points the result tends to R. Roots are projected up to
+    ROOT_DEGREE, and as far as the compliance stays above LEAST of the compliance without them.
+    """
+    u = np.frombuffer(at)
+    if not ratio and not any(roots):
+        return np.ones(len(u))
+    most = max(2, degree - 3)
+    count, sign = 2.0 * np.arange(most + 1) + 1.0, (-1.0) ** np.arange(most + 1)
+    plate = count * (_projected(ratio, poisson_ratio, most, reach) if ratio else np.eye(1, most + 1)[0])
+    peaks = count * (roots[0] * sign + roots[1])
+    values, fine = (legendre.legvander(2.0 * x - 1.0, most) for x in (u, np.linspace(0.0, 1.0, 65)))
+    compliance = plate
+    for highest in range(min(most, ROOT_DEGREE), -1, -1):
+        compliance = plate + np.where(np.arange(most + 1) <= highest, peaks, 0.0)
+        if ((fine @ compliance).real >= LEAST * (fine @ plate).real).all():
+            break
+    rigidity = 1.0 / (values @ compliance)
+    rigidity.setflags(write=False)
+    return np.asarray(rigidity)
+
+
+@lru_cache(maxsize=256)
+def curl_terms(
+    ratio: complex, poisson_ratio: float, degree: int, at: bytes, reach: tuple[float, float]
+) -> Array:
+    """Return the reduction of a plate's rigidity by the curl at u (P,) of a piece, as a curve follows it.
+
+    Coefficients (P, TERMS) of f, f^2, ..., with f the share of the curl that curvature leaves. They take
+    1 - (1 - nu^2) R / EI of clamps of a strip of width f b/L at TERMS values of f, which are Chebyshev's.
+    Parameters are as of ``rigidity_of``; the array is read-only.
+    """
+    most, u = max(2, degree - 3), np.frombuffer(at)
+    if not ratio:
+        return np.eye(1, TERMS)[np.zeros(len(u), dtype=int)] * poisson_ratio**2
+    filled = 0.5 * (1.0 - np.cos(np.pi * np.arange(TERMS) / (TERMS - 1)))
+    values = legendre.legvander(2.0 * u - 1.0, most) * (2.0 * np.arange(most + 1) + 1.0)
+    taken = [np.full(len(u), poisson_ratio**2 + 0.0 * ratio)]
+    for part in filled[1:]:
+        stiffer = 1.0 / (values @ _projected(ratio, poisson_ratio, most, reach, part))
+        taken.append((1.0 - (1.0 - poisson_ratio**2) * stiffer) / part)
+    terms = np.linalg.solve(np.vander(filled, increasing=True), taken).T
+    terms.setflags(write=False)
+    return np.asarray(terms)
+
+
+def _projected(
+    ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float], filled: float = 1.0
+) -> Array:
+    """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials; filled: part f of the width."""
+    profile, (left, right) = profile_of(filled * ratio, poisson_ratio), reach
+    s, weight = graded(filled * ratio.real, reach, 16 + most)
+    shares = weight * profile.compliance(s, filled) / (right - left)
+    return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

@@ -179,26 +179,6 @@ def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.
         yield moving.BodyDamper(body=body.name, translation=translation, rotation=rotation)
 
 
-def _pre_strain(design: Design, curvature: float = 0.0, strain: float = 0.0) -> Iterable[Effect]:
-    """Natural curvature [1/m] and strain of the strips, from rest: bending and stretching take them up."""
-    del design, curvature, strain  # the design carries them to the two potentials
-    return ()
-
-
-def _taken_up(design: Design) -> Iterable[Effect]:
-    """No effect of its own: bending takes up clamps that hold sections flat over the width, "clamped_width",
-    and sections that flatten as wide strips bend, "anticlastic" (M(kappa) by Ashwell's law)."""
-    del design
-    return ()
-
-
-def _root_compliance(design: Design, root: float | str = "monolithic") -> Iterable[Effect]:
-    """Roots of all clamped ends, of length ``root`` over the thickness: "monolithic", or a number >= 0, which
-    bending takes up."""
-    del design, root
-    return ()
-
-
 def root_length(root: float | str = "monolithic") -> float:
     """Return the length of a support over the thickness [1] of the parameter of "root_compliance".
 
@@ -225,33 +205,19 @@ REGISTRY: dict[str, Builder] = {
     "strip_damping": _strip_damping,
     "strip_drag": _strip_drag,
     "body_damping": _body_damping,
-    "applied_force": outside.applied_force,
-    "applied_moment": outside.applied_moment,
-    "tip_force": outside.tip_force,
-    "driven_displacement": outside.driven_displacement,
-    "driven_rotation": outside.driven_rotation,
-    "support": outside.support,
-    "spring": outside.spring,
-    "pre_strain": _pre_strain,
-    "clamped_width": _taken_up,
-    "anticlastic": _taken_up,
-    "root_compliance": _root_compliance,
+    **outside.SEVERAL,
+    # bending and stretching take these up: clamps that hold sections flat over the width, sections that
+    # flatten as wide strips bend (M(kappa) by Ashwell's law), and roots of all clamped ends
+    "pre_strain": lambda design, curvature=0.0, strain=0.0: (),
+    "clamped_width": lambda design: (),
+    "anticlastic": lambda design: (),
+    "root_compliance": lambda design, root="monolithic": (),
 }
 
 DEFAULT_EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 INERTIA = ("strip_inertia", "section_rotary_inertia", "body_inertia")
 MOTION_ONLY = (*INERTIA, "strip_damping", "strip_drag", "body_damping")
 """Effects that statics never asks for."""
-SEVERAL = (
-    "applied_force",
-    "applied_moment",
-    "tip_force",
-    "driven_displacement",
-    "driven_rotation",
-    "support",
-    "spring",
-)
-"""Effects that may act several times, each with parameters of its own."""
 
 
 def check_names(names: Sequence[str], parameters: Parameters) -> None:
@@ -267,19 +233,19 @@ def check_names(names: Sequence[str], parameters: Parameters) -> None:
             near = difflib.get_close_matches(name, REGISTRY, n=1)
             hint = f" (nearest: {near[0]})" if near else ""
             raise InvalidParameter("effects", name, f"one of {', '.join(REGISTRY)}{hint}")
-    if len(set(names)) != len(names):
-        raise InvalidParameter("effects", list(names), "each name once")
-    if {"stretching", "inextensible"} <= set(names):
-        wanted = "one of stretching, inextensible, not both"
-        raise InvalidParameter("effects", "stretching and inextensible", wanted)
-    if "bending" not in names:
-        raise InvalidParameter("effects", list(names), "bending, without which a strip has no stiffness")
-    if not {"stretching", "inextensible"} & set(names):
-        raise InvalidParameter("effects", list(names), "stretching or inextensible beside bending")
+    stretches = {"stretching", "inextensible"} & set(names)
+    for wrong, got, expected in (
+        (len(set(names)) != len(names), list(names), "each name once"),
+        (len(stretches) > 1, "stretching and inextensible", "one of stretching, inextensible, not both"),
+        ("bending" not in names, list(names), "bending, without which a strip has no stiffness"),
+        (not stretches, list(names), "stretching or inextensible beside bending"),
+    ):
+        if wrong:
+            raise InvalidParameter("effects", got, expected)
     for name in parameters:
         if name not in names:
             raise InvalidParameter(f"parameters of {name}", name, f"an effect of the scene, {list(names)}")
-        if not isinstance(parameters[name], Mapping) and name not in SEVERAL:
+        if not isinstance(parameters[name], Mapping) and name not in outside.SEVERAL:
             raise InvalidParameter(f"parameters of {name}", parameters[name], "one mapping")
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from spline_model import checks
 from spline_model.compile import System
-from spline_model.continuation.followed import Followed, Point
-from spline_model.continuation.resolution import SMALLEST_MOMENT
+from spline_model.continuation.followed import SMALLEST_MOMENT, Followed, Point
 from spline_model.followers import Followers
 from spline_model.frames import Frames
 from spline_model.newton import TOLERANCE

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.checks import LARGEST_CORRECTION, SLOWEST_SPEED, SMALLEST_CORRECTION
-from spline_model.continuation.point import ROUND_OFF, WORK_MISMATCH
-from spline_model.continuation.resolution import LARGEST_DEFECT, SMALLEST_MOMENT
+from spline_model.continuation.followed import LARGEST_DEFECT, SMALLEST_MOMENT
+from spline_model.continuation.points import ROUND_OFF, WORK_MISMATCH
 from spline_model.reduced.arrays import (
     AT,
     AXIAL,
@@ -96,7 +96,7 @@ def work_of(width, slope0, slope1, bend0, bend1):
 
 @part()
 def is_work(gained, work, width, slope0, slope1, stored):
-    """Whether a gain of potential is the work done, for what is ``stored``: ``continuation.point.jumped``."""
+    """Whether a gain of potential is the work done, for what is ``stored``: ``points.jumped``."""
     scale = max(abs(gained), 0.5 * abs(width) * (abs(slope0) + abs(slope1)))
     return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
 

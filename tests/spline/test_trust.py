@@ -49,7 +49,7 @@ def test_what_few_gauss_points_make_up_is_no_critical_point(gauss_points, false_
     """Requirement: a limit that only too few Gauss points have is refused, with the states it spoils."""
     answer = to(240, increments=48, method=method, control_points=8, gauss_points=gauss_points)
     assert answer.status.value == "not_converged"
-    assert "not found with twice the Gauss points" in answer.message
+    assert "not resolved with 8 control points" in answer.message
     assert answer.critical_points == ()
     end = math.degrees(answer.rotation[-1])
     assert false_limit - 15 < end < false_limit
