@@ -27,8 +27,8 @@ from spline_model.reduced.arrays import (
 )
 from spline_model.reduced.assembly import moment_defect
 from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
-from spline_model.reduced.many import Share, follow_all
 from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
+from spline_model.reduced.path import follow
 from spline_model.reduced.preload import Preload, act, apart
 from spline_model.reduced.states import gather, unknowns_of
 from spline_model.strip.compiled import kernel
@@ -136,8 +136,7 @@ class Elements(Followed):
         """A stretch of a path along which nothing happens, compiled."""
         count = self.counters
         answer = Answer.empty(len(route.factor), self.model.size, len(route.origin))
-        alone = Share.none(arrays)
-        done = follow_all(alone, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
+        done = follow(start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
         count.halved_increments += int(answer.counters[HALVED])
         count.newton_iterations += int(answer.counters[ITERATIONS])
         evaluations = int(answer.counters[EVALUATIONS])

@@ -38,7 +38,7 @@ class Reduced:
     length: float
     energy: float
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of unknowns."""
         own = 2 * len(self.shape.order) - 6
@@ -109,10 +109,10 @@ def reduced(system: System) -> Reduced | None:
     """Return the reduced mechanism of a scene, or None where the element does not know one of its parts.
 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material or the
-    spatial measure. It is made once a system.
+    spatial measure. It is made once, for a system and those of other rotations.
     """
     made: Reduced | None = system.once("reduced", _reduced)
-    return made
+    return made if made is None or made.system is system else replace(made, system=system)
 
 
 def require_reduced(system: System) -> Reduced:
