@@ -63,6 +63,9 @@ class System:
 
     def turned_to(self, rotation: float) -> System:
         """The same with the driven rotation at ``rotation`` [rad]; all that it does not change is shared."""
+        turned = self.scene.turned
+        if turned is not None and turned.angle == rotation:
+            return self
         for name in UNTURNED:
             getattr(self, name)
         scene, same, drives = self.scene.turned_to(rotation), copy(self), self.drives

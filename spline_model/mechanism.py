@@ -108,7 +108,7 @@ class Mechanism:
         """
         name = None if rotation is None else self.design.body_named(body)
         if name not in self._systems:
-            scene = self.scene if name is None else self.driven(1.0, name)
+            scene = self.scene if rotation is None else self.driven(rotation, name)
             self._systems[name] = compile_scene(scene)
             reduced(self._systems[name])
         system = self._systems[name]

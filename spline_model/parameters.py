@@ -15,9 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.design import Design
+from spline_model.effects import Clamp
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot, cross_axis_pivot, ends_at_rest, turned
+from spline_model.reduced.numbers import Numbers
+from spline_model.scene import Scene
 
 Array = NDArray[Any]
 """Real, or complex with a step."""
@@ -104,6 +107,28 @@ class Given:
     def rows(self, kept: NDArray[np.int64]) -> Given:
         """Return some of the D designs, those of the numbers ``kept`` (R,), in SI units."""
         return Given(ends=self.ends[kept], centres=self.centres[kept], section=self.section[kept])
+
+    def numbers(self, base: Given, scene: Scene) -> Numbers:
+        """Return what tells these designs from a scene whose own numbers are ``base``.
+
+        Strips keep their form at rest: they are turned and lengthened with their chords, and hinges at their
+        ends and free ends go along. What is at a point of the ground stays there.
+        """
+        own, square = Numbers.of(scene), np.sum(base.chord**2, axis=-1)
+        c, s = np.sum(base.chord * self.chord, axis=-1) / square, cross(base.chord, self.chord) / square
+        x, y = np.moveaxis(own.points - base.ends[:, :, None, 0], -1, 0)
+        c, s = c[..., None], s[..., None]
+        points = np.stack((c * x - s * y, s * x + c * y), axis=-1) + self.ends[:, :, None, 0]
+        centres = np.repeat(own.centres, len(points), axis=0).astype(points.dtype)
+        centres[:, : self.centres.shape[1]] = self.centres
+        names, strips = [body.name for body in scene.bodies], [strip.name for strip in scene.strips]
+        for clamp in scene.of(Clamp):
+            if clamp.to in names[self.centres.shape[1] :]:
+                end = self.ends[:, strips.index(clamp.strip), int(clamp.end == "end")]
+                centres[:, names.index(clamp.to)] = end
+        thickness, width = np.moveaxis(self.sides / base.sides, -1, 0)
+        modulus = self.section[..., 2] / base.section[..., 2]
+        return Numbers(points, centres, self.span / base.span, width, thickness, modulus)
 
     def put(self, asked: Mechanism, name: str, column: Array, own: float = 0.0) -> None:
         """Set the numbers of that name to ``own`` times themselves plus a column (D,) [SI units].

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from spline_model.reduced.arrays import Arrays, Route
 from spline_model.reduced.equilibrium import ITERATIONS
+from spline_model.reduced.numbers import Designs
 from spline_model.reduced.path import follow
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import (
@@ -27,30 +28,11 @@ from spline_model.strip.points import forces_at
 Array = NDArray[Any]
 
 
-class Designs(NamedTuple):
-    """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
-
-    along (D, S, G, 11 + K), numbers (D, S, 12 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
-    G): curvature; start (D, Y): at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H):
-    change of the held coordinates; springs (D, 3 B, 3 B) as in ``Bodies``; levers (D, C, 2) of frames.
-    """
-
-    length: Array
-    energy: Array
-    along: Array
-    rest: Array
-    numbers: Array
-    compliance: Array
-    start: Array
-    force: Array
-    target: Array
-    springs: Array
-    levers: Array
-
-
 LINE, TABLE, BLOCK = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0, 0))
 PLACES = np.zeros(0, dtype=np.int64)
-NO_DESIGNS = Designs(LINE, LINE, BLOCK[None], BLOCK, BLOCK, BLOCK, TABLE, BLOCK, TABLE, BLOCK, BLOCK)
+NO_DESIGNS = Designs(
+    LINE, LINE, BLOCK[None], BLOCK, BLOCK[None], BLOCK, BLOCK, TABLE, BLOCK, TABLE, BLOCK, BLOCK
+)
 NO_RESULTS = PLACES, BLOCK, TABLE, TABLE, TABLE, TABLE, PLACES.reshape(0, 0), TABLE, PLACES
 NOWHERE = Route(LINE, LINE, LINE, 0.0)
 
