@@ -247,4 +247,4 @@ def _solve_share(
     arrays = model.arrays()._replace(bodies=bodies, strips=own_strips)
     answer = Answer.empty(len(factors), model.size, held)
     # the moment defect refuses
-    follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)
+    follow_all(share, route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

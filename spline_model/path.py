@@ -213,8 +213,8 @@ def _path(
 ) -> Path:
     """The result from rows by state, and why it ended early; given: unknowns (N,) of the first state."""
     work, z = watch.work, rows.pop("z")
-    last = (work.model, work.y(z[-1])) if isinstance(work, Elements) else None
-    rows["unknowns"] = Later(partial(_unknowns, work, z, given), last)
+    known = (work.model, work.y(z)) if isinstance(work, Elements) else ()
+    rows["unknowns"] = Later(partial(_unknowns, work, z, given), *known)
     if given is not None:
         rows["reactions"][0] = given[work.system.drives.row]
         rows["poses"][0] = given[work.system.layout.poses]

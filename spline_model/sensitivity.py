@@ -137,8 +137,7 @@ def _stepped(asked: Mechanism, names: Sequence[str]) -> Given:
         raise InvalidParameter("parameters", list(names), "at least one name, each once")
     require_names(asked, names, "parameters")
     given = Given.of(asked.design, len(names), complex)
-    for name, step in zip(names, 1j * STEP * np.eye(len(names)), strict=True):
-        given.put(asked, name, step, own=1.0)
+    given.put(asked, dict(zip(names, 1j * STEP * np.eye(len(names)), strict=True)), own=1.0)
     return given
 
 

@@ -51,7 +51,8 @@ class Numbers(NamedTuple):
     """What tells D designs of a scene from one another.
 
     points (D, S, n, 2) of the strips and centres (D, B, 2) of the bodies at rest [m]; longer, width,
-    thickness, modulus (D, S): chord, sides of the sections and Young's modulus over those of the scene [1].
+    thickness, area, bending, axial (D, S): chord, sides and area of the sections, EI and EA over those of the
+    scene [1].
     """
 
     points: Array
@@ -59,7 +60,9 @@ class Numbers(NamedTuple):
     longer: Array
     width: Array
     thickness: Array
-    modulus: Array
+    area: Array
+    bending: Array
+    axial: Array
 
     @classmethod
     def of(cls, scene: Scene) -> Self:
@@ -68,21 +71,8 @@ class Numbers(NamedTuple):
         return cls(
             points=np.array([[strip.control_points for strip in scene.strips]]),
             centres=np.array([[body.centre for body in scene.bodies]], dtype=float).reshape(1, -1, 2),
-            longer=same,
-            width=same,
-            thickness=same,
-            modulus=same,
+            **dict.fromkeys(("longer", "width", "thickness", "area", "bending", "axial"), same),
         )
-
-    @property
-    def area(self) -> Array:
-        """Area over that of the scene (D, S) [1]."""
-        return self.width * self.thickness
-
-    @property
-    def rigidity(self) -> Array:
-        """EI over that of the scene (D, S) [1]."""
-        return self.modulus * self.width * self.thickness**3
 
 
 class Designs(NamedTuple):
@@ -200,7 +190,8 @@ def along_of(
     to_modes = _orthonormal_modes(parts, scene.strips[0].basis, at_gauss)
     along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]), dtype=speed.dtype)
     along[..., SPEED], along[..., CURVATURE] = speed, rest
-    stiffer = given.rigidity / (energy * length)[:, None]
+    stiffer = given.bending / (energy * length)[:, None]
+    varied = any((part != 1.0).any() for part in (given.longer, given.width, given.thickness))
     for s, bend in enumerate(bends):
         row = along[:, s]
         row[..., CURVATURE] += bend.natural_curvature * length[:, None]
@@ -212,7 +203,7 @@ def along_of(
         if parts[s]:
             modes = _values(tuple(e.modes for e in parts[s]), u.tobytes())
             row[..., MODES:] = modes @ to_modes[:, s]
-        if len(length) > 1 and (any(bend.roots) or (bend.curl and bend.curl.clamped)):
+        if varied and (any(bend.roots) or (bend.curl and bend.curl.clamped)):
             _add_profiles(bend, row, given, s, degree, u, stiffer[:, s])
     return along, rest, to_modes
 
@@ -241,7 +232,7 @@ def _speeds(points: Array, shape: Shape) -> tuple[Array, Array]:
 
 def _compliances(scene: Scene, given: Numbers) -> Array:
     """Compliances (D, S, K) [1/N] of the axial forces; those of sliding go by the bending of the chord."""
-    stretched, slid = 1.0 / (given.modulus * given.area), given.longer**2 / given.rigidity
+    stretched, slid = 1.0 / given.axial, given.longer**2 / given.bending
     parts = [[part for part in each for _ in range(part.modes.count)] for each in _mixed_of(scene)]
     soft = np.array([[part.axial_compliance for part in each] for each in parts])
     slides = [isinstance(part.modes, SlideModes) for part in parts[0]]
@@ -261,8 +252,7 @@ def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, length: A
         if strip.name in consistent:
             own = consistent[strip.name]
             numbers[:, s, STRAIN] = own.natural_strain
-            area = given.modulus[:, s] * given.area[:, s]
-            numbers[:, s, STRETCHING] = own.axial_rigidity * area / force
+            numbers[:, s, STRETCHING] = own.axial_rigidity * given.axial[:, s] / force
     chords = points[:, :, 1] - points[:, :, 0], points[:, :, -1] - points[:, :, -2]
     for end, (place, carriers, chord) in enumerate(zip((ROOT, TIP), ends, chords, strict=True)):
         numbers[..., place : place + 2] = points[:, :, -end]
