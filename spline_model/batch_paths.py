@@ -17,10 +17,9 @@ from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.parameters import Given
 from spline_model.reduced.arrays import Answer, Route
-from spline_model.reduced.designs import along_of_designs, designs_of
-from spline_model.reduced.many import Designs, Share, Stations, follow_all
-from spline_model.reduced.model import Reduced, reduced
-from spline_model.reduced.numbers import LEAST_COMPLIANCE
+from spline_model.reduced.many import Share, Stations, follow_all
+from spline_model.reduced.model import LEAST_COMPLIANCE, Reduced, reduced
+from spline_model.reduced.numbers import Designs, along_of
 from spline_model.reduced.preload import Preload
 from spline_model.sections import STATIONS
 from spline_model.solution import named, remark
@@ -156,7 +155,8 @@ class Many:
         given, base = self.given.rows(rows), Given.of(self.base.design)
         length = given.span.max(axis=1)
         units = length, given.rigidity.max(axis=1) / length
-        designs = designs_of(model, base, given, *units)
+        numbers = given.numbers(base, model.system.scene)
+        designs = model.designs(numbers, *units)
         designs.target[:, model.bodies.driven] = self.turned[rows]
         if not self.depth.size:
             return designs, Stations.none(model.arrays())
@@ -165,7 +165,7 @@ class Many:
         bend = 0.5 * (self.depth[rows] * length)[:, None] / given.rigidity
         fibre = np.stack((1.0 / (area * modulus * length[:, None]), bend), axis=-1)
         return designs, Stations(
-            along=along_of_designs(at, base, given, *units),
+            along=along_of(at.system, at.shape, model.shape, numbers, *units)[0],
             fibre=fibre * designs.energy[:, None, None],
             strips=at.strips,
             shape=at.shape,
@@ -247,4 +247,4 @@ def _solve_share(
     arrays = model.arrays()._replace(bodies=bodies, strips=own_strips)
     answer = Answer.empty(len(factors), model.size, held)
     # the moment defect refuses
-    follow_all(share, designs.start[0], route, True, preload._replace(**copies), arrays, TOLERANCE, answer)
+    follow_all(share, route, True, preload._replace(**copies), arrays, TOLERANCE, answer)

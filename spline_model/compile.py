@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any, Self, TypeVar
@@ -36,6 +37,10 @@ Array = NDArray[np.float64]
 Table = TypeVar("Table")
 
 
+UNTURNED = ("layout", "scales", "loads", "weight", "prescribed", "is_preloaded", "rest")
+"""What of a system is the same at all rotations, and made once."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class System:
     """A scene with its units; each table and matrix is made when it is first asked for.
@@ -55,6 +60,18 @@ class System:
     def scales(self) -> _Scales:
         """The unit of each unknown, which makes residuals dimensionless."""
         return _Scales.of(self.scene)
+
+    def turned_to(self, rotation: float) -> System:
+        """The same with the driven rotation at ``rotation`` [rad]; all that it does not change is shared."""
+        turned = self.scene.turned
+        if turned is not None and turned.angle == rotation:
+            return self
+        for name in UNTURNED:
+            getattr(self, name)
+        scene, same, drives = self.scene.turned_to(rotation), copy(self), self.drives
+        target = np.where(drives.row == scene.driven_row, rotation, drives.target)
+        vars(same).update(scene=scene, drives=drives._replace(target=target), _made=self._made)
+        return same
 
     def with_tables(self, **changed: Any) -> System:
         """The same scene with other tables of these names."""
@@ -108,7 +125,7 @@ class System:
         """Frames that bodies carry."""
         return frames_of(self.scene)
 
-    @property
+    @cached_property
     def prescribed(self) -> NDArray[np.int64]:
         """Rows (K,) of the drives that are no props, by their number among the constraints."""
         return np.flatnonzero(self.drives.prop == 0)
@@ -188,7 +205,7 @@ class System:
         at = self.layout.strip(strip)
         matrix[at, at] += np.kron(block, np.eye(2))
 
-    @property
+    @cached_property
     def is_preloaded(self) -> bool:
         """Whether weight or pre-strain act."""
         scene = self.scene

@@ -14,8 +14,8 @@ from spline_model.mechanism import Mechanism
 from spline_model.newton import TOLERANCE
 from spline_model.reduced.arrays import AXIAL, BENDING, FORCE, Answer, Arrays, Route
 from spline_model.reduced.equilibrium import ITERATIONS, bear
-from spline_model.reduced.many import Share, follow_all
-from spline_model.reduced.model import Reduced, at_rest, reduced
+from spline_model.reduced.model import Reduced, reduced
+from spline_model.reduced.path import follow
 from spline_model.reduced.preload import Preload
 from spline_model.reduced.states import unknowns_of
 from spline_model.strip.element import STRETCHING
@@ -102,7 +102,7 @@ class HeldPivot:
             raise InvalidParameter("mechanism", list(mechanism.effects), expected)
         self.model = model
         self._arrays = model.arrays()
-        self._y = at_rest(model)
+        self._y = model.start.copy()
         self._rest, self._preload = self._y.copy(), Preload.of(model)
         turn = int(model.bodies.held[0])
         self._own = own = slice(turn - 2, turn + 1)
@@ -162,7 +162,7 @@ class HeldPivot:
         route = Route(np.arange(parts + 1.0) / parts, self._y[held], whole, 0.0, passes=not stable)
         answer = Answer.empty(parts + 1, len(self._y), len(held))
         given = route, False, self._preload, arrays, TOLERANCE, answer
-        done = follow_all(Share.none(arrays), self._y, *given)
+        done = follow(self._y, *given)
         if stable and answer.inertia[:done].any():
             done = 0
         if done > parts:

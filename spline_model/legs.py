@@ -51,31 +51,31 @@ def steady(scene: Scene) -> Scene:
     return replace(scene, effects=tuple(effects))
 
 
-def growing(scene: Scene, increments: int, end: float = 1.0) -> Leg:
-    """Return the leg on which all loads and drives of a scene grow from 0 to the load factor ``end`` [1]."""
-    return Leg(compile_scene(scene), np.linspace(0.0, end, increments + 1)[1:].tolist())
+def growing(system: System, increments: int, end: float = 1.0) -> Leg:
+    """Return the leg on which all loads and drives of a system grow from 0 to the load factor ``end`` [1]."""
+    return Leg(system, np.linspace(0.0, end, increments + 1)[1:].tolist())
 
 
-def turning(driven: Callable[[float], Scene], rotations: Array, increments: int, order: str) -> list[Leg]:
-    """Return the legs of a body that is turned through rotations (R,) [rad] under the loads of its scene.
+def turning(
+    driven: Callable[[float], System], rotations: Sequence[float], increments: int, order: str
+) -> list[Leg]:
+    """Return the legs of a body that is turned through R rotations [rad] under the loads of its scene.
 
-    driven: the scene that is driven to a rotation; increments: those of the loads where they come on first.
+    driven: the system that is driven to a rotation; increments: those of the loads where they come on first.
     Loads that grow together with the rotation go with its size: where the body turns the other way, that leg
     is of the scene driven the other way, which begins where the other one has come back to rest. Without any
     rotation loads grow from 0 to 1.
     """
-    largest = float(max(rotations.tolist(), key=abs))
+    largest = max(rotations, key=abs)
     if largest == 0.0:
         return [growing(driven(0.0), len(rotations))]
-    whole = driven(largest)
-    if order == LOADS_FIRST and has_loads(whole):
+    whole, factors = driven(largest), [rotation / largest for rotation in rotations]
+    if order == LOADS_FIRST and has_loads(whole.scene):
         first = growing(driven(0.0), increments)
-        aims = (rotations / largest).tolist()
-        return [first, Leg(compile_scene(steady(whole)), aims, steady=first.system.loads)]
-    system, factors = compile_scene(whole), rotations / largest
-    if not system.acting.value.any() and sum(map(bool, system.drives.target.tolist())) < 2:
-        return [Leg(system, factors.tolist())]
-    return list(_sides(system, compile_scene(driven(-largest)), factors))
+        return [first, Leg(compile_scene(steady(whole.scene)), factors, steady=first.system.loads)]
+    if not whole.acting.value.any() and sum(map(bool, whole.drives.target.tolist())) < 2:
+        return [Leg(whole, factors)]
+    return list(_sides(whole, driven(-largest), np.array(factors)))
 
 
 def _sides(system: System, other: System, factors: Array) -> list[Leg]:

@@ -10,6 +10,7 @@ from typing import Any, Literal, Self, Unpack
 
 import numpy as np
 
+from spline_model.compile import System, compile_scene
 from spline_model.design import HINGE, LARGEST_OPENING, BodyDesign, Design, StripDesign
 from spline_model.discretisation import Described, Discretisation, motion_penalty_stiffness
 from spline_model.effects import Clamp, Driven, DrivenRotation
@@ -26,6 +27,7 @@ from spline_model.effects.registry import (
     root_length,
 )
 from spline_model.errors import InvalidParameter, require_kind
+from spline_model.reduced.model import reduced
 from spline_model.rigid import loose, props_of
 from spline_model.scene import Body, Effect, Scene, Strip
 
@@ -62,11 +64,20 @@ class Mechanism:
         Axial modes and Gauss points then have their defaults.
         """
         grid = self.design.discretisation
-        if (segments, control_points) == (grid.segments, grid.control_points):
+        asked = segments, control_points
+        if asked == (grid.segments, grid.control_points):
             return self
-        same = (segments, control_points) == (grid.segments, grid.points)
-        own = {} if same else {"axial_modes": None, "gauss_points": None}
-        return self.with_discretisation(segments=segments, control_points=control_points, **own)
+        if asked not in self._refined:
+            own = {} if asked == (grid.segments, grid.points) else {"axial_modes": None, "gauss_points": None}
+            self._refined[asked] = self.with_discretisation(
+                segments=segments, control_points=control_points, **own
+            )
+        return self._refined[asked]
+
+    @cached_property
+    def _refined(self) -> dict[tuple[int, int], Self]:
+        """The mechanism on other discretisations, each made once."""
+        return {}
 
     def in_motion(self) -> Self:
         """Return the mechanism for motions: with ``motion_penalty_stiffness`` if no penalty stiffness was
@@ -90,13 +101,34 @@ class Mechanism:
         drive = DrivenRotation(body=self.design.body_named(body), angle=rotation)
         return self.scene.with_effects(drive)
 
+    def system(self, rotation: float | None = None, body: str | None = None) -> System:
+        """Return the system of the scene, with a body's ``rotation`` [rad] driven where one is given.
+
+        All that does not depend on the rotation is made once.
+        """
+        name = None if rotation is None else self.design.body_named(body)
+        if name not in self._systems:
+            scene = self.scene if rotation is None else self.driven(rotation, name)
+            self._systems[name] = compile_scene(scene)
+            reduced(self._systems[name])
+        system = self._systems[name]
+        return system if rotation is None else system.turned_to(rotation)
+
+    @cached_property
+    def _systems(self) -> dict[str | None, System]:
+        return {}
+
     def propped(self, turned: bool = False, body: str | None = None) -> Self:
         """Return the mechanism with props against free rigid motions; `turned`: beside a driven rotation."""
-        if not loose(self.scene):
+        if not self._is_loose:
             return self
         drives = [DrivenRotation(body=self.design.body_named(body), angle=0.0)] if turned else []
         scene = self.scene
         return replace(self, scene=scene.with_effects(*props_of(scene.with_effects(*drives))))
+
+    @cached_property
+    def _is_loose(self) -> bool:
+        return bool(loose(self.scene))
 
     def released(self) -> Scene:
         """Return the scene in motion (``in_motion``), without the drives that only hold the start.

@@ -15,9 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from spline_model.compile import compile_scene
 from spline_model.design import Design
+from spline_model.effects import Clamp
 from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism
 from spline_model.pivot import Pivot, cross_axis_pivot, ends_at_rest, turned
+from spline_model.reduced.numbers import Numbers
+from spline_model.scene import Scene
 
 Array = NDArray[Any]
 """Real, or complex with a step."""
@@ -38,8 +41,10 @@ CENTRES = ("centre_x", "centre_y")
 mechanism; a name before a dot picks one strip, "strip_1.thickness", and then also its ends' places at rest,
 "strip_1.end_x", or a body's centre, "body.centre_y"."""
 
-POSITIVE = ("length", *MATERIAL)
-"""Columns that statics reads and that must be above zero; the others are checked on the first design."""
+PLACED = (*SHAPE, "orientation")
+"""Numbers that place the strips of a pivot together."""
+BELOW = {"inclination": (np.pi / 2, "0 to pi/2"), "crossing_ratio": (1.0, "0 to 1")}
+"""Limits of those that have one, and how a message calls their range."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -105,26 +110,59 @@ class Given:
         """Return some of the D designs, those of the numbers ``kept`` (R,), in SI units."""
         return Given(ends=self.ends[kept], centres=self.centres[kept], section=self.section[kept])
 
-    def put(self, asked: Mechanism, name: str, column: Array, own: float = 0.0) -> None:
-        """Set the numbers of that name to ``own`` times themselves plus a column (D,) [SI units].
+    def numbers(self, base: Given, scene: Scene) -> Numbers:
+        """Return what tells these designs from a scene whose own numbers are ``base``.
+
+        Strips keep their form at rest: they are turned and lengthened with their chords, and hinges at their
+        ends and free ends go along. What is at a point of the ground stays there.
+        """
+        own, square = Numbers.of(scene), np.sum(base.chord**2, axis=-1)
+        c, s = np.sum(base.chord * self.chord, axis=-1) / square, cross(base.chord, self.chord) / square
+        x, y = np.moveaxis(own.points - base.ends[:, :, None, 0], -1, 0)
+        c, s = c[..., None], s[..., None]
+        points = np.stack((c * x - s * y, s * x + c * y), axis=-1) + self.ends[:, :, None, 0]
+        centres = np.repeat(own.centres, len(points), axis=0).astype(points.dtype)
+        centres[:, : self.centres.shape[1]] = self.centres
+        names, strips = [body.name for body in scene.bodies], [strip.name for strip in scene.strips]
+        for clamp in scene.of(Clamp):
+            if clamp.to in names[self.centres.shape[1] :]:
+                end = self.ends[:, strips.index(clamp.strip), int(clamp.end == "end")]
+                centres[:, names.index(clamp.to)] = end
+        thickness, width = np.moveaxis(self.sides / base.sides, -1, 0)
+        area, _, modulus = np.moveaxis(self.section / base.section, -1, 0)
+        return Numbers(
+            points=points,
+            centres=centres,
+            longer=self.span / base.span,
+            width=width,
+            thickness=thickness,
+            area=area,
+            bending=self.rigidity / base.rigidity,
+            axial=area * modulus,
+        )
+
+    def put(self, asked: Mechanism, columns: Mapping[str, Array], own: float = 0.0) -> None:
+        """Set the numbers of those names to ``own`` times themselves plus columns (D,) [SI units].
 
         Where both strips of a pivot change alike, its body goes along.
         """
-        if isinstance(asked, Pivot) and name in SHAPE:
-            shape = asked.shape
-            new = _ends(**shape | {name: column + own * shape[name]}) - _ends(**shape)
-            self.ends[...] += new
-            self.centres[...] += new[:, None, :, 1].mean(axis=2)
-            return
-        part, place = _place_of(asked.design, name)
-        if part != "sides":
-            numbers = getattr(self, part)
-            numbers[place] = (own * numbers[place].T + column).T
-            return
-        sides, strips = self.sides, place[1]
-        sides[place] = (own * sides[place].T + column).T
-        h, b = np.moveaxis(sides[:, strips], -1, 0)
-        self.section[:, strips, 0], self.section[:, strips, 1] = b * h, b * h**3 / 12.0
+        left = dict(columns)
+        if isinstance(asked, Pivot) and not left.keys().isdisjoint(PLACED):
+            shape: dict[str, Any] = dict(asked.shape)
+            shape |= {name: left.pop(name) + own * shape[name] for name in PLACED if name in left}
+            arm = self.centres - self.ends[:, None, :, 1].mean(axis=2)
+            self.ends[...] = _ends(**shape)
+            self.centres[...] = self.ends[:, None, :, 1].mean(axis=2) + arm
+        for name, column in left.items():
+            part, place = _place_of(asked.design, name)
+            if part != "sides":
+                numbers = getattr(self, part)
+                numbers[place] = (own * numbers[place].T + column).T
+                continue
+            sides, strips = self.sides, place[1]
+            sides[place] = (own * sides[place].T + column).T
+            h, b = np.moveaxis(sides[:, strips], -1, 0)
+            self.section[:, strips, 0], self.section[:, strips, 1] = b * h, b * h**3 / 12.0
 
 
 def _place_of(design: Design, name: str) -> tuple[str, tuple[Any, ...]]:
@@ -147,7 +185,7 @@ def require_names(asked: Mechanism, names: Sequence[str], argument: str) -> None
 
     Raises InvalidParameter, which names the argument, for a name without one.
     """
-    shape = SHAPE if isinstance(asked, Pivot) else ()
+    shape = PLACED if isinstance(asked, Pivot) else ()
     for name in names:
         if name not in shape and not _place_of(asked.design, name)[0]:
             one = f"STRIP.{', STRIP.'.join(POINTS)} of a straight strip or BODY.{', BODY.'.join(CENTRES)}"
@@ -181,7 +219,12 @@ def pivots(
     )
     unit |= {"area": 1e3, "poisson_ratio": 0.3, "body_mass": 1.0, "body_moment_of_inertia": 1.0}
     unit |= {"inclination": np.pi / 4, "crossing_ratio": 0.5}
-    return cross_axis_pivot(**unit, **discretisation), _pivots(columns)
+    pivot = cross_axis_pivot(**unit, **discretisation)
+    taken = {name: columns[name] for name in (*PLACED, *MATERIAL, *SECTION) if name in columns}
+    given, zero = varied(pivot, taken), np.zeros(1)
+    x, y = columns.get("centre_offset", np.zeros((1, 2))).T
+    given.centres[:, 0] += np.stack(turned(x, y, columns.get("orientation", zero)), axis=-1)
+    return pivot, given
 
 
 def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1) -> Given:
@@ -198,10 +241,11 @@ def varied(mechanism: Mechanism, values: Mapping[str, ArrayLike], count: int = 1
     count = max([count, *(len(column) for column in columns.values())])
     given = Given.of(mechanism.design, count)
     for name in values:
-        column = one_each(name, columns[name], count)
+        columns[name] = column = one_each(name, columns[name], count)
         if name.rpartition(".")[2] in (*SHAPE, *MATERIAL, *SECTION):
-            _refuse({name: column}, name, column > 0.0, "a finite number > 0")
-        given.put(mechanism, name, column)
+            below, expected = BELOW.get(name, (np.inf, "a finite number > 0"))
+            _refuse(name, column, (column > 0.0) & (column < below), expected)
+    given.put(mechanism, columns)
     return given
 
 
@@ -216,35 +260,17 @@ def _columns(designs: Mapping[str, ArrayLike] | Sequence[Mapping[str, Any]]) -> 
     return {name: np.broadcast_to(value, shape[name]) for name, value in values.items()}
 
 
-def _pivots(columns: Mapping[str, Array]) -> Given:
-    """Pivots by their keywords."""
-    c, count = columns, len(columns["length"])
-    for name in POSITIVE:
-        _refuse(c, name, c[name] > 0, "a finite number > 0")
-    _refuse(c, "inclination", (c["inclination"] > 0) & (c["inclination"] < np.pi / 2), "0 to pi/2")
-    _refuse(c, "crossing_ratio", (c["crossing_ratio"] > 0) & (c["crossing_ratio"] < 1), "0 to 1")
-    turn = np.broadcast_to(c.get("orientation", np.zeros(1)), (count,))
-    x, y = np.broadcast_to(c.get("centre_offset", np.zeros((1, 2))), (count, 2)).T
-    ends = _ends(**{name: c[name] for name in SHAPE}, orientation=turn)
-    section = np.stack([c[name] for name in MATERIAL], axis=-1)
-    return Given(
-        ends=ends,
-        centres=(ends[:, :, 1].mean(axis=1) + np.stack(turned(x, y, turn), axis=-1))[:, None],
-        section=np.repeat(section[:, None], 2, axis=1),
-    )
-
-
 def _ends(**shape: Any) -> Array:
     """``ends_at_rest`` of pivots (D,) as an array (D, 2, 2, 2), or of one as (1, 2, 2, 2)."""
     numbers = [n for strip in ends_at_rest(**shape) for point in strip for n in point]
     return np.stack(np.broadcast_arrays(*numbers), axis=-1).reshape(-1, 2, 2, 2)
 
 
-def _refuse(columns: Mapping[str, Array], name: str, good: NDArray[np.bool_], expected: str) -> None:
+def _refuse(name: str, column: Array, good: NDArray[np.bool_], expected: str) -> None:
     """Refuse the first design whose number is not good, or not finite."""
-    bad = np.flatnonzero(~(good & np.isfinite(columns[name])))
+    bad = np.flatnonzero(~(good & np.isfinite(column)))
     if bad.size:
-        raise InvalidParameter(f"design {bad[0]}: {name}", float(columns[name][bad[0]]), expected)
+        raise InvalidParameter(f"design {bad[0]}: {name}", float(column[bad[0]]), expected)
 
 
 def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) -> Array:
@@ -259,7 +285,7 @@ def one_each(name: str, given: ArrayLike, count: int, above: float = -np.inf) ->
     if values.shape not in ((1,), (count,)):
         raise InvalidParameter(name, values.shape, f"a number or an array of {count}, one a design")
     bound = "" if above == -np.inf else f" > {above:g}"
-    _refuse({name: values}, name, values > above, f"a finite number{bound}")
+    _refuse(name, values, values > above, f"a finite number{bound}")
     return values
 
 

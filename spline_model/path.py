@@ -21,7 +21,6 @@ from spline_model.continuation.watch import BRANCHES, Watch
 from spline_model.errors import InvalidParameter, require_choice
 from spline_model.newton import Newton, solve
 from spline_model.reduced.elements import Elements, followed
-from spline_model.reduced.model import at_rest
 from spline_model.solution import Later, Path
 
 Array = NDArray[np.float64]
@@ -125,7 +124,7 @@ class _Track:
                 self._run(work, work.y(newton.z))
             elif not work.system.is_preloaded:
                 self.given = work.system.rest  # reactions at rest are none, not their round-off
-                self._run(work, at_rest(work.model))
+                self._run(work, work.model.start)
             elif (y := work.grown()) is not None:
                 self._run(work, y)
         if self.states == 0:
@@ -211,8 +210,8 @@ def _path(
 ) -> Path:
     """The result from rows by state, and why it ended early; given: unknowns (N,) of the first state."""
     work, z = watch.work, rows.pop("z")
-    last = (work.model, work.y(z[-1])) if isinstance(work, Elements) else None
-    rows["unknowns"] = Later(partial(_unknowns, work, z, given), last)
+    known = (work.model, work.y(z)) if isinstance(work, Elements) else ()
+    rows["unknowns"] = Later(partial(_unknowns, work, z, given), *known)
     if given is not None:
         rows["reactions"][0] = given[work.system.drives.row]
         rows["poses"][0] = given[work.system.layout.poses]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeVar
@@ -181,7 +182,15 @@ class Scene:
                 return each
         return None
 
-    @property
+    def turned_to(self, angle: float) -> Scene:
+        """The scene with another angle [rad] of its driven rotation, on which nothing else depends."""
+        turned, same = self.turned, copy(self)
+        assert turned is not None, "there is a driven rotation"
+        aimed = tuple(replace(turned, angle=angle) if each is turned else each for each in self.effects)
+        vars(same).update(effects=aimed, _sorted={})
+        return same
+
+    @cached_property
     def driven_row(self) -> int | None:
         """Index in z of the driven rotation's torque, if there is one."""
         turned = self.turned

@@ -70,35 +70,41 @@ def _alike(system: System, states: Array, strips: list[Strip], stations: Array, 
     for g, strip in enumerate(strips):
         own = states[:, layout.strip(strip.name)].reshape(count, -1, 2)
         points[:, :, :count, g], points[:, :, count, g] = own.transpose(1, 2, 0), strip.control_points
-    values = np.concatenate([basis.evaluate(stations, order) for order in range(3)])
-    curve = (values @ points.reshape(len(points), -1)).reshape(3, len(stations), *points.shape[1:])
-    (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)  # (P, S + 1, G)
-    square = x1 * x1 + y1 * y1
-    speed, turning = np.sqrt(square), (x1 * y2 - y1 * x2) / square
-    rest_speed, rest_turning = speed[:, count:], turning[:, count:]
-    x1, y1, speed, turning = x1[:, :count], y1[:, :count], speed[:, :count], turning[:, :count]
+    values = np.concatenate([basis.evaluate(stations, order) for order in range(2 + (not balanced))])
+    curve = (values @ points.reshape(len(points), -1)).reshape(-1, len(stations), *points.shape[1:])
+    x1, y1 = curve[1, :, 0], curve[1, :, 1]  # (P, S + 1, G), the last state at rest
+    speed = np.sqrt(x1 * x1 + y1 * y1)
+    x, y = x1[:, :count] / speed[:, :count], y1[:, :count] / speed[:, :count]
 
     pull = _pulls(system, states, strips, stations)
-    shear = (pull[1] * x1 - pull[0] * y1) / speed
+    shear = pull[1] * x - pull[0] * y
     if balanced:
-        force = ((pull[0] * x1 + pull[1] * y1) / speed).transpose(1, 2, 0)
+        force = (pull[0] * x + pull[1] * y).transpose(1, 2, 0)
         moment = _balanced_moments(system, states, strips, points[:, :, :count], stations)
     else:
-        moment = np.zeros_like(speed)
-        bends = {bending.strip: bending for bending in scene.of(Bending)}
-        for g, strip in enumerate(strips):
-            if bending := bends.get(strip.name):
-                length = rest_speed[..., g] if bending.measure == "material" else speed[..., g]
-                strain = turning[..., g] / length - (rest_turning / rest_speed)[..., g]
-                strain -= bending.natural_curvature
-                moment[..., g] = bending.moment_at(strain, strip.basis.degree, stations)
-        force = _axial_forces(system, states, strips, stations, speed / rest_speed)
+        moment = _moments(scene, strips, curve, speed, stations)
+        force = _axial_forces(system, states, strips, stations, speed[:, :count] / speed[:, count:])
     return Sections(
         shape=np.ascontiguousarray(curve[0, :, :, :count].transpose(2, 3, 0, 1)),
         axial_force=np.ascontiguousarray(force),
         bending_moment=np.ascontiguousarray(moment.transpose(1, 2, 0)),
         shear_force=np.ascontiguousarray(shear.transpose(1, 2, 0)),
     )
+
+
+def _moments(scene: Scene, strips: list[Strip], curve: Array, speed: Array, stations: Array) -> Array:
+    """Bending moments (P, S, G) by the law, of curves and derivatives (3, P, 2, S + 1, G), rest last."""
+    (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)
+    turning = (x1 * y2 - y1 * x2) / speed**2
+    moment = np.zeros_like(turning[:, :-1])
+    bends = {bending.strip: bending for bending in scene.of(Bending)}
+    for g, strip in enumerate(strips):
+        if bending := bends.get(strip.name):
+            rest = turning[:, -1:, g] / speed[:, -1:, g]
+            length = speed[:, -1:, g] if bending.measure == "material" else speed[:, :-1, g]
+            strain = turning[:, :-1, g] / length - rest - bending.natural_curvature
+            moment[..., g] = bending.moment_at(strain, strip.basis.degree, stations)
+    return moment
 
 
 def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) -> Array:

@@ -15,8 +15,8 @@ from spline_model.errors import InvalidParameter
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.parameters import KEYWORDS, Given, require_names
 from spline_model.pivot import Pivot, turned
-from spline_model.reduced.designs import along_of_designs, designs_of, of_design
 from spline_model.reduced.model import Reduced, from_unknowns, require_reduced
+from spline_model.reduced.numbers import along_of
 from spline_model.reduced.states import products, section_forces, unknowns_of, whole_tangents
 from spline_model.sections import STATIONS
 from spline_model.static_answers import StaticSolution
@@ -98,8 +98,9 @@ def sensitivities(
     z = solution.states
     model, base = _model_of(system, z), Given.of(asked.design)
     units = np.full(len(parameters), model.length), np.full(len(parameters), model.energy)
-    designs = designs_of(model, base, given, *units)
-    models = [of_design(model, designs, p) for p in range(len(parameters))]
+    numbers = given.numbers(base, system.scene)
+    designs = model.designs(numbers, *units)
+    models = [model.of_design(designs, p) for p in range(len(parameters))]
     changes, rate = _differentiate(model, models, solution, designs.start[:, model.bodies.held].imag / STEP)
     y = from_unknowns(model, z) + 1j * STEP * changes
     force, product, energies = _products(models, y, solution.load_factor, rate)
@@ -113,8 +114,8 @@ def sensitivities(
         row = system.drives.row[model.bodies.driven]
         torque = replace(torque, derivative=states.derivative[:, row])
     at = model.at_stations(np.asarray(stations, dtype=float))
-    designs = designs._replace(along=along_of_designs(at, base, given, *units))
-    at_stations = (of_design(at, designs, p) for p in range(len(models)))
+    designs = designs._replace(along=along_of(system, at.shape, model.shape, numbers, *units)[0])
+    at_stations = (at.of_design(designs, p) for p in range(len(models)))
     stress = [_fibre_stress(*each) for each in zip(at_stations, given.section, y, strict=True)]
     return Sensitivities(
         parameters=tuple(parameters),
@@ -136,8 +137,7 @@ def _stepped(asked: Mechanism, names: Sequence[str]) -> Given:
         raise InvalidParameter("parameters", list(names), "at least one name, each once")
     require_names(asked, names, "parameters")
     given = Given.of(asked.design, len(names), complex)
-    for name, step in zip(names, 1j * STEP * np.eye(len(names)), strict=True):
-        given.put(asked, name, step, own=1.0)
+    given.put(asked, dict(zip(names, 1j * STEP * np.eye(len(names)), strict=True)), own=1.0)
     return given
 
 

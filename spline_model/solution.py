@@ -80,15 +80,28 @@ class CriticalPoint:
 
 @dataclass(frozen=True, eq=False)
 class Later:
-    """An array (R, N) that is computed at its first access; last: the model and its last row in it."""
+    """An array (R, N) that is computed at its first access.
+
+    model, y (R, Y): of its rows in the elements' own unknowns, where they are known.
+    """
 
     make: Callable[[], Array]
-    last: tuple[Any, Array] | None = None
+    model: Any = None
+    y: Array | None = None
 
     @kept
     def array(self) -> Array:
         """It."""
         return self.make()
+
+    @property
+    def last(self) -> tuple[Any, Array] | None:
+        """The model and its last row in it."""
+        return None if self.y is None else (self.model, self.y[-1])
+
+    def rows(self, some: slice) -> Later:
+        """Return some of its rows."""
+        return Later(partial(_some, self, some), self.model, None if self.y is None else self.y[some])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -151,10 +164,8 @@ class Path:
 
     def rows(self, kept: slice) -> dict[str, Any]:
         """Return the arrays that it has by state, of some of them."""
-        unknowns = self.unknowns
-        return {name: getattr(self, name)[kept] for name in BY_STATE} | {
-            "unknowns": Later(partial(_some, unknowns, kept))
-        }
+        by_state = {name: getattr(self, name)[kept] for name in BY_STATE}
+        return by_state | {"unknowns": self.unknowns.rows(kept)}
 
 
 BY_STATE = (

@@ -243,7 +243,9 @@ class StaticSolution(Tabulated, Path):
         return self._stiffness_of(body)
 
     def _stiffness_of(self, body: str) -> Array:
-        return _body_stiffness(require_reduced(self.system), self.states, self.load_factor, body)
+        model, y = require_reduced(self.system), self.unknowns.y
+        y = from_unknowns(model, self.states) if y is None else y
+        return _body_stiffness(model, y, self.load_factor, body)
 
     @property
     def resolution(self) -> str:
@@ -274,12 +276,12 @@ class StaticSolution(Tabulated, Path):
         }
 
 
-def _body_stiffness(model: Reduced, states: Array, load: Array, body: str) -> Array:
+def _body_stiffness(model: Reduced, y: Array, load: Array, body: str) -> Array:
     """From the tangent at the bodies with the strips condensed, the Schur complement (S, 3, 3) of all others
     on a body's coordinates."""
     at = 3 * [each.name for each in model.system.scene.bodies].index(body)
     own = np.arange(at, at + 3)
-    tangents = model.energy * body_tangents(model, from_unknowns(model, states), load)
+    tangents = model.energy * body_tangents(model, y, load)
     other = np.ones(tangents.shape[1], dtype=bool)
     other[own] = other[model.fixed] = False
     rest = np.flatnonzero(other)

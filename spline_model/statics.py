@@ -163,15 +163,15 @@ def solve_mechanism(
     require_choice("control", control, CONTROLS)
     require_finite("end", end, "load factor")
     laps, turned = Laps(), rotation is not None and control == "load" and end == 1.0
-    rotations = np.zeros(0) if rotation is None else _rotations(rotation, increments)
+    rotations = [] if rotation is None else _rotations(rotation, increments)
 
     def solve(grid: Grid, told: Progress | None, balanced: bool) -> StaticSolution:
         given = mechanism.on(*grid).propped(rotation is not None, body)
         if turned:
-            legs = turning(partial(given.driven, body=body), rotations, increments, order)
+            legs = turning(partial(given.system, body=body), rotations, increments, order)
         else:
-            scene = given.driven(float(rotations[-1]), body) if rotations.size else given.scene
-            legs = [growing(scene, increments, end)]
+            driven = rotations[-1] if rotations else None
+            legs = [growing(given.system(driven, body), increments, end)]
         system = legs[0].system
         laps.lap("compile")
         if control == "arc-length":
@@ -183,20 +183,20 @@ def solve_mechanism(
             require_unborne(system, path.reactions)
         return StaticSolution.of(system, path, given.effects, laps, balanced=balanced, asked=body)
 
-    way = 1.0 + abs(end) + float(np.abs(np.diff(rotations, prepend=0.0)).sum())
-    total = rotations.size or increments
+    way = 1.0 + abs(end) + sum(abs(b - a) for a, b in pairwise([0.0, *rotations]))
+    total = len(rotations) or increments
     solution = answered(mechanism.design, accuracy, solve, progress, total, way, check)
     return solution.checked(raise_on_failure)
 
 
-def _rotations(rotation: float | Sequence[float], increments: int) -> Array:
+def _rotations(rotation: float | Sequence[float], increments: int) -> list[float]:
     """The rotations [rad] of a path from 0 on, each leg in ``increments``."""
     targets = finite_numbers("rotation", rotation, "rad")
     legs = list(pairwise([0.0, *targets]))
     largest = max(map(abs, targets))
     if 0.0 < largest < LEAST_ROTATION or any(0.0 < abs(b - a) < LEAST_ROTATION for a, b in legs):
         raise InvalidParameter("rotation", rotation, f"0, or legs of {LEAST_ROTATION:g} [rad] or more")
-    return np.array([b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]])
+    return [b - (b - a) * left / increments for a, b in legs for left in range(increments)[::-1]]
 
 
 def static_state(

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from spline_model.effects import StripDamping
 from spline_model.frames import Frames
 from spline_model.motion.start import Motion
-from spline_model.reduced.model import Reduced, in_units
-from spline_model.reduced.numbers import GAIN, LEAST_COMPLIANCE
+from spline_model.reduced.model import GAIN, LEAST_COMPLIANCE, Reduced, in_units
 from spline_model.strip.element import FIRST, SECOND
 from spline_model.tables import DriveTable, LoadTable
 

@@ -20,7 +20,7 @@ from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FACTORISATIONS, FOLDS, REFUSED, SNAPS, STEPS, load_at
 from spline_model.reduced.arrays import NEGATIVE
 from spline_model.reduced.assembly import assemble, factorise
-from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
 from spline_model.reduced.states import unknowns_of, whole_tangents
 from spline_model.strip.compiled import copy, kernel, part
 from spline_model.strip.element import ON_POINTS, POINTS
@@ -75,7 +75,7 @@ def softness(model: Reduced, y: Array, strip: int) -> float:
     """
     w, a = model.places(strip)
     parts = []
-    for hessian in whole_tangents(model, np.array([y, at_rest(model)]), np.zeros(2))[1]:
+    for hessian in whole_tangents(model, np.array([y, model.start]), np.zeros(2))[1]:
         coupling = hessian[a, w]
         compliance = -hessian[a, a] + LEAST * np.eye(len(coupling))
         parts.append(hessian[w, w] + coupling.T @ np.linalg.solve(compliance, coupling))

@@ -26,8 +26,8 @@ from spline_model.reduced.arrays import (
 )
 from spline_model.reduced.assembly import moment_defect
 from spline_model.reduced.equilibrium import CONFIRMED, EVALUATIONS, HALVED, ITERATIONS
-from spline_model.reduced.many import Share, follow_all
-from spline_model.reduced.model import Reduced, at_rest, from_unknowns, reduced
+from spline_model.reduced.model import Reduced, from_unknowns, reduced
+from spline_model.reduced.path import follow
 from spline_model.reduced.preload import Preload, act, apart
 from spline_model.reduced.states import gather, unknowns_of
 from spline_model.strip.compiled import kernel
@@ -128,15 +128,14 @@ class Elements(Followed):
         """State (Y,) under all weight and pre-strain [m, rad, N]; None if something happens on the way."""
         origin, target = self.model.drives
         route = Route(np.array([0.0, 1.0]), origin, 0.0 * target, 0.0, swells=True)
-        answer = self._follow(route, at_rest(self.model), self.loose)
+        answer = self._follow(route, self.model.start, self.loose)
         return answer.y[1] if len(answer.y) == 2 else None
 
     def _follow(self, route: Route, start: Array, arrays: Arrays) -> Answer:
         """A stretch of a path along which nothing happens, compiled."""
         count = self.counters
         answer = Answer.empty(len(route.factor), self.model.size, len(route.origin))
-        alone = Share.none(arrays)
-        done = follow_all(alone, start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
+        done = follow(start, route, self.judged, self.preload, arrays, TOLERANCE, answer)
         count.halved_increments += int(answer.counters[HALVED])
         count.newton_iterations += int(answer.counters[ITERATIONS])
         evaluations = int(answer.counters[EVALUATIONS])

@@ -1,4 +1,4 @@
-"""Paths as Python asks for them: that of a mechanism, or of many designs of it in one compiled loop."""
+"""The paths of many designs of a mechanism in one compiled loop."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from spline_model.reduced.arrays import Arrays, Route
 from spline_model.reduced.equilibrium import ITERATIONS
+from spline_model.reduced.numbers import Designs
 from spline_model.reduced.path import follow
 from spline_model.strip.compiled import called, copy, kernel
 from spline_model.strip.element import (
@@ -27,34 +28,6 @@ from spline_model.strip.points import forces_at
 Array = NDArray[Any]
 
 
-class Designs(NamedTuple):
-    """What tells D designs from one another, over the length (D,) [m] and energy (D,) [J] of each.
-
-    along (D, S, G, 11 + K), numbers (D, S, 12 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
-    G): curvature; start (D, Y): at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H):
-    change of the held coordinates; springs (D, 3 B, 3 B) as in ``Bodies``; levers (D, C, 2) of frames.
-    """
-
-    length: Array
-    energy: Array
-    along: Array
-    rest: Array
-    numbers: Array
-    compliance: Array
-    start: Array
-    force: Array
-    target: Array
-    springs: Array
-    levers: Array
-
-
-LINE, TABLE, BLOCK = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0, 0))
-PLACES = np.zeros(0, dtype=np.int64)
-NO_DESIGNS = Designs(LINE, LINE, BLOCK[None], BLOCK, BLOCK, BLOCK, TABLE, BLOCK, TABLE, BLOCK, BLOCK)
-NO_RESULTS = PLACES, BLOCK, TABLE, TABLE, TABLE, TABLE, PLACES.reshape(0, 0), TABLE, PLACES
-NOWHERE = Route(LINE, LINE, LINE, 0.0)
-
-
 class Stations(NamedTuple):
     """P stations along the strips at which strains [1] are computed, in place of the Gauss points.
 
@@ -71,7 +44,8 @@ class Stations(NamedTuple):
     @classmethod
     def none(cls, arrays: Arrays) -> Self:
         """Those of paths of which no strain is asked for."""
-        return cls(NO_DESIGNS.along, NO_DESIGNS.rest, arrays.strips, arrays.shape, arrays.local)
+        along, fibre = np.zeros((0, 0, 0, 0)), np.zeros((0, 0, 0))
+        return cls(along, fibre, arrays.strips, arrays.shape, arrays.local)
 
 
 class Share(NamedTuple):
@@ -91,11 +65,6 @@ class Share(NamedTuple):
     growing: Route
     place: int
     results: tuple[NDArray[Any], ...]
-
-    @classmethod
-    def none(cls, arrays: Arrays) -> Self:
-        """That of a path without any design but the mechanism itself."""
-        return cls(PLACES, 0, 1, NO_DESIGNS, Stations.none(arrays), NOWHERE, 0, NO_RESULTS)
 
 
 @called()
@@ -158,11 +127,9 @@ def _largest_strain(i, y, poses, stations):
 
 
 @kernel()
-def follow_all(share, start, route, judged, preload, arrays, tolerance, answer):
-    """Follow a path, as ``follow`` does; or those of all designs of a share, where it has any."""
+def follow_all(share, route, judged, preload, arrays, tolerance, answer):
+    """Follow the paths of all designs of a share, as ``follow`` does that of a mechanism."""
     rows, designs, growing, place = share.rows, share.designs, share.growing, share.place
-    if rows.size == 0:
-        return follow(start, route, judged, preload, arrays, tolerance, answer)
     bodies, strips, local, stations = arrays.bodies, arrays.strips, arrays.local, share.stations
     states, centre, torque, stiffness, energy, strain, inertia, defect, iterations = share.results
     for i in range(share.begin, rows.size, share.stride):
@@ -194,4 +161,3 @@ def follow_all(share, start, route, judged, preload, arrays, tolerance, answer):
             energy[row, k] = (answer.energies[k, 0] + answer.energies[k, 1]) * unit
             if stations.along.size > 0:
                 strain[row, k] = _largest_strain(i, answer.y[k], bodies.rest.size, stations)
-    return 0

@@ -8,17 +8,33 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from spline_model.basis import SlideModes
 from spline_model.compile import System
 from spline_model.effects import Bending, MixedStretching, Stretching
+from spline_model.effects.elastic import MEASURES
 from spline_model.errors import InvalidParameter
 from spline_model.followers import Followers
 from spline_model.reduced.arrays import Arrays, Bodies, Space
-from spline_model.reduced.numbers import GAIN, along_of, ends_of, shape_at, shape_of, speeds_of, strips_of
+from spline_model.reduced.numbers import (
+    Designs,
+    Ends,
+    Numbers,
+    along_of,
+    arrays_of,
+    shape_at,
+    shape_of,
+)
 from spline_model.scene import Scene
 from spline_model.strip.element import Local, Shape, Strips
 
 Array = NDArray[np.float64]
 
+LEAST_COMPLIANCE = 1e-4
+"""Axial compliance in L^2/EI below which an axial force stays beside w (L/h above 29): condensed, it would be
+the strain's round-off over the compliance; beside w it follows from equilibrium."""
+GAIN = 100.0
+"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
+that no digit is lost."""
 ELASTIC: tuple[type[Bending | MixedStretching | Stretching], ...] = (Bending, MixedStretching, Stretching)
 
 
@@ -26,7 +42,8 @@ ELASTIC: tuple[type[Bending | MixedStretching | Stretching], ...] = (Bending, Mi
 class Reduced:
     """A scene in reduced coordinates y: the bodies' poses, free strip ends among them, then w and a a strip.
 
-    rest (S, G): the strips' curvature; to_modes (S, K, K): the scene's axial forces from the element's.
+    rest (S, G): the strips' curvature; to_modes (S, K, K): the scene's axial forces from the element's; start
+    (Y,): y at rest.
     """
 
     system: System
@@ -35,10 +52,11 @@ class Reduced:
     shape: Shape
     rest: Array
     to_modes: Array
+    start: Array
     length: float
     energy: float
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of unknowns."""
         own = 2 * len(self.shape.order) - 6
@@ -74,18 +92,35 @@ class Reduced:
 
     def let_go(self, system: System) -> Reduced:
         """Return that of a system in which nothing is driven, with the same strips and bodies."""
-        every = np.arange(len(self.bodies.load))
-        free = np.delete(every, self.bodies.frames.carried)
-        bodies = self.bodies._replace(free=free, held=every[:0], driven=-1)
+        none = self.bodies.held[:0]
+        bodies = _freed(self.bodies._replace(held=none, driven=-1), len(self.bodies.load))
         return replace(self, system=system, bodies=bodies)
 
     def as_slender(self, *, slender: bool) -> Reduced:
         """The same with, or without, the mean axial forces beside the bodies: see ``LEAST_COMPLIANCE``."""
-        strips = self.strips
-        bodies = _bodies_of(self.system, slender * len(strips.roots))
-        coupled = slender * strips.split
+        strips, coupled = self.strips, slender * self.strips.split
+        bodies = _freed(self.bodies, len(self.bodies.rest) + slender * len(strips.roots))
         strips = strips._replace(coupled=coupled, outer=int(slender), gain=np.full_like(strips.gain, GAIN))
         return replace(self, bodies=bodies, strips=strips)
+
+    def of_design(self, designs: Designs, d: int) -> Reduced:
+        """The same with the arrays of one of the designs, which are over this length and energy."""
+        own = {name: getattr(designs, name)[d] for name in ("along", "numbers", "compliance")}
+        bodies = self.bodies._replace(
+            rest=designs.start[d, : len(self.bodies.rest)],
+            frames=self.bodies.frames._replace(lever=designs.levers[d]),
+        )
+        strips = self.strips._replace(**own)
+        return replace(self, bodies=bodies, strips=strips, to_modes=designs.to_modes[d])
+
+    @property
+    def ends(self) -> Ends:
+        """Bodies at the strips' ends."""
+        return Ends(self.strips.roots, self.strips.tips)
+
+    def designs(self, given: Numbers, length: Array, energy: Array) -> Designs:
+        """Return the arrays of D designs of the scene, over lengths (D,) [m] and energies (D,) [J]."""
+        return arrays_of(self.system, self.shape, self.ends, given, length, energy)
 
     def arrays(self) -> Arrays:
         """What kernels know of it, with working arrays of their own."""
@@ -98,21 +133,20 @@ class Reduced:
 
     def at_stations(self, stations: Array) -> Reduced:
         """Return the same with stations u (P,) [1] for Gauss points, where sections are recovered."""
-        system = self.system
-        shape = shape_at(system.scene.strips[0].basis, stations, np.zeros(len(stations)))
-        speeds = speeds_of(system.scene, shape, self.length)
-        strips = self.strips._replace(along=along_of(system, shape, speeds, self.to_modes))
-        return replace(self, shape=shape, strips=strips, rest=speeds[1])
+        shape = shape_at(self.system.scene.strips[0].basis, stations, np.zeros(len(stations)))
+        own = Numbers.of(self.system.scene), np.array([self.length]), np.array([self.energy])
+        along, rest, _ = along_of(self.system, shape, self.shape, *own)
+        return replace(self, shape=shape, strips=self.strips._replace(along=along[0]), rest=rest[0])
 
 
 def reduced(system: System) -> Reduced | None:
     """Return the reduced mechanism of a scene, or None where the element does not know one of its parts.
 
     Strips of one basis and quadrature, clamped or free at their ends, with bending in the material or the
-    spatial measure. It is made once a system.
+    spatial measure. It is made once, for a system and those of other rotations.
     """
     made: Reduced | None = system.once("reduced", _reduced)
-    return made
+    return made if made is None or made.system is system else replace(made, system=system)
 
 
 def require_reduced(system: System) -> Reduced:
@@ -130,19 +164,47 @@ def _reduced(system: System) -> Reduced | None:
     scene = system.scene
     if not _known(scene):
         return None
-    bending = {e.strip: e for e in scene.of(Bending)}
-    basis, points = scene.strips[0].basis, next(iter(bending.values())).gauss_points
+    basis, bending = scene.strips[0].basis, scene.of(Bending)[0]
     length, energy = system.scales.length, system.scales.energy
-    shape = shape_of(basis, points)
-    ends = ends_of(system)
-    strips, rest, to_modes = strips_of(system, shape, basis, points, ends)
+    shape, ends = shape_of(basis, bending.gauss_points), Ends.of(scene)
+    own = arrays_of(system, shape, ends, Numbers.of(scene), np.array([length]), np.array([energy]))
+    first, c = scene.strips[0].name, own.compliance[0]
+    mixed = (e.modes for e in scene.of(MixedStretching) if e.strip == first)
+    split = sum(modes.count for modes in mixed if not isinstance(modes, SlideModes))
+    small = c < LEAST_COMPLIANCE
+    outer = int(small[:, :split].any())
+    strips = Strips(
+        along=own.along[0],
+        compliance=c,
+        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        numbers=own.numbers[0],
+        roots=ends.roots,
+        tips=ends.tips,
+        split=split,
+        coupled=outer * split,
+        outer=outer,
+        measure=MEASURES.index(bending.measure),
+    )
+    held = system.drives.coordinate - system.layout.poses.start
+    row = np.flatnonzero(system.drives.row == scene.driven_row)
+    bodies = Bodies(
+        rest=own.start[0, : own.force.shape[2]],
+        load=own.force[0, 0],
+        weight=own.force[0, 1],
+        free=held,
+        held=held,
+        driven=int(row[0]) if row.size else -1,
+        springs=own.springs[0],
+        frames=system.frames.among(system.layout.poses.start, length),
+    )
     return Reduced(
         system=system,
-        bodies=_bodies_of(system, strips.outer * len(scene.strips)),
+        bodies=_freed(bodies, len(bodies.rest) + outer * len(scene.strips)),
         strips=strips,
         shape=shape,
-        rest=rest,
-        to_modes=to_modes,
+        rest=own.rest[0],
+        to_modes=own.to_modes[0],
+        start=own.start[0],
         length=length,
         energy=energy,
     )
@@ -162,40 +224,13 @@ def _known(scene: Scene) -> bool:
     )
 
 
-def _bodies_of(system: System, outer: int) -> Bodies:
-    """The bodies, free ends among them, and what acts on them."""
-    scene, layout, loads, drives = system.scene, system.layout, system.loads, system.drives
-    length, force, begin = (
-        system.scales.length,
-        system.scales.energy / system.scales.length,
-        layout.poses.start,
-    )
-    rest = [v for body in scene.bodies for v in (*(at / length for at in body.centre.tolist()), 0.0)]
-    for strip in scene.strips:
-        for end, at in (("start", 0), ("end", -1)):
-            if (strip.name, end) not in scene.clamps:
-                rest += [*(strip.control_points[at] / length), 0.0]
-    load, weight = np.zeros(len(rest) + outer), np.zeros(len(rest) + outer)
-    if loads.value.size:
-        np.add.at(load, loads.coordinate - begin, loads.value)
-    if system.weight.size:
-        weight[: layout.poses.stop - begin] = system.weight[layout.poses]
-    for part in (load, weight):
-        part[: len(rest)] /= force
-        part[2 : len(rest) : 3] /= length
-    held, rows = drives.coordinate - begin, drives.row.tolist()
-    frames = system.frames.among(begin, length)
-    fixed = {*held.tolist(), *frames.carried}
-    return Bodies(
-        rest=np.array(rest),
-        load=load,
-        weight=weight,
-        free=np.array([i for i in range(len(load)) if i not in fixed], dtype=np.int64),
-        held=held,
-        driven=-1 if scene.driven_row is None else rows.index(scene.driven_row),
-        springs=in_units(system, system.springs),
-        frames=frames,
-    )
+def _freed(bodies: Bodies, size: int) -> Bodies:
+    """The bodies with so many unknowns, mean axial forces behind poses, free but where held or carried."""
+    poses, fixed = len(bodies.rest), {*bodies.held.tolist(), *bodies.frames.carried}
+    load, weight = np.zeros((2, size))
+    load[:poses], weight[:poses] = bodies.load[:poses], bodies.weight[:poses]
+    free = np.array([place for place in range(size) if place not in fixed], dtype=np.int64)
+    return bodies._replace(load=load, weight=weight, free=free)
 
 
 def in_units(system: System, matrix: Array) -> Array:
@@ -204,16 +239,6 @@ def in_units(system: System, matrix: Array) -> Array:
         return matrix
     unit = np.tile(system.scales.pose, len(matrix) // 3)
     return np.asarray(matrix * (unit[:, None] * unit / system.scales.energy))
-
-
-def at_rest(model: Reduced) -> Array:
-    """Return the state y (Y,) at rest [1]: lengths over L, turns [rad], axial forces over EI/L^2."""
-    y, bodies = np.zeros(model.size), model.bodies
-    y[: len(bodies.rest)] = bodies.rest
-    for s, strip in enumerate(model.system.scene.strips):
-        w, _ = model.places(s)
-        y[w] = [*(strip.control_points[2:-2] / model.length).ravel(), 1.0, 1.0]
-    return y
 
 
 def from_unknowns(model: Reduced, z: Array) -> Array:

@@ -1,10 +1,13 @@
-"""What tells the strips' elements of a scene from one another: their ends, and what stands along each."""
+"""From the numbers of D designs of a scene to the arrays of the kernels.
+
+D = 1 for the scene itself, many for a batch, and complex numbers for derivatives. SI units come in; all that
+leaves is dimensionless.
+"""
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +15,7 @@ from numpy.typing import NDArray
 from spline_model.basis import AxialModes, Bezier, SlideModes
 from spline_model.compile import System
 from spline_model.effects import Bending, Clamp, MixedStretching, Stretching
-from spline_model.effects.base import Constraint
-from spline_model.effects.elastic import MEASURES, Taper
+from spline_model.effects.elastic import Taper
 from spline_model.scene import Scene
 from spline_model.strip.element import (
     CURL,
@@ -34,52 +36,88 @@ from spline_model.strip.element import (
     TIP,
     WHERE,
     Shape,
-    Strips,
 )
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
+"""Real, or complex with a step."""
 
-LEAST_COMPLIANCE = 1e-4
-"""Axial compliance in L^2/EI below which an axial force stays beside w (L/h above 29): condensed, it would be
-the strain's round-off over the compliance; beside w it follows from equilibrium."""
-GAIN = 100.0
-"""Stiffness by which such a force is condensed all the same, exactly: of the order of the bending's, so
-that no digit is lost."""
+DIGITS = 12
+"""Of b/L and t/L over those of the scene: what differs less has the same profile."""
 ROUND_OFF = 1e-14
 """Difference of speeds along a strip, in its mean, that is none."""
 
 
-class End(NamedTuple):
-    """An end of a strip: its body or GROUNDED, point there [m], direction at rest."""
+class Numbers(NamedTuple):
+    """What tells D designs of a scene from one another.
 
-    body: int
-    point: tuple[float, float]
-    direction: float
+    points (D, S, n, 2) of the strips and centres (D, B, 2) of the bodies at rest [m]; longer, width,
+    thickness, area, bending, axial (D, S): chord, sides and area of the sections, EI and EA over those of the
+    scene [1].
+    """
+
+    points: Array
+    centres: Array
+    longer: Array
+    width: Array
+    thickness: Array
+    area: Array
+    bending: Array
+    axial: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """The scene's own, D = 1."""
+        same = np.ones((1, len(scene.strips)))
+        return cls(
+            points=np.array([[strip.control_points for strip in scene.strips]]),
+            centres=np.array([[body.centre for body in scene.bodies]], dtype=float).reshape(1, -1, 2),
+            **dict.fromkeys(("longer", "width", "thickness", "area", "bending", "axial"), same),
+        )
 
 
-Ends = dict[tuple[str, str], End]
-"""Ends by (strip, \"start\" or \"end\")."""
+class Designs(NamedTuple):
+    """Arrays of D designs, over the length (D,) [m] and energy (D,) [J] of each.
+
+    along (D, S, G, 11 + K), numbers (D, S, 16 + 2 n) and compliance (D, S, K) as in ``Strips``; rest (D, S,
+    G): curvature; to_modes (D, S, K, K): axial forces of the scene from those of the element; start (D, Y):
+    at rest; force (D, 2, 3 B): load and weight as in ``Bodies``; target (D, H): change of the held
+    coordinates; springs (D, 3 B, 3 B) as in ``Bodies``; levers (D, C, 2) of frames.
+    """
+
+    length: Array
+    energy: Array
+    along: Array
+    rest: Array
+    to_modes: Array
+    numbers: Array
+    compliance: Array
+    start: Array
+    force: Array
+    target: Array
+    springs: Array
+    levers: Array
 
 
-def ends_of(system: System) -> Ends:
-    """Return both ends of all strips by (strip, end); a free end is a body of its own, behind the scene's."""
-    scene, free = system.scene, len(system.scene.bodies)
-    ends: Ends = {}
-    bodies = {body.name: (i, body.centre.tolist()) for i, body in enumerate(scene.bodies)}
-    clamped = (c for c in scene.of(Constraint) if isinstance(c, Clamp))
-    clamps: dict[tuple[str, str], str] = {(c.strip, c.end): c.to for c in clamped}
-    for strip in scene.strips:
-        points = strip.control_points.tolist()
-        for end, at, inner, sign in (("start", 0, 1, 1.0), ("end", -1, -2, -1.0)):
-            (x, y), (there_x, there_y) = points[at], points[inner]
-            direction = math.atan2(sign * (there_y - y), sign * (there_x - x))
-            if to := clamps.get((strip.name, end)):
-                body, (left, low) = bodies.get(to, (GROUNDED, (0.0, 0.0)))
-                ends[strip.name, end] = End(body, (x - left, y - low), direction)
-            else:
-                ends[strip.name, end] = End(free, (0.0, 0.0), direction)
-                free += 1
-    return ends
+class Ends(NamedTuple):
+    """Bodies (S,) at the strips' roots and tips, or GROUNDED; free ends are bodies behind those of the
+    scene."""
+
+    roots: NDArray[np.int64]
+    tips: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """Those of a scene."""
+        free, at = len(scene.bodies), {body.name: i for i, body in enumerate(scene.bodies)}
+        held = {(clamp.strip, clamp.end): clamp.to for clamp in scene.of(Clamp)}
+        found: list[list[int]] = []
+        for strip in scene.strips:
+            found.append([])
+            for end in ("start", "end"):
+                to = held.get((strip.name, end))
+                found[-1].append(free if to is None else at.get(to, GROUNDED))
+                free += to is None
+        return cls(*np.array(found, dtype=np.int64).reshape(-1, 2).T.copy())
 
 
 def in_order(points: Array, shape: Shape) -> Array:
@@ -93,7 +131,7 @@ def shape_of(basis: Bezier, points: int) -> Shape:
     return shape_at(basis, *basis.gauss_rule(points))
 
 
-def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
+def shape_at(basis: Bezier, u: NDArray[np.float64], weight: NDArray[np.float64]) -> Shape:
     """Return the basis at any points u (P,) with weights."""
     n = basis.control_points
     order = np.array([*range(2, n - 2), 1, n - 2, n - 1, 0], dtype=np.int64)
@@ -104,129 +142,214 @@ def shape_at(basis: Bezier, u: Array, weight: Array) -> Shape:
     return Shape.of(order, tables, np.array((u, weight)))
 
 
-def strips_of(
-    system: System, shape: Shape, basis: Bezier, points: int, ends: Ends
-) -> tuple[Strips, Array, Array]:
-    """Return the strips' arrays, their curvature at rest (S, G), and the scene's axial forces from theirs."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    parts, bends = list(_mixed_of(scene).values()), bends_of(scene)
-    speed, rest = speeds_of(scene, shape, length)
-    kinds = [tuple((e.modes, e.taper) for e in each) for each in parts]
-    to_modes = _orthonormal_modes(kinds, basis, points, speed)
-    split = sum(e.modes.count for e in parts[0] if not isinstance(e.modes, SlideModes))
-    measure = MEASURES.index(bends[0].measure)
-    c = np.array([[e.axial_compliance for e in each for _ in range(e.modes.count)] for each in parts])
-    c *= energy / length
-    small = c < LEAST_COMPLIANCE
-    outer = int(small[:, :split].any())
-    gain = np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)) if small.any() else 1.0 / c
-    roots, tips = ([ends[strip.name, end].body for strip in scene.strips] for end in ("start", "end"))
-    strips = Strips(
-        along=along_of(system, shape, (speed, rest), to_modes),
-        compliance=c,
-        gain=gain,
-        numbers=_numbers_of(system, shape, ends),
-        roots=np.array(roots, dtype=np.int64),
-        tips=np.array(tips, dtype=np.int64),
-        split=split,
-        coupled=outer * split,
-        outer=outer,
-        measure=measure,
+def arrays_of(
+    system: System, shape: Shape, ends: Ends, given: Numbers, length: Array, energy: Array
+) -> Designs:
+    """Return the arrays of D designs of a system's scene, over lengths (D,) [m] and energies (D,) [J]."""
+    along, rest, to_modes = along_of(system, shape, shape, given, length, energy)
+    return Designs(
+        length=length,
+        energy=energy,
+        along=along,
+        rest=rest,
+        to_modes=to_modes,
+        numbers=_numbers(system, shape, ends, given, length, energy),
+        compliance=_compliances(system.scene, given) * (energy / length)[:, None, None],
+        start=_starts(system.scene, ends, given, length, to_modes.shape[-1]),
+        force=_forces(system, ends, length, energy),
+        target=system.drives.target / np.where(system.drives.turns == 1, 1.0, length[:, None]),
+        springs=_springs(system, length, energy),
+        levers=_levers(system, given) / length[:, None, None],
     )
-    return strips, rest, to_modes
 
 
-def bends_of(scene: Scene) -> list[Bending]:
-    """Return the bending of each strip."""
+def _bends_of(scene: Scene) -> list[Bending]:
+    """The bending of each strip."""
     bends = {e.strip: e for e in scene.of(Bending)}
     return [bends[strip.name] for strip in scene.strips]
 
 
-def _mixed_of(scene: Scene) -> dict[str, list[MixedStretching]]:
+def _mixed_of(scene: Scene) -> list[list[MixedStretching]]:
     """The mixed stretching of each strip, a part for each kind of modes."""
     mixed: dict[str, list[MixedStretching]] = {strip.name: [] for strip in scene.strips}
     for effect in scene.of(MixedStretching):
         mixed[effect.strip].append(effect)
-    return mixed
+    return list(mixed.values())
 
 
-def along_of(system: System, shape: Shape, speeds: tuple[Array, Array], to_modes: Array) -> Array:
-    """Return what changes along the strips (S, P, 11 + K), at the points of a shape; speeds: as of
-    ``speeds_of``."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    bends, u, degree = bends_of(scene), shape.rule[WHERE], scene.strips[0].basis.degree
-    (speed, rest), at = speeds, u.tobytes()
-    along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]))
-    along[..., SPEED] = speed
-    along[..., CURVATURE] = rest
-    for row, bend, parts, back in zip(along, bends, _mixed_of(scene).values(), to_modes, strict=True):
-        row[:, CURVATURE] += bend.natural_curvature * length
-        row[:, RIGIDITY] = bend.rigidity_at(degree, u) / (energy * length)
+def along_of(
+    system: System, shape: Shape, gauss: Shape, given: Numbers, length: Array, energy: Array
+) -> tuple[Array, Array, Array]:
+    """Return what changes along the strips (D, S, P, 11 + K) at the points of a shape, curvature at rest (D,
+    S, P), and ``to_modes`` (D, S, K, K), which are orthonormal at the points of ``gauss``."""
+    scene, degree = system.scene, system.scene.strips[0].basis.degree
+    bends, parts, u = _bends_of(scene), _mixed_of(scene), shape.rule[WHERE]
+    points = in_order(given.points, shape)[:, :, None] / length[:, None, None, None, None]
+    speed, rest = _speeds(points, shape)
+    at_gauss = speed if shape is gauss else _speeds(points, gauss)[0]
+    to_modes = _orthonormal_modes(parts, scene.strips[0].basis, at_gauss)
+    along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]), dtype=speed.dtype)
+    along[..., SPEED], along[..., CURVATURE] = speed, rest
+    stiffer = given.bending / (energy * length)[:, None]
+    varied = any((part != 1.0).any() for part in (given.longer, given.width, given.thickness))
+    for s, bend in enumerate(bends):
+        row = along[:, s]
+        row[..., CURVATURE] += bend.natural_curvature * length[:, None]
+        row[..., RIGIDITY] = bend.rigidity_at(degree, u) * stiffer[:, s, None]
         if bend.curl is not None:
-            row[:, DROP:MODES], row[:, CURL] = bend.curl.drop(degree, u), bend.curl.flattening / length
-        if parts:
-            row[:, MODES:] = _values(tuple(e.modes for e in parts), at) @ back
-    return along
+            row[..., DROP:MODES] = bend.curl.drop(degree, u)
+            curl = bend.curl.flattening * given.width[:, s] ** 2 / given.thickness[:, s]
+            row[..., CURL] = (curl / length)[:, None]
+        if parts[s]:
+            modes = _values(tuple(e.modes for e in parts[s]), u.tobytes())
+            row[..., MODES:] = modes @ to_modes[:, s]
+        if varied and (any(bend.roots) or (bend.curl and bend.curl.clamped)):
+            _add_profiles(bend, row, given, s, degree, u, stiffer[:, s])
+    return along, rest, to_modes
 
 
-def _numbers_of(system: System, shape: Shape, ends: Ends) -> Array:
-    """The numbers of ``Strips``, (S, 16 + 2 n)."""
-    scene, length, energy = system.scene, system.scales.length, system.scales.energy
-    numbers = np.zeros((len(scene.strips), ON_POINTS + 2 * len(shape.order)))
+def _add_profiles(
+    bend: Bending, row: Array, given: Numbers, s: int, degree: int, u: NDArray[np.float64], stiffer: Array
+) -> None:
+    """Rigidity and drop of the designs (D, P, 11 + K) of strip s, whose profile goes by b/L and t/L."""
+    sides = np.stack((given.width, given.thickness))[..., s] / given.longer[:, s]
+    sides += np.round(sides.real, DIGITS) - sides.real
+    for d, (width, thickness) in enumerate(sides.T):
+        own = bend.with_sides(width, thickness)
+        row[d, :, RIGIDITY] = own.rigidity_at(degree, u) * stiffer[d]
+        if own.curl:
+            row[d, :, DROP:MODES] = own.curl.drop(degree, u)
+
+
+def _speeds(points: Array, shape: Shape) -> tuple[Array, Array]:
+    """Speed and curvature (D, S, P) [1] at rest of curves of points (D, S, 1, n, 2)."""
+    curve = shape.tables[FIRST : SECOND + 1] @ points
+    x1, x2, y1, y2 = (curve[:, :, order, :, axis] for axis in range(2) for order in range(2))
+    square = x1 * x1 + y1 * y1
+    speed = np.sqrt(square)
+    return speed, (x1 * y2 - y1 * x2) / (square * speed)
+
+
+def _compliances(scene: Scene, given: Numbers) -> Array:
+    """Compliances (D, S, K) [1/N] of the axial forces; those of sliding go by the bending of the chord."""
+    stretched, slid = 1.0 / given.axial, given.longer**2 / given.bending
+    parts = [[part for part in each for _ in range(part.modes.count)] for each in _mixed_of(scene)]
+    soft = np.array([[part.axial_compliance for part in each] for each in parts])
+    slides = [isinstance(part.modes, SlideModes) for part in parts[0]]
+    return np.asarray(soft * np.where(slides, slid[..., None], stretched[..., None]))
+
+
+def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, length: Array, energy: Array) -> Array:
+    """The numbers of ``Strips`` of each design (D, S, 16 + 2 n)."""
+    scene, points = system.scene, given.points / length[:, None, None, None]
+    force = energy / length
+    numbers = np.zeros((*points.shape[:2], ON_POINTS + 2 * len(shape.order)), dtype=points.dtype)
     mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
     consistent = {e.strip: e for e in scene.of(Stretching)}
-    for row, strip in zip(numbers, scene.strips, strict=True):
-        name, points = strip.name, strip.control_points.tolist()
-        if name in mixed:
-            row[STRAIN] = mixed[name].natural_strain
-        if name in consistent:
-            row[STRAIN] = consistent[name].natural_strain
-            row[STRETCHING] = consistent[name].axial_rigidity * length / energy
-        for place, end in ((ROOT, "start"), (TIP, "end")):
-            (x, y), direction = ends[name, end].point, ends[name, end].direction
-            row[place : place + 3] = x / length, y / length, direction
-        row[REACH] = math.dist(points[1], points[0]) / length
-        row[REACH + 1] = math.dist(points[-1], points[-2]) / length
+    for s, strip in enumerate(scene.strips):
+        if strip.name in mixed:
+            numbers[:, s, STRAIN] = mixed[strip.name].natural_strain
+        if strip.name in consistent:
+            own = consistent[strip.name]
+            numbers[:, s, STRAIN] = own.natural_strain
+            numbers[:, s, STRETCHING] = own.axial_rigidity * given.axial[:, s] / force
+    chords = points[:, :, 1] - points[:, :, 0], points[:, :, -1] - points[:, :, -2]
+    for end, (place, carriers, chord) in enumerate(zip((ROOT, TIP), ends, chords, strict=True)):
+        numbers[..., place : place + 2] = points[:, :, -end]
+        for s, body in enumerate(carriers.tolist()):
+            if body >= len(scene.bodies):
+                numbers[:, s, place : place + 2] = 0.0
+            elif body >= 0:
+                numbers[:, s, place : place + 2] -= given.centres[:, body] / length[:, None]
+        numbers[..., place + 2] = _angle(chord[..., 0], chord[..., 1])
+        numbers[..., REACH + end] = np.sqrt(np.sum(chord**2, axis=-1))
     if system.weight.size:
-        _add_dead(system, shape, numbers)
+        heavier = given.area * given.longer / force[:, None]
+        for s, strip in enumerate(scene.strips):
+            dead = system.weight[system.layout.strip(strip.name)].reshape(-1, 2)
+            dead = np.concatenate((scene.weight_of(strip.name).ravel(), in_order(dead, shape).ravel()))
+            numbers[:, s, PER_U:] = dead * heavier[:, s, None]
     return numbers
 
 
-def _add_dead(system: System, shape: Shape, numbers: Array) -> None:
-    """Dead loads on the control points, in the order of elimination, and per du."""
-    scene, weight = system.scene, system.weight
-    force = system.scales.energy / system.scales.length
-    for row, strip in zip(numbers, scene.strips, strict=True):
-        dead = weight[system.layout.strip(strip.name)].reshape(-1, 2)
-        row[ON_POINTS:] = in_order(dead, shape).ravel() / force
-        row[PER_U:ON_POINTS] = scene.weight_of(strip.name).ravel() / force
+def _angle(x: Array, y: Array) -> Array:
+    """Direction [rad] of vectors, exact to first order in what is along the imaginary axis."""
+    angle = np.arctan2(y.real, x.real)
+    if not np.iscomplexobj(x):
+        return angle
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.asarray(angle + (y * cos - x * sin) / (x * cos + y * sin))
 
 
-def speeds_of(scene: Scene, shape: Shape, length: float) -> tuple[Array, Array]:
-    """Return speed and curvature (S, P) [1] at rest of a scene's strips, over a length [m]."""
-    points = np.array([strip.control_points for strip in scene.strips]) / length
-    curve = shape.tables[FIRST : SECOND + 1, None] @ in_order(points, shape)
-    (x1, x2), (y1, y2) = curve[..., 0], curve[..., 1]
-    speed = np.hypot(x1, y1)
-    return speed, (x1 * y2 - y1 * x2) / speed**3
+def _starts(scene: Scene, ends: Ends, given: Numbers, length: Array, modes: int) -> Array:
+    """States at rest (D, Y): poses, free ends among them, and of each strip points, reaches and forces."""
+    count, wide = len(length), length[:, None, None]
+    bodies, strips = range(len(scene.bodies)), range(len(scene.strips))
+    turn, reach, forces = np.zeros((count, 1)), np.ones((count, 2)), np.zeros((count, modes))
+    parts = [part for b in bodies for part in (given.centres[:, b] / length[:, None], turn)]
+    for s in strips:
+        for at, carriers in ((0, ends.roots), (-1, ends.tips)):
+            if carriers[s] >= len(bodies):
+                parts += [given.points[:, s, at] / length[:, None], turn]
+    for s in strips:
+        parts += [(given.points[:, s, 2:-2] / wide).reshape(count, -1), reach, forces]
+    return np.concatenate(parts, axis=1)
 
 
-def _orthonormal_modes(
-    parts: list[tuple[tuple[AxialModes, Taper | None], ...]], basis: Bezier, points: int, speed: Array
-) -> Array:
-    """The scene's axial forces (S, K, K) by those of modes that are orthonormal along strips of a speed
-    (S, G), weighed by their compliance over that at the start.
+def _units(bodies: int, length: Array) -> Array:
+    """Units of the poses of so many bodies (D, 3 B) [m, rad]."""
+    unit = np.ones((len(length), bodies, 3))
+    unit[:, :, :2] = length[:, None, None]
+    return unit.reshape(len(length), -1)
+
+
+def _forces(system: System, ends: Ends, length: Array, energy: Array) -> Array:
+    """Load and weight on the bodies (D, 2, 3 B)."""
+    poses, loads = system.layout.poses, system.loads
+    bodies = max(len(system.scene.bodies), 1 + max(ends.roots.max(), ends.tips.max()))
+    force = np.zeros((2, 3 * bodies))
+    if loads.value.size:
+        np.add.at(force[0], loads.coordinate - poses.start, loads.value)
+    if system.weight.size:
+        force[1, : poses.stop - poses.start] = system.weight[poses]
+    return np.asarray(force * (_units(bodies, length) / energy[:, None])[:, None])
+
+
+def _springs(system: System, length: Array, energy: Array) -> Array:
+    """Springs of each design (D, 3 B, 3 B), or (D, 0, 0)."""
+    if not system.springs.size:
+        return np.zeros((len(length), 0, 0))
+    unit = _units(len(system.springs) // 3, length)
+    return np.asarray(system.springs * (unit[:, :, None] * unit[:, None] / energy[:, None, None]))
+
+
+def _levers(system: System, given: Numbers) -> Array:
+    """Levers of frames (D, C, 2) [m] from the centres of the bodies that carry them."""
+    begin, frames = system.layout.poses.start, system.frames.place.tolist()
+    levers = np.zeros((len(given.points), len(frames), 2), dtype=given.points.dtype)
+    for f, (at, by, _) in enumerate(frames):
+        levers[:, f] = given.centres[:, (at - begin) // 3]
+        if by >= 0:
+            levers[:, f] -= given.centres[:, (by - begin) // 3]
+    return levers
+
+
+def _orthonormal_modes(parts: list[list[MixedStretching]], basis: Bezier, speed: Array) -> Array:
+    """The scene's axial forces (D, S, K, K) by those of modes that are orthonormal along strips of a speed
+    (D, S, G), weighed by their compliance over that at the start.
 
     Those of one distribution of the speed are kept: all straight strips have the same, but for round-off.
+    Designs have that of the first.
     """
-    mean = speed.sum(axis=1, keepdims=True) / speed.shape[1]
-    alike = np.rint(speed / mean / ROUND_OFF)
-    found = [_modes_of(each, basis, points, v.tobytes()) for each, v in zip(parts, alike, strict=True)]
+    mean = speed.sum(axis=-1, keepdims=True) / speed.shape[-1]
+    alike = np.rint((speed[0] / mean[0]).real / ROUND_OFF)
+    kinds = [tuple((e.modes, e.taper) for e in each) for each in parts]
+    found = [_modes_of(each, basis, len(v), v.tobytes()) for each, v in zip(kinds, alike, strict=True)]
     return np.asarray(np.array(found) / np.sqrt(mean)[..., None])
 
 
 @lru_cache(maxsize=64)
-def _values(parts: tuple[AxialModes, ...], at: bytes) -> Array:
+def _values(parts: tuple[AxialModes, ...], at: bytes) -> NDArray[np.float64]:
     """Values of the scene's modes at the numbers of a buffer (P, K)."""
     return np.column_stack([modes.evaluate(np.frombuffer(at)) for modes in parts])
 
@@ -234,7 +357,7 @@ def _values(parts: tuple[AxialModes, ...], at: bytes) -> Array:
 @lru_cache(maxsize=64)
 def _modes_of(
     parts: tuple[tuple[AxialModes, Taper | None], ...], basis: Bezier, points: int, speed: bytes
-) -> Array:
+) -> NDArray[np.float64]:
     """The same of one strip of mean speed 1; speed: in ``ROUND_OFF``."""
     u, weight = basis.gauss_rule(points)
     weight = weight * (ROUND_OFF * np.frombuffer(speed))

@@ -35,7 +35,7 @@ from spline_model.reduced.assembly import moment_defect
 from spline_model.reduced.beside import solve
 from spline_model.reduced.equilibrium import HALVED, conjugate, stiffness_of
 from spline_model.reduced.preload import act, swell
-from spline_model.strip.compiled import called, copy, once, part
+from spline_model.strip.compiled import called, copy, kernel, once, part
 
 Array = NDArray[np.float64]
 
@@ -233,7 +233,7 @@ def _store(row, negative, stiffness, space, answer):
     answer.defect[row], answer.done[row] = out[DEFECT], out[DONE]
 
 
-@called()
+@kernel()
 def follow(start, route, judged, preload, arrays, tolerance, answer):
     """Follow a path from ``start`` (Y,) through the route; returns the number of states that converged.
 

@@ -19,7 +19,7 @@ from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
 from tests.fe.cases import extrapolated
-from tests.table_one import BARE, TABLE_ONE
+from tests.table_one import BARE, SIX, TABLE_ONE
 
 #: What strips with sides of their own have of the third dimension.
 SECTION_EFFECTS = ("clamped_width", "anticlastic", "root_compliance")
@@ -121,6 +121,16 @@ def test_a_batch_of_other_sides_has_their_profiles():
     """Requirement: rigidity along a strip and flattening follow its b/L and t/L, design by design."""
     gates.check("spline_batch_mechanism", sides_error())
     gates.refuse("spline_batch_mechanism", sides_error)
+
+
+def test_a_batch_by_several_numbers_of_the_shape_has_the_pivots_of_all_of_them():
+    """Requirement: length, inclination and crossing ratio place the strips of each design together."""
+    shapes = {"length": [0.07, 0.09], "inclination": [0.6, 0.9], "crossing_ratio": [0.3, 0.6]}
+    batch = solve_many(cross_axis_pivot(**SIX), shapes, rotation=0.3, increments=3)
+    for d, torque in enumerate(batch.torque):
+        pivot = cross_axis_pivot(**SIX | {name: column[d] for name, column in shapes.items()})
+        right = solve_statics(pivot, rotation=0.3, increments=3).torque
+        gates.check("spline_batch_mechanism", float(np.abs(torque - right).max() / np.abs(right).max()))
 
 
 def many(count=40):

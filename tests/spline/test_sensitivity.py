@@ -61,6 +61,23 @@ def test_agrees_with_extrapolated_differences():
     gates.hold("sensitivities", partial(_worst, 0, FORMS[0]))
 
 
+def _error_of_axial_forces(step=1e-5):
+    """Largest error of the derivative of the strips' axial forces by their length, against a difference."""
+    sides = (SIX | {"length": (1.0 + side * step) * SIX["length"]} for side in (1.0, -1.0))
+    more, less = (solve_statics(cross_axis_pivot(**each), rotation=0.3, increments=1) for each in sides)
+    pivot = cross_axis_pivot(**SIX)
+    path = solve_statics(pivot, rotation=0.3, increments=1)
+    forces = slice(path.system.layout.coordinate_count, path.system.layout.multiplier_start)
+    found = sensitivities(pivot, path, parameters=("length",)).states[:, forces, 0]
+    expected = (more.states - less.states)[:, forces] / (2.0 * step * SIX["length"])
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def test_derivatives_of_axial_forces_follow_their_modes():
+    """The modes of the axial forces change with the length of their strips, and so do derivatives."""
+    gates.check("sensitivities", _error_of_axial_forces())
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 22))
 def test_agrees_with_extrapolated_differences_on_many_designs(seed):
