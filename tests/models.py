@@ -1,18 +1,37 @@
 """Both models in one test: which of them, on what grids, and the limit over meshes of the elements."""
 
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
 import pytest
 
 import fe_reference
 import spline_model
 from tests import gates
-from tests.fe.cases import extrapolated
 
+#: Both elements where the interpreted forms of the second take seconds.
+QUICK_ELEMENTS = ("corotational", pytest.param("reissner", marks=pytest.mark.slow))
 BOTH = pytest.mark.parametrize("models", [spline_model, fe_reference], ids=lambda each: each.__name__)
 
 
 def short(models):
     """Name of a model in its gates."""
     return models.__name__.partition("_")[0]
+
+
+def extrapolated(values: Sequence[Any]) -> Any:
+    """Return the Romberg value of results on meshes each twice as fine as the last (even powers)."""
+    row = [np.asarray(value, dtype=float) for value in values]
+    for power in range(1, len(row)):
+        row = [fine + (fine - coarse) / (4.0**power - 1.0) for coarse, fine in pairwise(row)]
+    return row[0]
+
+
+def rotation_matrix(angle: float) -> np.ndarray:
+    """Return the matrix (2, 2) that turns by an angle [rad]."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
 def refined(ask, elements=None, **grid):

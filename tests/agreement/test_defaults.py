@@ -9,7 +9,7 @@ from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
 from tests.agreement.random_scenes import listed, scene
-from tests.fe.cases import extrapolated
+from tests.models import extrapolated
 
 #: The default promises 1e-4; the estimate may be somewhat optimistic.
 LIMIT, BODY_LIMIT = 2e-4, 3e-4

@@ -8,7 +8,7 @@ import pytest
 import fe_reference
 import spline_model
 from tests import gates
-from tests.fe.cases import rotation_matrix
+from tests.models import rotation_matrix
 from tests.table_one import SIX, TABLE_ONE
 
 QUARTER, LENGTH = np.pi / 2, TABLE_ONE["length"]

@@ -11,9 +11,9 @@ from fe_reference import ELEMENTS
 from fe_reference.arrays import Array
 from fe_reference.mass import about_mass_centre
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH
 from tests.fe.scenes import PARAMETERS, SIDED_SCENE, WIDE, four_bar
 from tests.gates import hold
+from tests.table_one import LENGTH
 
 #: Sixth-order central difference of a first derivative, offsets 1 to 3.
 WEIGHTS = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)

@@ -14,11 +14,10 @@ from fe_reference import (
     solve_statics,
     strip_fields,
 )
-from tests.fe.cases import LENGTH, pivot
-from tests.fe.scenes import SIDED, WIDE, guide
+from tests.fe.scenes import SIDED, WIDE, guide, pivot
 from tests.gates import hold
 from tests.spline.test_effects import ZERO
-from tests.table_one import BARE
+from tests.table_one import BARE, LENGTH
 
 EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monolithic"}}
 

@@ -11,9 +11,10 @@ from fe_reference.actions import Actions
 from fe_reference.law import FORCES, TANGENT, elements
 from fe_reference.mass import about_mass_centre
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, rotation_matrix
 from tests.fe.scenes import PARAMETERS, four_bar
 from tests.gates import hold
+from tests.models import rotation_matrix
+from tests.table_one import LENGTH
 
 NATURAL = PARAMETERS["pre_strain"]
 #: Points that integrate an element's energy exactly: one by definition, and two of a parabola.

@@ -21,11 +21,11 @@ from fe_reference import (
     solve_mechanism,
     solve_motion,
 )
-from tests.fe.cases import EI, extrapolated
 from tests.fe.scenes import BARE, GUIDE, TIP, four_bar, free_cantilever, tipped
 from tests.gates import check, hold, refuse
+from tests.models import extrapolated
 from tests.refusals import refused, scene
-from tests.table_one import SECTION
+from tests.table_one import EI, SECTION
 
 
 def test_loads_add_up() -> None:

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from fe_reference import ELEMENTS, Status, solve_mechanism, solve_statics
-from tests.fe.cases import EI, MOMENT, QUICK_ELEMENTS, STRIP, extrapolated, pivot
-from tests.fe.scenes import GUIDE, PARAMETERS, TIP, WIDE, four_bar, free_cantilever, guide, tipped
+from tests.fe.scenes import GUIDE, PARAMETERS, TIP, WIDE, four_bar, free_cantilever, guide, pivot, tipped
 from tests.gates import hold
+from tests.models import QUICK_ELEMENTS, extrapolated
 from tests.refusals import scene
+from tests.table_one import EI, MOMENT, TABLE_ONE
 
 STATIC = {
     name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain", "spring")
@@ -101,10 +102,17 @@ def test_stiffness_of_a_turn_has_the_weight_that_hangs_on_it(element: str) -> No
     hold("fe_weight_stiffness", error)
 
 
+#: What strips ten times thinner have of a section.
+THINNER = {"area": 0.1, "second_moment_of_area": 1e-3}
+
+
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_stiffness_does_not_depend_on_the_order(element: str) -> None:
     """Whichever strip comes first, stiffness is the same: round-off of EA is not in it, however slender."""
-    thinner = {"area": 0.1 * STRIP.area, "second_moment_of_area": 1e-3 * STRIP.second_moment_of_area}
+    thinner = {
+        "area": 0.1 * TABLE_ONE["area"],
+        "second_moment_of_area": 1e-3 * TABLE_ONE["second_moment_of_area"],
+    }
     given = pivot(crossing_ratio=0.35, element=element)
     model = replace(given, strips=tuple(replace(strip, **thinner) for strip in given.strips))
     turned = replace(model, strips=model.strips[::-1])

@@ -7,9 +7,10 @@ import pytest
 from scipy.optimize import brentq
 
 from fe_reference import DEFAULT_EFFECTS, ELEMENTS, natural_frequencies
-from tests.fe.cases import MOMENT, TABLE_1, extrapolated, pivot
-from tests.fe.scenes import GUIDE, MASSLESS, SECTION, free_cantilever
+from tests.fe.scenes import GUIDE, MASSLESS, free_cantilever, pivot
 from tests.gates import hold
+from tests.models import extrapolated
+from tests.table_one import MOMENT, SECTION, TABLE_ONE
 
 
 def relative(value: np.ndarray, exact: np.ndarray) -> float:
@@ -117,11 +118,11 @@ def test_section_rotary_inertia() -> None:
 
 def test_body_on_massless_strips() -> None:
     """Bodies on strips without inertia have their own modes only, at the closed-form frequency."""
-    inertia = TABLE_1["body_moment_of_inertia"] + TABLE_1["body_mass"] * 0.03**2
+    inertia = TABLE_ONE["body_moment_of_inertia"] + TABLE_ONE["body_mass"] * 0.03**2
     exact = np.sqrt(2.0 * MOMENT / inertia) / (2.0 * np.pi)
 
     def error(area: float = 1e3) -> float:
-        model = pivot(effects=MASSLESS, area=area * TABLE_1["area"])
+        model = pivot(effects=MASSLESS, area=area * TABLE_ONE["area"])
         return abs(natural_frequencies(model, count=1).frequency[0] / exact - 1.0)
 
     hold("fe_massless_strips", error)

@@ -16,9 +16,9 @@ from fe_reference import (
 from fe_reference.drives import drive_spans
 from fe_reference.mass import about_mass_centre, mass_matrix
 from fe_reference.structure import Structure, structure_of
-from tests.fe.cases import LENGTH, pivot
-from tests.fe.scenes import GUIDE, PARAMETERS, SECTION, SIDED_SCENE, THICK, four_bar, free_cantilever, tipped
+from tests.fe.scenes import GUIDE, PARAMETERS, SIDED_SCENE, THICK, four_bar, free_cantilever, pivot, tipped
 from tests.gates import hold
+from tests.table_one import LENGTH, SECTION
 
 QUARTER = np.pi / 2.0
 

@@ -20,9 +20,9 @@ from fe_reference import (
 from studies.answers.models import put
 from studies.answers.settings import FeSettings
 from studies.commands.arguments import read_design
-from tests.fe.cases import extrapolated, pivot
-from tests.fe.scenes import four_bar
+from tests.fe.scenes import four_bar, pivot
 from tests.gates import hold
+from tests.models import extrapolated
 from tests.refusals import scene
 
 

@@ -22,8 +22,7 @@ from fe_reference import (
     solve_release,
 )
 from tests import table_one
-from tests.fe.cases import pivot
-from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, tipped
+from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, pivot, tipped
 from tests.refusals import refused, scene
 from tests.table_one import BARE, SIDES
 

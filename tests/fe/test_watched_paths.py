@@ -7,9 +7,10 @@ import pytest
 
 import fe_reference
 from fe_reference import DEFAULT_EFFECTS, Model, cross_axis_pivot, solve_mechanism, solve_statics
-from tests.fe.cases import extrapolated, pivot
+from tests.fe.scenes import pivot
 from tests.frames import heavy
 from tests.gates import hold
+from tests.models import extrapolated
 from tests.refusals import scene
 from tests.table_one import BARE
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from spline_model import cross_axis_pivot, sensitivities, solve_statics
-from tests.fe.cases import extrapolated
+from tests.models import extrapolated
 from tests.table_one import TABLE_ONE
 
 QUANTITIES = (
