@@ -6,12 +6,31 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_reference import ELEMENTS, Status, solve_mechanism, solve_statics
-from tests.fe.scenes import GUIDE, PARAMETERS, TIP, WIDE, four_bar, free_cantilever, guide, pivot, tipped
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    ELEMENTS,
+    Status,
+    cross_axis_pivot,
+    solve_mechanism,
+    solve_statics,
+    strip_fields,
+)
+from tests.fe.scenes import (
+    GUIDE,
+    PARAMETERS,
+    SIDED,
+    TIP,
+    WIDE,
+    four_bar,
+    free_cantilever,
+    guide,
+    pivot,
+    tipped,
+)
 from tests.gates import hold
 from tests.models import QUICK_ELEMENTS, extrapolated
 from tests.refusals import scene
-from tests.table_one import EI, MOMENT, TABLE_ONE
+from tests.table_one import BARE, EI, MOMENT, TABLE_ONE
 
 STATIC = {
     name: PARAMETERS[name] for name in ("gravity", "applied_force", "applied_moment", "pre_strain", "spring")
@@ -161,3 +180,27 @@ def test_elements_that_turn_by_half_a_turn_are_refused(element: str) -> None:
     assert "an element is folded" in answer.message
     assert 0.9 < answer.rotation[-1] / (2.0 * np.pi) <= 1.0
     assert solve_mechanism(fine, increments=12).rotation[-1] == pytest.approx(2.4 * np.pi)
+
+
+EVERY: dict[str, dict[str, Any]] = {**SIDED, "root_compliance": {"root": "monolithic"}}
+
+
+def wide_pivot() -> dict[str, Any]:
+    """Return a pivot of thin strips a third as wide as long, with all effects of their sides."""
+    sides = {"width": 0.03, "thickness": 5e-4, "effects": (*DEFAULT_EFFECTS, *EVERY)}
+    return BARE | sides | {"parameters": {"root_compliance": EVERY["root_compliance"]}}
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_curvature_is_the_slope_of_the_rotation(element: str) -> None:
+    """With all effects of the sides the curvatures at the nodes add up to the turns between them."""
+
+    def error(elements: int = 320) -> float:
+        model = cross_axis_pivot(**wide_pivot(), elements=elements, element=element)
+        fields = strip_fields(model, solve_statics(model, rotation=1.0, increments=5).states[-1:])
+        steps = np.diff(fields.arc_length)
+        means = 0.5 * (fields.curvature[..., 1:] + fields.curvature[..., :-1])
+        gaps = np.cumsum(means * steps, axis=-1) - (fields.rotation[..., 1:] - fields.rotation[..., :1])
+        return float(np.abs(gaps).max())
+
+    hold("fe_curvature_of_sides", error)

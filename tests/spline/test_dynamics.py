@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from spline_model import Status, cross_axis_pivot, solve_release
+from spline_model import DEFAULT_EFFECTS, Status, cross_axis_pivot, solve_release
 from tests import gates
-from tests.spline.swings import QUARTER, drift, pivot
-from tests.table_one import TABLE_ONE
+from tests.spline.scenes import QUARTER, drift, pivot
+from tests.table_one import SIDES, TABLE_ONE
 
 
 def released(settings=None, **options):
@@ -113,6 +113,9 @@ def test_default_step_is_stable_and_a_long_one_says_so():
     assert "take a shorter step" in run.message
 
 
+ROOTS = {"root_compliance": {"root": "monolithic"}}
+
+
 @pytest.mark.parametrize(
     "more",
     [
@@ -120,8 +123,9 @@ def test_default_step_is_stable_and_a_long_one_says_so():
         {"stretch": "inextensible"},
         {"segments": 2, "control_points": 5},
         {"effects": ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")},
+        {"effects": (*DEFAULT_EFFECTS, "root_compliance"), "parameters": ROOTS, **SIDES},
     ],
-    ids=["consistent", "inextensible", "segments", "gravity"],
+    ids=["consistent", "inextensible", "segments", "gravity", "roots"],
 )
 def test_all_free_scenes_move(more):
     """Requirement: both schemes tend to one trajectory in every basis and axial form."""

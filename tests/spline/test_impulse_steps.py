@@ -13,7 +13,7 @@ from spline_model import (
     solve_motion,
 )
 from tests import gates
-from tests.spline.swings import POLYMER, QUARTER, pivot, total
+from tests.spline.scenes import POLYMER, QUARTER, pivot, total
 from tests.table_one import TABLE_ONE
 
 DAMPED = {

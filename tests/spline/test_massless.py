@@ -9,7 +9,7 @@ import pytest
 
 from spline_model import cross_axis_pivot, natural_frequencies, solve_motion, solve_release
 from tests import gates
-from tests.spline.swings import drift, pivot, total
+from tests.spline.scenes import drift, pivot, total
 from tests.table_one import SIX, TABLE_ONE
 
 EFFECTS = ("bending", "stretching", "body_inertia")

@@ -7,7 +7,7 @@ import pytest
 
 from spline_model import Status, solve_release
 from tests import gates
-from tests.spline.swings import pivot
+from tests.spline.scenes import pivot
 
 #: Half a swing [s].
 DURATION = 0.006

@@ -8,12 +8,12 @@ import pytest
 
 from spline_model import DrivenRotation, InvalidParameter, solve_motion, solve_release
 from tests import gates
-from tests.spline import swings
+from tests.spline import scenes
 
 EFFECTS = ("bending", "stretching", "strip_inertia", "body_inertia")
 
 
-pivot = partial(swings.pivot, control_points=4)
+pivot = partial(scenes.pivot, control_points=4)
 #: A moment that sets in between two steps, and one that grows all the time.
 SUDDEN, GROWING = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0)), ((0.0, 0.0), (4e-3, 1.0))
 
@@ -86,7 +86,7 @@ def test_the_monitor_stops_a_run_that_gains_energy(monkeypatch):
     run = solve_release(pivot(), duration=0.02, step=5e-5)
     assert run.status.value == "not_converged"
     assert "the energy grows by more than 1e-06 of itself" in run.message
-    stored = swings.total(run)
+    stored = scenes.total(run)
     assert (stored <= stored[0] * (1 + 1e-6)).all()
 
 

@@ -15,7 +15,7 @@ from spline_model import (
     solve_release,
 )
 from tests import gates
-from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, total
+from tests.spline.scenes import POLYMER, QUARTER, SECTION, pivot, total
 from tests.table_one import TABLE_ONE
 
 # ---- order and agreement ----
