@@ -1,6 +1,6 @@
-"""Both models in one test: which of them, on what grids, and the limit over meshes of the elements."""
+"""Both models in one test: on what grids, the limit over meshes of the elements, and how they refuse."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -43,3 +43,20 @@ def held(gate, models, error, control_points=10, elements=(10, 20, 40)):
     """Hold an error of both models' discretisations against the model's gate."""
     grid = {"elements": elements} if models is fe_reference else {"control_points": control_points}
     gates.hold(gate, lambda **coarse: float(error(**grid | coarse)))
+
+
+#: Between two parts of what is said stands any text.
+ANY = " ... "
+
+
+def scene(names: Iterable[str], **parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return effects, and those that have parameters with them, as keywords."""
+    return {"effects": (*names, *parameters), "parameters": parameters}
+
+
+def refused(ask: Callable[[], object], said: str) -> None:
+    """See a call refused in one line that says all parts of a text."""
+    with pytest.raises((ValueError, RuntimeError), match=r"\A[^\n]+\Z") as caught:
+        ask()
+    line = str(caught.value)
+    assert all(part in line for part in said.split(ANY)), line

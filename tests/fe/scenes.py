@@ -11,7 +11,7 @@ from fe_reference import (
     compliant_mechanism,
     cross_axis_pivot,
 )
-from tests.refusals import scene
+from tests.models import scene
 from tests.table_one import SECTION, TABLE_ONE
 
 Parameters = Mapping[str, Any]

@@ -1,6 +1,5 @@
-"""Loads at points, supports, springs and hinges of the elements in motion, and a bistable beam."""
+"""Loads at points, supports, springs and hinges of the elements, in statics and in motion."""
 
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -19,46 +18,9 @@ from fe_reference import (
     solve_motion,
 )
 from tests.fe.scenes import TIP, tipped
-from tests.gates import check, hold, refuse
-from tests.refusals import refused, scene
+from tests.gates import check, hold
+from tests.models import refused, scene
 from tests.table_one import SECTION
-
-#: Bistable half beam: sides of its section and rise of its halves [m], place of its middle [m].
-BEAM: dict[str, Any] = {"width": 5e-7, "thickness": 5e-7, "youngs_modulus": 160e9, "poisson_ratio": 0.22}
-RISE, MIDDLE, SHUTTLE = 1.501347575453747e-7, (1e-5, 6e-7), (2e-5, 1.2e-6)
-
-
-def half_beam(*fixed: str) -> Model:
-    """Return a half beam whose shuttle is led down, of which more coordinates are fixed."""
-    halves = ({"end": MIDDLE, "tip": "mid", "rise": -RISE}, {"start": MIDDLE, "root": "mid", "rise": RISE})
-    ends = {"start": (0.0, 0.0), "end": SHUTTLE, "tip": "shuttle", "density": 2330.0}
-    led = {"body": "shuttle", "displacement": (None, -2.4e-6)}
-    return compliant_mechanism(
-        strips=[
-            StripDesign(name=name, **BEAM | ends | half) for name, half in zip("ab", halves, strict=True)
-        ],
-        bodies=[BodyDesign(name="mid", centre=MIDDLE), BodyDesign(name="shuttle", centre=SHUTTLE)],
-        **scene(
-            ("bending", "stretching"), driven_displacement=led, support={"body": "shuttle", "fixed": fixed}
-        ),
-    )
-
-
-@pytest.mark.parametrize(
-    ("fixed", "push", "pop"), [(("x", "rotation"), -3.231, 0.298), (("rotation",), -2.989, 0)]
-)
-def test_bistable_half_beam(fixed: tuple[str, ...], push: float, pop: float) -> None:
-    """The force of a guided shuttle has the extrema that shooting finds; free to slide it has none."""
-
-    def error(elements: int = 20) -> float:
-        path = solve_mechanism(replace(half_beam(*fixed), elements=elements), increments=48, check=False)
-        force = 1e6 * path.reactions[:, path.prescribed.index(("shuttle", "y"))]
-        return max(abs(force.min() - push), abs(force.max() - pop))
-
-    check("fe_half_beam", error())
-    if pop:  # a force that does not turn back hardly depends on the mesh
-        refuse("fe_half_beam", error)
-
 
 SPRING: dict[str, Any] = {"body": "mass", "stiffness": (1000.0, 2000.0), "rotational_stiffness": 0.5}
 

@@ -22,8 +22,7 @@ from studies.answers.settings import FeSettings
 from studies.commands.arguments import read_design
 from tests.fe.scenes import four_bar, pivot
 from tests.gates import hold
-from tests.models import extrapolated
-from tests.refusals import scene
+from tests.models import extrapolated, scene
 
 
 def apart(found: Any, exact: Any, name: str) -> float:

@@ -23,7 +23,7 @@ from spline_model import (
     solve_statics,
 )
 from tests.frames import opposed
-from tests.refusals import refused, scene
+from tests.models import refused, scene
 from tests.spline.test_batch_of_mechanisms import linkage
 from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 

@@ -6,21 +6,18 @@ What a scene costs is counted here, not timed: an audit is told Newton iteration
 import dataclasses
 import json
 import math
-from pathlib import Path
 
 import pytest
 
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
-from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER
 from studies.effects import audit as module
 from studies.effects import scenes
 from studies.effects.audit import prices
-from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
+from tests.suite.refused import FINDS
 
 TOLERANCE = 1e-3
-FINDS = Path(__file__).with_name("finds")
 
 
 @pytest.fixture
@@ -105,25 +102,3 @@ def test_what_has_no_price_says_why():
     assert (rows["shear"]["status"], rows["anticlastic"]["status"]) == ("refused", "converged")
     assert "got 'inextensible'" in rows["shear"]["reason"]
     assert math.isnan(rows["shear"]["largest"])
-
-
-WITHIN = dict.fromkeys(CHANGES, 1e-4)
-SIZE = dict.fromkeys(SIZES, 1)
-
-
-def scene(wall_s, *names, **changes):
-    """A scene of the audit with these effects, changes and time."""
-    variant = Variant(dropped=(), effects=Effects(names=names))
-    return Outcome(variant=variant, size=SIZE, wall_s=wall_s, changes=WITHIN | changes)
-
-
-@pytest.mark.parametrize("change", WITHIN)
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_every_change_counts(change, sign):
-    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it."""
-    full = scene(2.0, "bending", "stretching", **dict.fromkeys(WITHIN, 0.0))
-    far = scene(1.0, "bending", **{change: sign * 2.0 * TOLERANCE})
-    near = scene(1.0, "bending", **{change: sign * 0.5 * TOLERANCE})
-    assert far.largest == pytest.approx(2.0 * TOLERANCE)
-    assert module._cheapest([full, far], TOLERANCE) is full
-    assert module._cheapest([full, near], TOLERANCE) is near
