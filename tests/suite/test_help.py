@@ -164,7 +164,7 @@ def _own_results(name: str, folder: Path) -> None:
 
 SOLVE = "solve silicon_pivot --control-points 5 --rotation-deg 5"
 #: Arguments with a former name, and the same arguments with the present name.
-COMMANDS = {
+FORMER = {
     "capacity silicon_pivot": "critical-load silicon_pivot",
     f"{SOLVE} --slide-stiffness 20": f"{SOLVE} --penalty-stiffness 20",
     f"{SOLVE} --slide-stiffness=20": f"{SOLVE} --penalty-stiffness=20",
@@ -172,10 +172,10 @@ COMMANDS = {
 }
 
 
-@pytest.mark.parametrize("former", COMMANDS)
+@pytest.mark.parametrize("former", FORMER)
 def test_former_words_of_a_command_are_accepted(former, command):
     """Requirement: the former word gives the same output, and a warning with the present word."""
-    old, new = command(*former.split()), command(*COMMANDS[former].split())
+    old, new = command(*former.split()), command(*FORMER[former].split())
     assert (old.code, _untimed(old.out)) == (new.code, _untimed(new.out))
     assert (new.code, new.err) == (0, "")
     assert re.fullmatch(r"studies: warning: (\S+) is now called \S+; version 0.3 ends \1\n", old.err)

@@ -221,11 +221,11 @@ TWO_PARTS = Study(
 
 def test_what_must_be_alone_comes_after_all_others():
     """A study is whole as soon as its points are answered; those that must be alone are asked last."""
-    place = f"{__name__}:TWO_PARTS"
+    one, other = f"{__name__}:SQUARES", f"{__name__}:TWO_PARTS"
     ASKED.clear()
     with ThreadPoolExecutor(1) as pool:
-        found = [*whole({place: TWO_PARTS, __name__: SQUARES}, silent, pool)]
-    assert [name for name, _, _ in found] == [__name__, place]
+        found = [*whole({other: TWO_PARTS, one: SQUARES}, silent, pool)]
+    assert [name for name, _, _ in found] == [one, other]
     assert ASKED == [2, 1, 2, 4, 1]
     assert all(seconds > 0.0 for _, _, seconds in found)
 
