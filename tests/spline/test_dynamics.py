@@ -85,16 +85,9 @@ def test_inextensible_strips_swing():
 
 
 def swing(step, duration=0.004, integrator="leapfrog", **more):
-    """Rotation at 100 records."""
-    return solve_release(
-        pivot(**more),
-        start=QUARTER,
-        duration=duration,
-        step=step,
-        records=100,
-        integrator=integrator,
-        check=False,
-    )
+    """The release at 100 records."""
+    how = {"duration": duration, "step": step, "integrator": integrator}
+    return released(more, start=QUARTER, records=100, check=False, **how)
 
 
 @cache
@@ -103,14 +96,9 @@ def reference():
     return swing(1e-7, integrator="energy").rotation
 
 
-def difference_to_energy(step=1e-6):
-    """Largest difference of the rotation to the reference's."""
-    return np.abs(swing(step).rotation - reference()).max()
-
-
 def test_leapfrog_agrees_with_the_energy_consistent_scheme():
     """Requirement: both schemes, which share no time step, tend to one trajectory."""
-    gates.hold("spline_leapfrog_agrees", difference_to_energy)
+    gates.hold("spline_leapfrog_agrees", lambda step=1e-6: np.abs(swing(step).rotation - reference()).max())
 
 
 def test_default_step_is_stable_and_a_long_one_says_so():
@@ -166,7 +154,7 @@ SUDDEN, GROWING = ((0.0, 0.0), (1.0003e-3, 0.0), (1.0003e-3 + 1e-9, 1.0)), ((0.0
 
 
 def under(history):
-    """What a coarse under a moment with a history is given."""
+    """What a pivot under a moment with a history is given."""
     return {
         "effects": (*USUAL, "applied_moment"),
         "parameters": {"applied_moment": {"moment": 50.0, "history": history}},

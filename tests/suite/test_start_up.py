@@ -129,7 +129,7 @@ assert path.rotation[-1] == 0.2
 
 
 def printed(words: list[str], folder: Path) -> str:
-    """Return what a program prints; kernels printed as Python code, which spares their compilation."""
+    """Return what a program prints; kernels run as Python code, which spares their compilation."""
     env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     env |= {"NUMBA_DISABLE_JIT": "1", "MPLBACKEND": "Agg"}
     done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True)
@@ -166,7 +166,7 @@ def scripts(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 def test_wheel_works_outside_the_repository(scripts, tmp_path):
-    """Requirement: the commands printed, and their files go to the current folder."""
+    """Requirement: the commands run, and their files go to the current folder."""
     program = str(scripts / "crosspivot")
     answer = json.loads(printed([program, "solve", "titanium_pivot", "--json", "-"], tmp_path))
     assert answer["status"] == "converged"
