@@ -140,7 +140,7 @@ def test_gravity_by_its_parts(table, expected, case):
     assert found == pytest.approx(expected, abs=1e-14)
 
 
-SHIPPED = [
+WRITTEN = [
     design for path in sorted(FOLDER.glob("*.toml")) if isinstance(design := read_design(path), Problem)
 ]
 LOADED = Effects(
@@ -159,7 +159,7 @@ OTHER = {
 }
 
 
-@pytest.mark.parametrize("design", [*SHIPPED, replace(SHIPPED[0], **OTHER)])
+@pytest.mark.parametrize("design", [*WRITTEN, replace(WRITTEN[0], **OTHER)])
 def test_a_pivot_that_is_written_is_read_as_it_was(design, tmp_path):
     """A pivot written as a case file is read as the same pivot, to the digits that a file has."""
     path = tmp_path / "written.toml"
