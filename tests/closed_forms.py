@@ -1,6 +1,9 @@
-"""Closed forms of a cantilever, of one continuum theory for both models: its elastica and its frequencies."""
+"""Closed forms of a cantilever, of one continuum theory for both models: elastica, followers, frequencies."""
+
+import math
 
 import numpy as np
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
@@ -71,3 +74,15 @@ def by_quadrature(load: float, *, stretch: float, shear: float) -> tuple[float, 
     rotation = brentq(lambda r: integrals(r)[0] - 1.0, 1e-6, 0.5 * np.pi - 1e-3, xtol=1e-15, rtol=1e-14)
     _, x, y = integrals(rotation)
     return rotation, x, y
+
+
+def followed(load: float) -> np.ndarray:
+    """Return x/L, y/L and turn of a tip under a force across its section [EI/L^2], integrated from there."""
+
+    def rates(_: float, state: np.ndarray) -> tuple[float, ...]:
+        _, _, turn, curvature = state
+        return -math.cos(turn), -math.sin(turn), -curvature, load * math.cos(turn)
+
+    x, y, turn, _ = solve_ivp(rates, (0.0, 1.0), np.zeros(4), rtol=1e-12, atol=1e-13).y[:, -1]
+    cos, sin = math.cos(turn), math.sin(turn)
+    return np.array([-cos * x - sin * y, sin * x - cos * y, -turn])

@@ -15,6 +15,11 @@ TABLE_ONE = {
     "body_moment_of_inertia": 0.002,
 }
 
+#: Strip length [m], its EI [N m^2] and the unit of moment and rotational stiffness EI/L [N m].
+LENGTH = TABLE_ONE["length"]
+EI = TABLE_ONE["youngs_modulus"] * TABLE_ONE["second_moment_of_area"]
+MOMENT = EI / LENGTH
+
 #: The same as a spline of six control points.
 SIX = TABLE_ONE | {"control_points": 6}
 

@@ -43,11 +43,11 @@ LOADS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class State:
-    """The last state of a static path and its books: what both models must agree on.
+    """The last state of a static path: what both models must agree on.
 
     torque [N m]; stiffness [N m/rad]; place (3,) of the body [m, m, rad]; moments (G, 2) of the clamps on
     the strips' roots and tips [N m]; axial (G, 2) forces there [N]; energy of strain and weight, from rest
-    [J]; books: work less what energy gained, since the first state [J]; path (S, 3) of the body.
+    [J]; path (S, 3) of the body.
     """
 
     torque: float
@@ -56,7 +56,6 @@ class State:
     moments: np.ndarray
     axial: np.ndarray
     energy: float
-    books: float
     path: np.ndarray
 
 
@@ -141,7 +140,6 @@ def state(asked: Design, settings: Settings) -> State:
         moments=np.asarray(fields.reactions)[-1, :, :, 2],
         axial=np.asarray(fields.axial_force)[-1][:, [0, -1]],
         energy=float(energy[-1]),
-        books=float(found.work[-1] - energy[-1] + energy[0]),
         path=path,
     )
 

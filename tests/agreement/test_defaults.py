@@ -1,15 +1,20 @@
-"""Random loaded designs by default settings: within the accuracy of refined answers, or with a remark."""
+"""Random designs by default settings: within the accuracy of refined answers, and alike in both models."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from studies.answers.adapters import answer_modes, answer_release
 from studies.answers.models import put
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, SplineSettings
+from studies.cases.design import Design
+from studies.commands.answer import not_estimated
+from studies.commands.release import SWINGS, _usual
 from tests.agreement.random_scenes import listed, scene
-from tests.fe.cases import extrapolated
+from tests.agreement.test_loads_release import UNSTEADY
+from tests.models import extrapolated
 
 #: The default promises 1e-4; the estimate may be somewhat optimistic.
 LIMIT, BODY_LIMIT = 2e-4, 3e-4
@@ -122,3 +127,156 @@ def test_many_random_designs_meet_their_accuracy():
 def test_default_answers_are_those_of_elements():
     """Requirement: places and torque of the default are as near to finite elements, which share nothing."""
     assert checked(range(FEW), right_of=by_elements) > FEW // 2
+
+
+#: Each model promises 1e-4 of states, and 1e-3 of frequencies where it is asked for that.
+ALIKE, OF_MODES = 2e-4, 2e-3
+FEW_LISTS, MANY_LISTS = (1, 3, 4, 13), 60
+#: Scenes in which forces hold bodies.
+HELD = (1, 2, 5)
+
+
+def measured(answer):
+    """What is compared over the states: places, torque, what is exerted, energy of springs."""
+    places = np.hstack([place - place[0] for place in answer.bodies.values()])
+    found = {"places": places, "torque": answer.torque, "exerted": answer.solution.reactions}
+    return found | {"springs": np.asarray(answer.solution.spring_energy)}
+
+
+def apart(design):
+    """Return the differences of both models over the largest value, by name; None where one has a remark."""
+    found = []
+    for settings, how in ((SplineSettings(), {}), (FeSettings(elements=20), {"accuracy": 1e-4})):
+        asked = put(design, settings)
+        answer = Response.of(asked, asked.static_path(raise_on_failure=False, **how))
+        if not answer.converged or answer.message or answer.resolution:
+            return None
+        found.append(measured(answer))
+    spline, fe = found
+    sizes = {name: np.abs(values).max(initial=0.0) for name, values in fe.items()}
+    return {
+        name: float(np.abs(spline[name] - fe[name]).max() / size)
+        for name, size in sizes.items()
+        if np.isfinite(size) and size > 0.0
+    }
+
+
+def checked_lists(seeds):
+    """Compare scenes; return how many of them have no remark."""
+    verdicts = {seed: apart(listed(seed)) for seed in seeds}
+    silent = {seed: errors for seed, errors in verdicts.items() if errors is not None}
+    assert {seed: errors for seed, errors in silent.items() if max(errors.values()) > ALIKE} == {}
+    return len(silent)
+
+
+def test_a_few_scenes_of_lists_are_alike():
+    """Requirement: places, torque, what is exerted and the springs' energy agree to 2e-4."""
+    assert checked_lists(FEW_LISTS) == len(FEW_LISTS)
+
+
+def exerted(design, settings, accuracy):
+    """Return what is exerted on bodies but the torque of the drive (S, D), and the answer."""
+    asked = put(design, settings)
+    answer = Response.of(asked, asked.static_path(raise_on_failure=False, accuracy=accuracy))
+    parts = answer.solution.prescribed
+    own = [at for at, part in enumerate(parts) if part != (answer.solution.driven, "rotation")]
+    return answer.solution.reactions[:, own], answer
+
+
+@pytest.mark.parametrize("seed", HELD)
+@pytest.mark.parametrize(
+    ("coarse", "name"),
+    [(SplineSettings(control_points=6), "reactions"), (FeSettings(elements=4), "exerted")],
+    ids=["spline", "fe"],
+)
+def test_the_estimate_of_what_is_exerted_covers_its_error(coarse, name, seed):
+    """Requirement: forces that supports and drives exert have an estimate, not below half of the error that
+    the other model shows, and none of them is called not estimated."""
+    other = FeSettings(elements=20) if coarse.model == "spline" else SplineSettings(control_points=12)
+    mine, answer = exerted(listed(seed), coarse, 1.0)
+    right, _ = exerted(listed(seed), other, 1e-6 if coarse.model == "spline" else None)
+    error = float(np.abs(mine - right).max() / np.abs(right).max())
+    assert error > 1e-8
+    assert 0.5 * error <= answer.errors[name] < 100.0 * error
+    assert not any("exerted" in part for part in not_estimated(answer))
+
+
+@pytest.mark.slow
+def test_many_scenes_of_lists_are_alike():
+    """Requirement: the same of 60 scenes, or one model has a remark."""
+    assert checked_lists(range(MANY_LISTS)) > 0.7 * MANY_LISTS
+
+
+@pytest.mark.slow
+def test_modes_of_scenes_of_lists_are_alike():
+    """Requirement: the lowest two frequencies about the end of the path agree to 2e-3."""
+    compared = 0
+    for seed in range(0, MANY_LISTS, 2):
+        design = listed(seed)
+        asked = {"rotation": design.rotation, "count": 2, "accuracy": 1e-3}
+        spline, fe = (
+            answer_modes(design, each, **asked) for each in (SplineSettings(), FeSettings(elements=20))
+        )
+        if spline.converged and fe.converged:
+            assert fe.frequency == pytest.approx(spline.frequency, rel=OF_MODES), seed
+            compared += 1
+    assert compared > MANY_LISTS // 3
+
+
+#: Accuracy that either model is asked for, of rotations [rad] and places over a strip; they differ by both.
+ACCURACY = 1e-3
+MOVED = 2.0 * ACCURACY
+#: Swings that are followed, instants that are compared, and the share of the motion after which loads end
+#: where no rotation is released.
+FOLLOWED, INSTANTS, ENDS = 0.5, 30, 0.2
+FEW_MOVE, MANY_MOVE = (1, 3), 30
+
+
+def moving(seed: int) -> tuple[Design, float]:
+    """Return a scene of lists that moves when it is released, and how long it is followed [s]."""
+    design = listed(seed)
+    duration = FOLLOWED * _usual(design, SplineSettings())[0] / SWINGS
+    if design.rotation is not None:
+        return design, duration
+    history = ((0.0, 1.0), (ENDS * duration, 0.0))
+    tables = dict(design.effects.tables)
+    for name in set(UNSTEADY) & tables.keys():
+        tables[name] = tuple({**own, "history": history} for own in design.effects.every(name))
+    return replace(design, effects=replace(design.effects, tables=tables)), duration
+
+
+def apart_in_motion(seed: int) -> float | None:
+    """Return the largest difference of rotations [rad] and places [1].
+
+    None where a model has a remark, or hardly anything moves.
+    """
+    design, duration = moving(seed)
+    asked = {"duration": duration, "accuracy": ACCURACY, "records": INSTANTS}
+    found = []
+    for settings in (SplineSettings(), FeSettings(elements=20)):
+        answer = answer_release(design, settings, **asked)
+        if not answer.converged or answer.message:
+            return None
+        found.append(np.stack(list(answer.bodies.values())))
+    length = max(strip.length for strip in design.strips)
+    spline, fe = (places / [length, length, 1.0] for places in found)
+    return float(np.abs(spline - fe).max()) if np.ptp(fe, axis=1).max() > ACCURACY else None
+
+
+def checked_in_motion(seeds) -> int:
+    """Compare scenes; return how many of them have no remark."""
+    verdicts = {seed: apart_in_motion(seed) for seed in seeds}
+    silent = {seed: error for seed, error in verdicts.items() if error is not None}
+    assert {seed: error for seed, error in silent.items() if error > MOVED} == {}
+    return len(silent)
+
+
+def test_a_few_releases_of_lists_are_alike():
+    """Requirement: rotations and places agree within what both promise."""
+    assert checked_in_motion(FEW_MOVE) == len(FEW_MOVE)
+
+
+@pytest.mark.slow
+def test_many_releases_of_lists_are_alike():
+    """Requirement: the same of 30 scenes, or one model has a remark, or hardly anything moves."""
+    assert checked_in_motion(range(MANY_MOVE)) > 0.7 * MANY_MOVE

@@ -8,10 +8,10 @@ import pytest
 import fe_reference
 import spline_model
 from tests import gates
-from tests.fe.cases import rotation_matrix
-from tests.table_one import SIX, TABLE_ONE
+from tests.models import BOTH, rotation_matrix
+from tests.table_one import LENGTH, SIDES, SIX, TABLE_ONE
 
-QUARTER, LENGTH = np.pi / 2, TABLE_ONE["length"]
+QUARTER = np.pi / 2
 #: Eighth-order central difference of a first derivative, offsets 1 to 4.
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 
@@ -158,3 +158,52 @@ def test_body_offset_only_moves_the_reported_point():
     plain, moved = solved(), solved(centre_offset=(0.01, -0.02))
     turned = [rotation_matrix(angle) @ (0.01, -0.02) for angle in plain.rotation]
     gates.check("spline_rigid_rotation", apart(plain, moved, plain.centre + turned))
+
+
+#: Effects with nothing in them: legal, and the same answer as without them.
+ZERO = {
+    "gravity": {"acceleration": (0.0, 0.0)},
+    "strip_damping": {"relaxation_time": 0.0},
+    "strip_drag": {"rate": 0.0},
+    "body_damping": {},
+    "applied_force": {"force": (0.0, 0.0)},
+    "applied_moment": {"moment": 0.0},
+    "pre_strain": {"curvature": 0.0, "strain": 0.0},
+    "root_compliance": {"root": 0.0},
+}
+#: Effects of the curl, which are nothing without a Poisson effect. Impulses have none.
+CURLS = {"clamped_width": {}, "anticlastic": {}}
+#: Grid of each model, and its motions.
+BRIEF, ALPHA = {"duration": 2e-3, "step": 1e-4}, {"integrator": "generalised-alpha", "step": 1e-5}
+MOTIONS = {
+    spline_model: ({"control_points": 6}, {"solve_motion": BRIEF, "solve_impulses": BRIEF}),
+    fe_reference: (
+        {"elements": 4},
+        {"solve_motion": {"duration": 1e-4, "step": 1e-7}, "solve_release": {"duration": 1e-4, **ALPHA}},
+    ),
+}
+
+
+@BOTH
+@pytest.mark.parametrize("name", [*ZERO, *CURLS])
+def test_zero_equals_absent(name, models):
+    """Requirement: an effect with nothing in it gives the path and the motions of a scene without it."""
+    grid, motions = MOTIONS[models]
+    sides = SIDES | ({"poisson_ratio": 0.0} if name in CURLS else {})
+    bare, named = (
+        models.cross_axis_pivot(
+            **TABLE_ONE | sides | grid,
+            effects=(*spline_model.DEFAULT_EFFECTS, *names),
+            parameters={each: (ZERO | CURLS)[each] for each in names},
+        )
+        for names in ((), (name,))
+    )
+    how = {"rotation": 1.0, "increments": 8, "order": "together"}
+    one, other = (models.solve_statics(each, **how).torque for each in (bare, named))
+    assert np.abs(one - other).max() <= 1e-14 * np.abs(one).max()
+    for solve, steps in motions.items():
+        if name in CURLS and solve == "solve_impulses":
+            continue
+        one, other = (getattr(models, solve)(each, start=1.0, **steps).rotation for each in (bare, named))
+        assert np.ptp(one) > 1e-6
+        assert np.abs(one - other).max() <= 1e-14

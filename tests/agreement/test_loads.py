@@ -69,26 +69,6 @@ def test_stiffness_is_the_slope_of_the_torque_at_fixed_loads(effect, rotation, s
         gates.refuse(gate, partial(quotient, effect, rotation, settings))
 
 
-@MODELS
-@EFFECTS
-@pytest.mark.parametrize("rotation", [*HELD, None], ids=angle)
-def test_work_of_loads_and_drives_is_the_energy_gained(effect, rotation, settings):
-    """Requirement: work since the first state is the gain of strain energy and weight's energy."""
-    found = spline(effect, rotation) if settings.model == "spline" else elements(effect, rotation, 10)
-    if found.books != 0.0:
-        gates.check("loads_books", abs(found.books) / loaded.MOMENT_UNIT)
-
-
-def test_work_of_one_increment_is_none():
-    """Requirement: work over a single increment does not pass."""
-
-    def error(increments):
-        asked = replace(loaded.design(STIFF), increments=increments)
-        return abs(loaded.state(asked, FeSettings(elements=10)).books) / loaded.MOMENT_UNIT
-
-    gates.refuse("loads_books", error)
-
-
 def frequencies(asked: Design, settings: Settings, count: int = 3) -> np.ndarray:
     """Lowest frequencies about the state that the design is driven to, which is then released [Hz]."""
     answer = answer_modes(asked, settings, rotation=asked.rotation or 0.0, count=count)

@@ -3,16 +3,14 @@
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from fe_reference import dynamics as elements
+import fe_reference
+import spline_model
 from fe_reference.dynamics import moves
-from spline_model import dynamics as splines
-from spline_model.errors import InvalidParameter
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import Design
@@ -21,6 +19,7 @@ from studies.commands.release import SWINGS, _usual
 from tests.agreement.random_scenes import KINDS, listed, scene
 from tests.agreement.test_section_laws import YOUNGS_MODULUS, strips
 from tests.models import BOTH
+from tests.suite.refused import FINDS
 
 #: Instants at which motions are compared.
 INSTANTS = 60
@@ -28,7 +27,6 @@ INSTANTS = 60
 LEAST, KNOWN = 0.5, 1.0 / 3.0
 #: Error that is none [rad, m].
 NONE = 1e-10
-FINDS = Path(__file__).parents[1] / "suite" / "finds"
 
 #: Control points beyond those of the motion, and multiples of its steps, of two truths: finer where in doubt.
 FINER = (((4, 3), (16, 10)), ((8, 6), (64, 40)))
@@ -49,14 +47,14 @@ def spline(design: Design, points: int | None, steps: int, duration: float, **ho
     asked = put(design, settings, moving=True)
     step = duration / steps
     at = {"start": design.rotation, "body": design.body, "duration": duration, "step": step}
-    return splines.solve_motion(asked.modelled, **at, **how)
+    return spline_model.solve_motion(asked.modelled, **at, **how)
 
 
 def truth(design: Design, steps: int, duration: float, points: Pair, times: Pair) -> tuple[Moves, np.ndarray]:
     """Return the motion with so many control points, explicit or in so many of the steps, and its doubt."""
     finest = {"records": INSTANTS, "check": False}
     try:
-        own = splines.solve_motion(
+        own = spline_model.solve_motion(
             put(design, SplineSettings(control_points=points[0]), moving=True).modelled,
             start=design.rotation,
             body=design.body,
@@ -66,7 +64,7 @@ def truth(design: Design, steps: int, duration: float, points: Pair, times: Pair
         ).settings["step_s"]
         counts = [INSTANTS * math.ceil(part * duration / own / INSTANTS) for part in (2.0, 1.3)]
         finest["integrator"] = "leapfrog"
-    except InvalidParameter:
+    except spline_model.InvalidParameter:
         counts = [each * steps for each in times]
     runs = [spline(design, *each, duration, **finest) for each in zip(points, counts, strict=True)]
     best, near = (run.moves((len(run.time) - 1) // INSTANTS) for run in runs)
@@ -97,7 +95,7 @@ def test_the_estimate_of_a_random_release_covers_its_error(seed):
     asked = put(design, FeSettings(elements=16), moving=True)
     at = {"start": design.rotation, "body": design.body, "duration": duration, "step": 0.5 * duration / steps}
     how = {"integrator": "generalised-alpha", "samples": steps, "raise_on_failure": False}
-    coarse = elements.solve_motion(asked.modelled, **how, **at)
+    coarse = fe_reference.solve_motion(asked.modelled, **how, **at)
     runs, found = [motion], [motion.moves((len(motion.time) - 1) // INSTANTS)]
     if coarse.status.value == "converged":  # else it says why
         runs.append(coarse)
@@ -127,7 +125,7 @@ def test_a_difference_that_falls_too_slowly_is_more_of_an_error():
     damping = {"translation": 0.11014151273423357, "rotation": 1.4450818560169775e-4}
     design = replace(design, effects=design.effects.plus(body_damping=damping))
     asked = put(design, FeSettings(), moving=True).modelled
-    motion = elements.solve_motion(asked, start=design.rotation, body=design.body, duration=2.06178)
+    motion = fe_reference.solve_motion(asked, start=design.rotation, body=design.body, duration=2.06178)
     assert 0.5 * 1.46e-2 < motion.rotation_error < 4.0 * 1.46e-2
     assert 0.5 * 1.42e-3 < motion.displacement_error < 4.0 * 1.42e-3
 
@@ -160,7 +158,7 @@ def test_an_accuracy_holds_where_a_drive_begins_with_a_jump_of_speed():
     """The search ended at 12 control points with an estimate of 3.3e-4 rad, a tenth of the error."""
     design, duration = led_with_a_jump()
     asked = put(design, SplineSettings(), moving=True)
-    motion = splines.solve_motion(asked.modelled, body=design.body, duration=duration, accuracy=1e-3)
+    motion = spline_model.solve_motion(asked.modelled, body=design.body, duration=duration, accuracy=1e-3)
     exact = spline(design, 21, 1920, duration, check=False)
     assert motion.status.value == "converged"
     assert abs(motion.rotation[-1] - exact.rotation[-1]) < min(1e-3, 2.0 * motion.estimate.rotation)

@@ -7,9 +7,10 @@ import pytest
 
 import fe_reference
 import spline_model
-from fe_reference import ELEMENTS
+from fe_reference import ELEMENTS, plate, plate_factors
 from spline_model import DEFAULT_EFFECTS
 from tests import gates
+from tests.gates import hold
 from tests.models import refined
 from tests.table_one import BARE
 
@@ -81,7 +82,8 @@ def test_plate_factors_are_those_of_the_literature(gate, models):
     ids=["spline", *ELEMENTS],
 )
 def test_pure_bending_flattens_a_wide_strip(gate, models, grid):
-    """Requirement: a strip rolled up by its end has the moment and the stiffness of Ashwell's law."""
+    """Requirement: a strip rolled up by its end has the moment and the stiffness of Ashwell's law, and
+    the same moment in every section."""
 
     def error(poisson_ratio=0.3):
         found = []
@@ -90,6 +92,8 @@ def test_pure_bending_flattens_a_wide_strip(gate, models, grid):
             made = strips(models, 0.3, thickness, effects=("anticlastic",), nu=poisson_ratio, **grid)
             path = models.solve_mechanism(made, rotation=0.5, increments=4)
             rigidity = YOUNGS_MODULUS * 0.3 * thickness**3 / 12.0
+            if models is spline_model:  # sections have the moment of the law, which balance has as well
+                assert path.bending_moment[-1] == pytest.approx(path.torque[-1])
             found.append((path.torque[-1] / (0.5 * rigidity), path.stiffness[-1] / rigidity))
         return np.abs(np.array(found) - np.array(ASHWELL)[:, 1:]).max()
 
@@ -225,3 +229,27 @@ def test_the_estimate_has_what_roots_leave(aside):
     error = np.abs(spread.torque - springs).max() / np.abs(springs).max()
     assert 0.5 * error < spread.estimate.torque < 3.0 * error
     assert "torque" in spread.resolution
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.05, 0.5])
+def test_mesh_is_fine_enough(ratio, monkeypatch):
+    """Requirement: halved elements change the factors by far less than the printed digits, also of a narrow
+    strip, whose smallest triangles are a hundredth of its width and far from its middle."""
+
+    def error(layers: int = plate.LAYERS) -> float:
+        monkeypatch.setattr(plate, "LAYERS", layers)
+        given, finer = (plate_factors(ratio, 0.45, halvings=each) for each in (0, 1))
+        return max(abs(given.constant - finer.constant), abs(given.linear - finer.linear))
+
+    hold("fe_plate_mesh", error)
+
+
+@pytest.mark.slow
+def test_limits():
+    """Requirement: the excess of a narrow strip goes with its width, and no strip is stiffer than one that is
+    held flat."""
+    narrow, wider = plate_factors(0.1, 0.3).constant - 1.0, plate_factors(0.2, 0.3).constant - 1.0
+    assert wider / narrow == pytest.approx(2.0, rel=0.02)
+    wide = plate_factors(20.0, 0.3)
+    assert 1.09 < wide.constant < wide.linear < 1.0 / (1.0 - 0.3**2)

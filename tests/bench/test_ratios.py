@@ -7,8 +7,7 @@ from time import perf_counter
 
 from spline_model import cross_axis_pivot, solve_many, solve_statics
 from studies.record.source import ROOT
-from tests.bench.test_counted import FIRST_SOLVE
-from tests.bench.test_speed import DESIGNS, INCREMENTS, QUARTER_TURN, designs
+from tests.bench.test_speed import DESIGNS, FIRST_SOLVE, INCREMENTS, QUARTER_TURN, designs
 from tests.table_one import SIX
 
 LIBRARIES = "import numpy, numba, scipy.interpolate, scipy.linalg, scipy.sparse.linalg"

@@ -1,6 +1,9 @@
 """Time and operation counts of a solve: `make bench` reports seconds, tests judge counters only."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,6 +11,7 @@ import pytest
 from fe_reference import cross_axis_pivot as element_pivot
 from fe_reference import solve_statics as solve_element_statics
 from spline_model import cross_axis_pivot, solve_many, solve_release, solve_statics
+from studies.record.source import ROOT
 from tests.table_one import SIX, TABLE_ONE
 
 QUARTER_TURN = math.pi / 2
@@ -79,3 +83,26 @@ def test_element_path(benchmark):
     counters = solution.counters
     assert counters["halvings"] == 0
     assert counters["factorisations"] == counters["newton_iterations"] + INCREMENTS
+
+
+FIRST_SOLVE = """
+from spline_model import cross_axis_pivot, solve_statics
+from tests.table_one import SIX
+solve_statics(cross_axis_pivot(**SIX), rotation=1.5)
+"""
+
+
+def of_the_cache(script):
+    """What numba says of its cache while a script runs in a fresh interpreter."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "NUMBA_DEBUG_CACHE": "1"}
+    words = [sys.executable, "-c", script]
+    return subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True, text=True).stdout
+
+
+def test_the_first_solve_compiles_nothing():
+    """Requirement: once kernels are kept, import and first solve load them all and compile none."""
+    said = of_the_cache(FIRST_SOLVE)
+    if "data saved to" in said:  # they were not kept before
+        said = of_the_cache(FIRST_SOLVE)
+    assert said.count("data loaded from") > 0
+    assert said.count("data saved to") == 0

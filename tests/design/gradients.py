@@ -3,7 +3,7 @@
 import numpy as np
 
 from studies.design.programme import Programme
-from tests.fe.cases import extrapolated
+from tests.models import extrapolated
 
 #: First step of differences, of a variable's bounds, and how often it is halved.
 STEP, LEVELS = 0.01, 4

@@ -35,7 +35,7 @@ PAGES = (
 NOT_RUN = {
     "make ": "the target must exist; continuous integration runs setup, test-all, lint and docs",
     "python3 -m venv": "as above: setup",
-    "python3 -m pip": "tests/suite/test_wheel.py builds and installs the wheel",
+    "python3 -m pip": "tests/suite/test_start_up.py builds and installs the wheel",
     ".venv/bin/python -m pip": "as above: setup",
     "python -m studies interactive": "serves until it is stopped; tests/interactive runs it",
     "python -m studies markers": "needs the extra `interactive`; tests/interactive runs it",

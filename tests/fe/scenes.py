@@ -1,11 +1,18 @@
-"""Mechanisms that the tests of effects share: a free cantilever, a parallel-strip guide, a four-bar."""
+"""What the tests of the elements share: the pivot, a cantilever, a parallel-strip guide, a four-bar."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from fe_reference import DEFAULT_EFFECTS, BodyDesign, Model, StripDesign, compliant_mechanism
-from tests.refusals import scene
-from tests.table_one import SECTION
+from fe_reference import (
+    DEFAULT_EFFECTS,
+    BodyDesign,
+    Model,
+    StripDesign,
+    compliant_mechanism,
+    cross_axis_pivot,
+)
+from tests.models import scene
+from tests.table_one import SECTION, TABLE_ONE
 
 Parameters = Mapping[str, Any]
 #: Length of the guide's strips [m], distance between them, and length of the links of the four-bar.
@@ -31,6 +38,11 @@ SIDED: dict[str, dict[str, Any]] = {"clamped_width": {}, "anticlastic": {}, "roo
 BARE = {name: value for name, value in SECTION.items() if name not in ("area", "second_moment_of_area")}
 WIDE, THICK = BARE | {"width": 0.02, "thickness": 0.001}, BARE | {"width": 0.02, "thickness": 0.004}
 SIDED_SCENE = {name: given for name, given in PARAMETERS.items() if name != "pre_strain"} | SIDED
+
+
+def pivot(**changes: Any) -> Model:
+    """Return the paper's pivot with some parameters changed."""
+    return cross_axis_pivot(**{**TABLE_ONE, **changes})
 
 
 def free_cantilever(

@@ -1,109 +1,26 @@
-"""Definitions that are lists: several loads, drives, supports and springs, against closed forms."""
+"""Loads at points, supports, springs and hinges of the elements, in statics and in motion."""
 
-from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from fe_reference import (
     DEFAULT_EFFECTS,
     BodyDesign,
     Model,
-    StaticSolution,
     StripDesign,
     compliant_mechanism,
     natural_frequencies,
     solve_mechanism,
     solve_motion,
 )
-from tests.fe.cases import EI, extrapolated
-from tests.fe.scenes import BARE, GUIDE, TIP, four_bar, free_cantilever, tipped
-from tests.gates import check, hold, refuse
-from tests.refusals import refused, scene
+from tests.fe.scenes import TIP, tipped
+from tests.gates import check, hold
+from tests.models import refused, scene
 from tests.table_one import SECTION
-
-
-def test_loads_add_up() -> None:
-    """Several loads of a kind act as their sum: forces and moments, on bodies and at a free end."""
-    pulls = [{"force": (300.0, 0.0), "body": "coupler"}, {"force": (0.0, -200.0), "body": "coupler"}]
-    twists = [{"moment": 2.0, "body": "crank"}, {"moment": -5.0, "body": "crank"}]
-    sums = {"force": (300.0, -200.0), "body": "coupler"}, [{"moment": -3.0, "body": "crank"}]
-    one, other = (
-        solve_mechanism(four_bar({"applied_force": f, "applied_moment": m}, elements=3), increments=3).states
-        for f, m in ((pulls, twists), sums)
-    )
-    assert np.abs(one[-1]).max() > 1e-3
-    assert np.abs(one - other).max() < 1e-9 * np.abs(one).max()
-    ends = [{"strip": "strip", "force": (0.0, 2.0)}, {"strip": "strip", "force": (0.0, -2.0), "moment": 0.3}]
-    bent = solve_mechanism(free_cantilever(parameters={"tip_force": ends}, elements=4), increments=3)
-    assert bent.bending_moment[-1, 0] == pytest.approx(0.3, rel=1e-9)
-
-
-#: Bistable half beam: sides of its section and rise of its halves [m], place of its middle [m].
-BEAM: dict[str, Any] = {"width": 5e-7, "thickness": 5e-7, "youngs_modulus": 160e9, "poisson_ratio": 0.22}
-RISE, MIDDLE, SHUTTLE = 1.501347575453747e-7, (1e-5, 6e-7), (2e-5, 1.2e-6)
-
-
-def half_beam(*fixed: str) -> Model:
-    """Return a half beam whose shuttle is led down, of which more coordinates are fixed."""
-    halves = ({"end": MIDDLE, "tip": "mid", "rise": -RISE}, {"start": MIDDLE, "root": "mid", "rise": RISE})
-    ends = {"start": (0.0, 0.0), "end": SHUTTLE, "tip": "shuttle", "density": 2330.0}
-    led = {"body": "shuttle", "displacement": (None, -2.4e-6)}
-    return compliant_mechanism(
-        strips=[
-            StripDesign(name=name, **BEAM | ends | half) for name, half in zip("ab", halves, strict=True)
-        ],
-        bodies=[BodyDesign(name="mid", centre=MIDDLE), BodyDesign(name="shuttle", centre=SHUTTLE)],
-        **scene(
-            ("bending", "stretching"), driven_displacement=led, support={"body": "shuttle", "fixed": fixed}
-        ),
-    )
-
-
-@pytest.mark.parametrize(
-    ("fixed", "push", "pop"), [(("x", "rotation"), -3.231, 0.298), (("rotation",), -2.989, 0)]
-)
-def test_bistable_half_beam(fixed: tuple[str, ...], push: float, pop: float) -> None:
-    """The force of a guided shuttle has the extrema that shooting finds; free to slide it has none."""
-
-    def error(elements: int = 20) -> float:
-        path = solve_mechanism(replace(half_beam(*fixed), elements=elements), increments=48, check=False)
-        force = 1e6 * path.reactions[:, path.prescribed.index(("shuttle", "y"))]
-        return max(abs(force.min() - push), abs(force.max() - pop))
-
-    check("fe_half_beam", error())
-    if pop:  # a force that does not turn back hardly depends on the mesh
-        refuse("fe_half_beam", error)
-
-
-def test_reactions_balance_loads() -> None:
-    """What drives, supports and clamps exert is in balance with the loads, and works as the books say."""
-    model = four_bar(
-        {
-            "applied_force": {"force": (300.0, -200.0), "body": "coupler"},
-            "driven_rotation": {"body": "rocker", "angle": 0.2},
-            "support": [{"body": "coupler", "fixed": ("y",)}, {"body": "crank", "fixed": ["x"]}],
-        },
-        elements=4,
-    )
-    path = solve_mechanism(model, increments=40)
-    assert path.prescribed == (("rocker", "rotation"), ("coupler", "y"), ("crank", "x"))
-    assert path.bodies["rocker"][-1, 2] == 0.2 and np.ptp(path.bodies["crank"][:, 0]) == 0.0
-    forces = path.clamp_reactions[-1][model.ends == -1][:, :2].sum(axis=0) + path.reactions[-1, [2, 1]]
-    assert np.abs(forces + np.array([300.0, -200.0])).max() < 1e-9 * np.abs(path.clamp_reactions[-1]).max()
-    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
-    same = solve_mechanism(four_bar({}, elements=4), body="rocker", rotation=0.2, increments=2)
-    led = solve_mechanism(
-        four_bar({"driven_rotation": {"body": "rocker", "angle": 0.2}}, elements=4), increments=2
-    )
-    assert led.reactions[-1, 0] == pytest.approx(same.torque[-1], rel=1e-9)
-    assert same.reactions[:, 0].tolist() == same.torque.tolist()
-
 
 SPRING: dict[str, Any] = {"body": "mass", "stiffness": (1000.0, 2000.0), "rotational_stiffness": 0.5}
 
@@ -112,23 +29,6 @@ def on_springs(**given: Any) -> Model:
     """Return a strip with a body at its tip, and a body on springs alone."""
     mass = BodyDesign(name="mass", centre=(0.3, 0.1), mass=0.2, moment_of_inertia=1e-3)
     return tipped(TIP, mass, elements=3, **given)
-
-
-def test_springs_alone() -> None:
-    """A body on springs moves by F/k and M/k, and vibrates as an oscillator; what they leave free is held."""
-    pull = {
-        "applied_force": {"body": "mass", "force": (3.0, -4.0)},
-        "applied_moment": {"body": "mass", "moment": 0.3},
-    }
-    path = solve_mechanism(on_springs(spring=[SPRING], **pull), increments=2)
-    assert path.bodies["mass"][-1] == pytest.approx((0.303, 0.098, 0.6), rel=1e-12)
-    assert path.spring_energy[-1] == pytest.approx(0.0985, rel=1e-9)
-    assert path.work[-1] == pytest.approx(path.spring_energy[-1] + path.strain_energy[-1], rel=1e-9)
-    assert path.body_stiffness("mass")[-1] == pytest.approx(np.diag((1000.0, 2000.0, 0.5)), abs=1e-9)
-    found = natural_frequencies(on_springs(spring=SPRING), rotation=None, count=3).frequency
-    assert 2.0 * np.pi * found == pytest.approx(np.sqrt((500.0, 5000.0, 10000.0)), rel=1e-9)
-    free = on_springs(spring=SPRING | {"stiffness": (1000.0, 0.0)}, applied_force=pull["applied_force"])
-    refused(lambda: solve_mechanism(free), "nothing holds body mass in the direction y")
 
 
 @pytest.mark.parametrize("how", [{}, {"integrator": "generalised-alpha", "step": 2e-5}])
@@ -196,85 +96,6 @@ def test_a_pinned_body_is_a_pendulum() -> None:
         hold("fe_pendulum", error)
 
 
-def followed(load: float, elements: int = 10, *, across: bool = True) -> StaticSolution:
-    """Return the path of a thin cantilever with a follower of `load` EI/L^2, across or along its tip."""
-    section = {**BARE, "width": 0.01, "thickness": 2e-4}
-    force = load * BARE["youngs_modulus"] * 0.01 * 2e-4**3 / 12.0 / 0.1**2
-    given = {"strip": "strip", "force": (0.0, force) if across else (-force, 0.0), "follower": True}
-    model = free_cantilever(length=0.1, section=section, parameters={"tip_force": given}, elements=elements)
-    return solve_mechanism(model)
-
-
-def test_follower_elastica() -> None:
-    """A force that stays normal to the tip bends a cantilever as theta'' = p cos theta, from the tip on."""
-
-    def error(load: float, elements: Sequence[int] = (10, 20, 40)) -> float:
-        ways = solve_ivp(
-            lambda _, z: (z[1], load * np.cos(z[0]), np.cos(z[0]), np.sin(z[0])),
-            (0.0, 1.0),
-            [0.0] * 4,
-            rtol=1e-10,
-            atol=1e-12,
-        )
-        turn, _, along, across = ways.y[:, -1]
-        tip = np.array([[np.cos(turn), np.sin(turn)], [np.sin(turn), -np.cos(turn)]]) @ (along, across)
-        x, y, angle = extrapolated([followed(load, n).tips["strip"][-1] for n in elements])
-        return float(np.abs(np.subtract((10.0 * x, 10.0 * y, angle), (*tip, turn))).max())
-
-    for load in (2.0, 10.0):
-        hold("fe_follower_elastica", partial(error, load))
-    path = followed(2.0)
-    assert path.work[-1] == pytest.approx(path.strain_energy[-1], rel=1e-8)
-
-
-def test_follower_column_does_not_buckle() -> None:
-    """Under a follower there is no other equilibrium: a column has none below flutter at 20.05 EI/L^2."""
-    path = followed(19.9, across=False)
-    assert path.critical_points == () and not path.inertia.any() and path.message == ""
-    told = "follower: got True, expected a fixed direction"
-    refused(lambda: natural_frequencies(path.model, rotation=None), told)
-    # a pin bears what turns of it: such a column does buckle, at the dead load
-    loads = [
-        solve_mechanism(column("clamp", "clamp", 2.5, guided=("y",), follower=follows), check=False)
-        .critical_points[0]
-        .load_factor
-        for follows in (False, True)
-    ]
-    assert loads[1] == pytest.approx(loads[0], rel=1e-8)
-
-
-def column(
-    root: str, tip: str, load: float, *, guided: tuple[str, ...] = ("y", "rotation"), follower: bool = False
-) -> Model:
-    """Return a column between joints, the upper one guided, under a load in pi^2 EI/L^2."""
-    force = (-load * np.pi**2 * EI / GUIDE**2, 0.0)
-    head = BodyDesign(name="head", centre=(0.1, 0.0), mass=0.01, moment_of_inertia=1e-6)
-    given = {"applied_force": {"force": force, "follower": follower}, "support": {"fixed": guided}}
-    return tipped(head, strip={"root_joint": root, "tip_joint": tip}, **given)
-
-
-@pytest.mark.parametrize(
-    ("joints", "load", "root"), [(("hinge", "hinge"), 1.0, np.pi), (("clamp", "hinge"), 2.0457, 3.92660)]
-)
-def test_hinged_columns(joints: tuple[str, str], load: float, root: float) -> None:
-    """Columns on hinges buckle at their Euler loads, and vibrate at the roots of beams on hinges."""
-
-    def buckling(elements: int = 20) -> float:
-        path = solve_mechanism(replace(column(*joints, 1.2 * load), elements=elements), check=False)
-        assert abs(path.bending_moment[:, 0, [k for k in (0, -1) if joints[k] == "hinge"]]).max() == 0.0
-        return abs(1.2 * path.critical_points[0].load_factor - 1.0)
-
-    def vibration(elements: int = 20) -> float:
-        model = replace(column(*joints, 0.0, guided=("x", "y", "rotation")), elements=elements)
-        strip = model.strips[0]
-        found = 2.0 * np.pi * natural_frequencies(model, rotation=None, count=1).frequency[0]
-        unit = np.sqrt(strip.flexural_rigidity / strip.linear_density) / 0.1**2
-        return float(abs(np.sqrt(found / unit) / root - 1.0))
-
-    hold("fe_hinged_column", buckling)
-    hold("fe_hinged_beam", vibration)
-
-
 def test_a_hinged_strip_is_a_pendulum() -> None:
     """A strip that hangs on a hinge swings as a rod, small and from the horizontal, in either scheme."""
     strip = StripDesign(
@@ -287,7 +108,7 @@ def test_a_hinged_strip_is_a_pendulum() -> None:
 
     rate = np.sqrt(1.5 * 9.81 / 0.1)
     found = natural_frequencies(hung(9.81, 0.0), rotation=None, count=1).frequency[0]
-    check("fe_hinged_beam", abs(2.0 * np.pi * found / rate - 1.0))
+    check("fe_hinges", abs(2.0 * np.pi * found / rate - 1.0))
     half = 2.0 * ellipk(0.5) / rate
     for how in ({}, {"integrator": "generalised-alpha", "step": 2e-4}):
         swing = solve_motion(hung(0.0, -9.81), settled=False, duration=half, samples=4, check=False, **how)

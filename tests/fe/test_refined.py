@@ -19,10 +19,9 @@ from fe_reference import (
 from studies.answers.models import put
 from studies.answers.settings import FeSettings
 from studies.commands.arguments import read_design
-from tests.fe.cases import extrapolated, pivot
-from tests.fe.scenes import four_bar
+from tests.fe.scenes import four_bar, pivot
 from tests.gates import hold
-from tests.refusals import scene
+from tests.models import extrapolated, scene
 
 
 def apart(found: Any, exact: Any, name: str) -> float:

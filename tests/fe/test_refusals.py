@@ -22,9 +22,9 @@ from fe_reference import (
     solve_release,
 )
 from tests import table_one
-from tests.fe.cases import pivot
-from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, tipped
-from tests.refusals import refused, scene
+from tests.fe.scenes import TIP, WIDE, four_bar, free_cantilever, guide, pivot, tipped
+from tests.fe.test_solid import strip as solid
+from tests.models import refused, scene
 from tests.table_one import BARE, SIDES
 
 STILL, LIGHT = scene(("bending", "stretching")), scene(("bending", "stretching", "body_inertia"))
@@ -167,6 +167,16 @@ ASKED: list[tuple[Callable[[], object], str]] = [
     (lambda: release(duration=1.0, samples=10**7), "samples: got "),
 ]
 ASKED += [(partial(pivot, **given), said) for given, said in PIVOTS]
+#: What a solid strip is given, and what is said of it.
+SOLIDS: list[tuple[dict[str, Any], str]] = [
+    ({"law": "hooke"}, "law: got 'hooke', expected one of st-venant-kirchhoff, neo-hookean"),
+    ({"element": "linear"}, "element: got 'linear', expected one of serendipity, lagrange"),
+    ({"thickness": 0.0}, "thickness: got 0.0, expected a number above 0"),
+    ({"poisson_ratio": 0.5}, "poisson_ratio: got 0.5, expected a number between -1 and 0.5, both excluded"),
+    ({"support": -1.0}, "support: got -1.0, expected a number not below 0"),
+    ({"fineness": 0}, "fineness: got 0, expected an integer of at least 1"),
+]
+ASKED += [(partial(solid, **given), said) for given, said in SOLIDS]
 ONCE, FORCED = "expected one drive or support for each coordinate", {"stiffness": (1.0, 1.0)}
 PUSHED, ROLL = {"body": "crank", "displacement": (0.0, None)}, {"body": "crank", "fixed": ["x", "rotation"]}
 ROLLED = partial(four_bar, {"support": ROLL})

@@ -8,8 +8,8 @@ Exit code 0: nothing differs, or it is stored; 1: something differs.
 import argparse
 import sys
 
+from tests.goldens.answers import renewed, written
 from tests.goldens.asked import CASES
-from tests.goldens.store import renewed, written
 
 
 def main() -> int:

@@ -5,8 +5,8 @@
 
 import pytest
 
+from tests.goldens.answers import STORED, asked, compared, stored
 from tests.goldens.asked import CASES, requests
-from tests.goldens.store import FOLDER, asked, compared, stored
 
 REQUESTS = [
     pytest.param(request, id=request.words, marks=[pytest.mark.slow] if request.slow else [])
@@ -26,7 +26,7 @@ def test_goldens_are_of_what_is_asked():
     """Every stored answer is asked, and the files stay small enough to be read and reviewed."""
     for case in CASES:
         assert list(stored(case)) == [request.words for request in requests(case)]
-    sizes = {path.stem: path.stat().st_size for path in FOLDER.glob("*.json")}
+    sizes = {path.stem: path.stat().st_size for path in STORED.glob("*.json")}
     assert set(sizes) == set(CASES)
     assert max(sizes.values()) < 200_000
     assert sum(sizes.values()) < 1_500_000

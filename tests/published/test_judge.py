@@ -1,8 +1,5 @@
 """The benchmark package, and the command that judges results of other codes by it."""
 
-import tomllib
-
-import numpy as np
 import pandas as pd
 import pytest
 
@@ -10,10 +7,9 @@ from report.facts import Results
 from studies.__main__ import main
 from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.settings import FeSettings, SplineSettings
-from studies.cases.design import design_of, document_of
 from studies.cases.problem import named_case
 from studies.published import benchmark
-from studies.record.store import Store, read_csv
+from studies.record.store import Store
 
 CASE = named_case()
 
@@ -48,34 +44,6 @@ def test_package_is_of_the_stored_results():
     """The files of the package are those that the stored tables give."""
     for name, content in benchmark.package(Results(Store(), allow_stale=True).table).items():
         assert (benchmark.FOLDER / name).read_bytes() == content, name
-
-
-def test_package_has_inputs_and_every_theory():
-    """Beams have statics, modes and free vibration, solids have statics; the inputs are those of the case."""
-    beam = read_csv((benchmark.FOLDER / "beam.csv").read_bytes())
-    known = pd.concat(beam.assign(theory=name) for name in benchmark.BEAMS)
-
-    def stored(study, table):
-        return known if table == "references" else Results(Store(), allow_stale=True).table(study, table)
-
-    files = benchmark.package(stored)
-    inputs = tomllib.loads(files.pop(benchmark.INPUTS).decode())
-    assert inputs["quantities"] == benchmark.QUANTITIES and set(inputs["references"]) == set(
-        benchmark.THEORIES
-    )
-    assert np.array(inputs["places_at_rest"]["body_clamps_m"]) == pytest.approx(
-        np.array([strip.end for strip in CASE.strips]), rel=1e-12
-    )
-    case = {name: table for name, table in inputs.items() if name in document_of(CASE)}
-    found, sides = design_of("inputs", case), ("length", "width", "thickness", "body_mass", "rotation")
-    assert [getattr(found, name) for name in sides] == pytest.approx([getattr(CASE, n) for n in sides])
-    found = {name.removesuffix(".csv"): set(read_csv(content)["quantity"]) for name, content in files.items()}
-    assert found == {
-        name: set(benchmark.QUANTITIES)
-        if name in benchmark.BEAMS
-        else {"torque_Nm", "centre_x_m", "centre_y_m"}
-        for name in benchmark.THEORIES
-    }
 
 
 def test_answers_of_the_suite_pass(judged):

@@ -1,12 +1,15 @@
-"""Published problems: case files with published values and sources, and the results of the models."""
+"""Published problems: case files, values and answers; the budget of the solids, and CalculiX beside them."""
 
 import math
 import re
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from studies.cases.document import CaseError
-from studies.published import problems
+from studies.errors import Unanswered
+from studies.published import calculix, problems, solid_pivot
 from studies.published.case import (
     AT_MOST,
     EQUAL,
@@ -17,9 +20,11 @@ from studies.published.case import (
     read_published,
 )
 from studies.published.problems import ours
+from studies.published.solids import COMPARED, PIVOT, STIFF, Design
 from studies.record.store import Store
 from studies.stability.buckling import load_ratio
 from tests import gates
+from tests.gates import hold
 
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 #: Problems that the splines answer in milliseconds, and in seconds.
@@ -108,3 +113,91 @@ def test_all_values_are_met():
     assert missed.empty, missed[["case", "model", "answer", "quantity", "published", "found"]].to_string()
     solids = values[(values["case"] == "parallelogram") & (values["answer"] == "beam")]
     assert (solids["error"].abs() > solids["limit"] / 2).all()  # a plain beam is seen to be too soft
+
+
+ROTATION = np.linspace(0.2, 1.0, 5)
+
+
+def states(shift=0.0, **labels):
+    """States of a model whose torque and place are further by a share that grows to `shift`."""
+    share = 1.0 + shift * ROTATION
+    values = {"torque_Nm": ROTATION * share, "com_x_m": ROTATION * share, "com_y_m": 0.0}
+    return pd.DataFrame(labels | {"rotation_rad": ROTATION} | values)
+
+
+def test_limits_have_the_uncertainty_of_mesh_and_order():
+    """Of meshes of second order the limit is exact, and the order 1.5 makes its uncertainty."""
+    mesh = {"law": STIFF, "element": "serendipity"}
+    meshes = pd.concat(
+        states(fineness=n, **mesh).assign(torque_Nm=lambda rows, n=n: rows["torque_Nm"] * (1.0 + 0.1 / n**2))
+        for n in (2, 3, 4)
+    )
+    (found,) = Design(orders=(2.0, 1.5)).limits(meshes)
+    assert found["torque_Nm"].to_numpy() == pytest.approx(ROTATION, rel=1e-12)
+    fine = 0.1 / 9 - 0.1 / 16
+    by_order = fine * abs(1.0 / ((4 / 3) ** 2 - 1.0) - 1.0 / ((4 / 3) ** 1.5 - 1.0))
+    assert found["uncertainty"].to_numpy() == pytest.approx(np.full(5, by_order), rel=1e-9)
+    other = meshes.assign(element="lagrange", torque_Nm=1.01 * meshes["torque_Nm"])
+    (found,) = Design(orders=(2.0, 1.5)).limits(pd.concat([meshes, other]))
+    assert found["uncertainty"].to_numpy() == pytest.approx(np.full(5, max(0.01, by_order)), rel=1e-9)
+
+
+def test_stored_solids_are_certain():
+    """The committed torque of the benchmark pivot is certain from 9 degrees on, of both laws, from at least
+    three meshes and both elements."""
+    tables = Store().load_tables("model_form/solid_pivot")
+    meshes, limits = tables["meshes"], tables["limits"]
+    count = meshes[meshes["design"] == "benchmark"].groupby(["law", "element"])["fineness"].nunique()
+    assert (count.xs("serendipity", level="element") >= 3).all() and count[STIFF, "lagrange"] >= 2
+
+    def error(design="benchmark"):
+        own = limits[(limits["design"] == design) & (limits["rotation_rad"] > COMPARED)]
+        assert set(own["law"]) == {mesh[1] for mesh in solid_pivot.DESIGNS[design].meshes}
+        return own["uncertainty"].max()
+
+    hold("solid_uncertainty", error)
+
+
+ccx = pytest.mark.skipif(bool(calculix.missing()), reason="ccx is not installed (calculix-ccx)")
+DESIGN = Design(step=9.0, states=10)
+
+
+@ccx
+def test_same_torque_on_the_same_mesh():
+    """Torques agree up to 90 degrees; those of another material law do not."""
+
+    def error(law="st-venant-kirchhoff"):
+        strip = DESIGN.strip(1, law)
+        path = DESIGN.solids(strip)
+        return np.abs(calculix.driven(DESIGN.pivot, strip, path)[0] / path.torque - 1.0).max()
+
+    hold("calculix", error)
+
+
+@ccx
+def test_a_state_that_is_not_reached_is_an_error():
+    """Where CalculiX stops, the error has the number of states that it reached."""
+    strip = DESIGN.strip(1)
+    moves = np.full((1, len(strip.tip)), np.nan + 0.0j)
+    with pytest.raises(Unanswered, match=r"^CalculiX: got 0 states, expected 1: "):
+        calculix.end_forces(strip, moves)
+
+
+def test_stored_torque_is_that_of_the_stored_solids():
+    """The committed results of CalculiX agree with solids on the same meshes; a gate has how far."""
+
+    def error(law=STIFF):
+        key = ["fineness", "rotation_rad"]
+        solids = Store().load_tables("model_form/solid_pivot")["meshes"]
+        own = solids.query(f"design == '{PIVOT}' and element == 'serendipity' and law == '{law}'")
+        both = Store().load_tables("model_form/calculix")["states"].merge(own, on=key)
+        assert len(both) == 13 * len(calculix.MESHES)
+        return (both["torque_Nm_x"] / both["torque_Nm_y"] - 1.0).abs().max()
+
+    hold("calculix_stored", error)
+
+
+def test_without_the_program_the_study_says_what_it_needs(monkeypatch):
+    """Where CalculiX is absent, the study names it and how to install it."""
+    monkeypatch.setattr(calculix, "PROGRAM", "no-such-program")
+    assert calculix.STUDY.missing() == "it needs CalculiX: apt-get install calculix-ccx"

@@ -1,20 +1,17 @@
-"""Accuracy on request, of one design or many: control points until the estimated error is below it."""
+"""Accuracy on request, of paths, batches and motions: refined until the estimated error is below it."""
 
 import math
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import spline_model
-from spline_model import cross_axis_pivot, solve_many, solve_mechanism, solve_statics
-from spline_model.accuracy import Search
-from spline_model.accuracy import _stuck as stuck
-from spline_model.discretisation import Discretisation
+from spline_model import Status, cross_axis_pivot, solve_many, solve_mechanism, solve_release, solve_statics
 from tests import gates
 from tests.frames import one_strip
+from tests.spline import scenes
 from tests.table_one import TABLE_ONE
 
 QUARTER = math.pi / 2
@@ -221,30 +218,93 @@ def test_what_a_path_lacks_has_no_error():
     assert math.isnan(batch.errors["strain"][0])
 
 
+#: Half a swing [s].
+DURATION = 0.006
+HEAVY = ("bending", "stretching", "strip_inertia", "body_inertia", "gravity")
+
+
+def swung(n=6, **settings):
+    """The release of Table 1 from a quarter turn, or with other settings."""
+    options = {"duration": DURATION} | {
+        name: settings.pop(name)
+        for name in ("duration", "accuracy", "records", "integrator", "step", "start")
+        if name in settings
+    }
+    return solve_release(scenes.pivot(control_points=n, **settings), **options)
+
+
+@cache
+def exact_swing():
+    """The swing with ten control points and explicit steps; eight move it by less than 1e-4 rad."""
+    return swung(10, integrator="leapfrog", step=1e-6)
+
+
+def true_error(trajectory, reference=None):
+    """Largest error of the rotation at the trajectory's instants [rad]."""
+    reference = exact_swing() if reference is None else reference
+    return np.abs(trajectory.rotation - np.interp(trajectory.time, reference.time, reference.rotation)).max()
+
+
+@pytest.mark.parametrize("n", [4, 6])
+@pytest.mark.parametrize("accuracy", [3e-2, 1e-2, 3e-3])
+def test_wanted_accuracy_is_met_and_estimated(n, accuracy):
+    """Requirement: the true error is below what was asked for, and the estimate within its band."""
+    trajectory = swung(n, accuracy=accuracy)
+    assert trajectory.status is Status.CONVERGED
+    assert trajectory.estimate.rotation <= accuracy
+    error = true_error(trajectory)
+    gates.check("spline_motion_accuracy_request", error / accuracy)
+    gates.check("spline_motion_accuracy_optimism", error / trajectory.estimate.rotation)
+    gates.check("spline_motion_accuracy_pessimism", trajectory.estimate.rotation / error)
+
+
+def test_wrong_estimates_are_seen():
+    """Requirement: the checks see an estimate by steps alone, and motions of other errors than estimated."""
+
+    def optimism(control_points):
+        coarse, fine = (swung(control_points, step=step, records=60) for step in (1e-4, 5e-5))
+        return true_error(fine) / np.abs(coarse.rotation - fine.rotation).max()
+
+    gates.refuse("spline_motion_accuracy_optimism", optimism)
+    gates.refuse("spline_motion_accuracy_request", lambda step: true_error(swung(4, step=step)) / 1e-2)
+    gates.refuse("spline_motion_accuracy_pessimism", lambda step: 1e-1 / true_error(swung(10, step=step)))
+
+
+def test_records_are_thinned_not_the_comparison():
+    """Requirement: few records are those of the whole run, and do not blind the estimate."""
+    few, many = (swung(accuracy=1e-2, records=records) for records in (2, 64))
+    assert len(few.time) == 3
+    assert len(many.time) == 65
+    assert few.states.shape[0] == few.bodies["body"].shape[0] == len(few.kinetic_energy) == 3
+    assert few.estimate.rotation == pytest.approx(many.estimate.rotation, rel=1e-12)
+    assert np.array_equal(few.rotation, many.rotation[::32])
+
+
 @pytest.mark.parametrize(
-    ("reached", "segments"),
+    "settings",
     [
-        ((1.65, 1.71), 2),  # stops at whatever the discretisation has
-        ((0.67, 0.67), 2),  # not all of the weight finds an equilibrium
-        ((0.28, 0.55, 1.1, 2.2), 16),  # rolls up: twice the segments, twice the turns
-        ((3.2, 3.4, 3.6, 3.8), 16),  # little, but enough for what is left
-        ((1.65, 2.2, 2.25), 4),
+        {"stretch": "inextensible"},
+        {"effects": ("bending", "stretching", "body_inertia")},
+        {"effects": HEAVY},
+        {
+            "effects": ("bending", "stretching", "strip_inertia", "body_inertia", "strip_damping"),
+            "parameters": {"strip_damping": {"relaxation_time": 1e-6}},
+        },
     ],
+    ids=["inextensible", "massless strips", "gravity", "damping"],
 )
-def test_a_search_without_an_answer_goes_on_while_it_comes_farther(reached, segments):
-    """Requirement: where no discretisation has an answer, strips are cut while that brings a path on."""
+def test_other_motions_have_an_estimate_too(settings):
+    """Requirement: scenes without explicit steps, with weight or with losses are solved to an accuracy."""
+    trajectory = swung(accuracy=3e-2, duration=0.003, **settings)
+    assert trajectory.status is Status.CONVERGED
+    finer = swung(8, duration=0.003, step=1.25e-5, **settings)
+    gates.check("spline_motion_accuracy_request", true_error(trajectory, finer) / 3e-2)
 
-    def path(grid):
-        way = reached[min(int(math.log2(grid[0])), len(reached) - 1)]
-        known = {"driven": None, "grown": min(way, 1.0)}
-        return SimpleNamespace(load_factor=np.array([0.0, max(way - 1.0, 0.0)]), **known)
 
-    search = Search(
-        accuracy=1e-4,
-        grid=Discretisation(),
-        most_segments=16,
-        stuck=lambda trials: stuck(path, 3.9, trials),
-    )
-    while not search.ended:
-        search.judge(None)
-    assert search.at[0] == segments
+def test_accuracy_out_of_reach_is_said():
+    """Requirement: the best motion is returned with its estimate and the reason; nothing is claimed."""
+    trajectory = swung(4, accuracy=1e-13, duration=5e-4)
+    assert trajectory.status is Status.NOT_CONVERGED
+    assert "accuracy 1e-13 rad is not reached: the estimated error is" in trajectory.message
+    assert 1e-13 < trajectory.estimate.rotation < 1e-2
+    assert trajectory.time[-1] == pytest.approx(5e-4)

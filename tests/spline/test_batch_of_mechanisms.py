@@ -18,7 +18,7 @@ from studies.answers.models import put
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
 from tests import gates
-from tests.fe.cases import extrapolated
+from tests.models import extrapolated
 from tests.table_one import BARE, SIX, TABLE_ONE
 
 #: What strips with sides of their own have of the third dimension.

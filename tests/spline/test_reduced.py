@@ -1,19 +1,31 @@
-"""The strips' elements against the paper's bordered system: the same answers, whatever the scene."""
+"""Strips as elements, in segments and held in a pose: the answers of the paper's bordered system."""
+
+import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
+import spline_model
 from spline_model import (
+    DEFAULT_EFFECTS,
     BodyDesign,
+    DrivenDisplacement,
+    DrivenRotation,
+    HeldPivot,
     InvalidParameter,
     StripDesign,
     compliant_mechanism,
     cross_axis_pivot,
     solve_mechanism,
+    solve_statics,
+    strip_fields,
 )
-from tests.frames import STEEL
-from tests.refusals import scene
-from tests.table_one import SIDES, TABLE_ONE
+from tests import gates
+from tests.frames import STEEL, one_strip
+from tests.models import scene
+from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 
 FORMS = {
     "mixed": {"control_points": 6},
@@ -101,3 +113,158 @@ def test_both_refuse_what_cannot_move(method):
     """Requirement: leading the centre of a pivot with inextensible strips is refused by both."""
     with pytest.raises(InvalidParameter, match="singular"):
         solved(led_pivot, "inextensible", method)
+
+
+WIDE = BARE | {"width": 0.03, "thickness": 0.002}
+#: Effects that act along a whole strip, and what they are given.
+ALONG = ("gravity", "pre_strain", "clamped_width")
+GIVEN = {"gravity": {"acceleration": (2e2, -9e2)}, "pre_strain": {"strain": 1e-3}, "clamped_width": {}}
+PLACES = ("shape", "axial_force", "bending_moment", "shear_force", "clamp_reactions", "bodies")
+
+
+def apart(one, other, names):
+    """Largest difference of arrays of two answers, each over the largest magnitude."""
+    pairs = [(getattr(one, name), getattr(other, name)) for name in names]
+    pairs = [
+        (next(iter(a.values())), next(iter(b.values()))) if isinstance(a, dict) else (a, b) for a, b in pairs
+    ]
+    return max(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in pairs)
+
+
+def made(**grid):
+    """The pivot of Table 1 with wide strips and effects along them."""
+    return cross_axis_pivot(**WIDE, effects=(*DEFAULT_EFFECTS, *ALONG), parameters=GIVEN, **grid)
+
+
+def test_a_pivot_in_segments_answers_as_a_whole_one():
+    """Forces, shapes, reactions and fields along the strips are those of one curve with many points."""
+
+    def error(segments=3, control_points=9):
+        pivots = made(segments=segments, control_points=control_points), made(control_points=17)
+        paths = [replace(solve_statics(each, rotation=0.9, increments=3), balanced=True) for each in pivots]
+        fields = [strip_fields(each, path.states) for each, path in zip(pivots, paths, strict=True)]
+        curves = ("arc_length", "rest_shape", "rotation", "stretch", "reactions", "rest_bodies")
+        numbers = ("torque", "stiffness", "work", "bending_energy", "own_stiffness")
+        return max(apart(*paths, (*PLACES, *numbers)), apart(*fields, curves))
+
+    gates.hold("spline_segments", error)
+
+
+@pytest.mark.slow
+def test_a_strip_in_tension_is_resolved_by_default():
+    """Under a pull of 1e4 EI/L^2 a tip turns in a layer a hundredth of the strip long.
+
+    Exact of a half-infinite strip, of which the rest is e^-100 away: what is the same all along it is
+    M^2 / 2 EI + F cos(turn) + (F cos(turn))^2 / 2 EA.
+    """
+    pull, turn = 1e4, 0.5
+    section = {"area": 12e6, "second_moment_of_area": 1.0, "youngs_modulus": 1.0, "density": 1.0}
+    pulled = {"applied_force": {"force": (pull, 0.0)}}
+    strip = one_strip(spline_model, pulled, pulled, end=(1.0, 0.0), section=section)
+    path = solve_mechanism(strip, rotation=turn, increments=4)
+    stored = pull * (1.0 - math.cos(turn)) + (pull * math.sin(turn)) ** 2 / (2.0 * 12e6)
+    assert path.segments > 1
+    assert path.torque[-1] == pytest.approx(math.sqrt(2.0 * stored), rel=1e-4)
+
+
+SOFT = {"area": 5e-6, "second_moment_of_area": 1.041e-13, "youngs_modulus": 1.4e9}
+ROOTS = {
+    "width": 0.01,
+    "thickness": 0.005,
+    "effects": ("bending", "stretching", "root_compliance"),
+    "parameters": {"root_compliance": {"root": "monolithic"}},
+}
+ROBUST = {"penalty_stiffness": 1000.0}
+POSES = ((0.0004, -0.0003, 0.3), (-0.0008, 0.0002, -0.6), (0.0, 0.001, 1.2))
+"""Displacement of the centre from where a free turn would have it [m, m], and rotation [rad]."""
+
+
+def held(shift, rotation, **settings):
+    """Solver and state of the pivot held away from the centre of a free turn."""
+    pivot = cross_axis_pivot(**(SIX | settings))
+    solver = HeldPivot(pivot)
+    centre = solver.turn(rotation).pose[:2]
+    solver.reset()
+    return solver, solver.hold(*(centre + shift), rotation)
+
+
+def disagreement(pose, increments=8, slide=None, **settings):
+    """Largest relative difference of force and control points to the multiplier path of the same pose."""
+    *shift, rotation = pose
+    solver, state = held(np.array(shift), rotation, **settings)
+    other = {} if slide is None else {"penalty_stiffness": slide}
+    pivot = cross_axis_pivot(**(SIX | settings | other))
+    reference, displacement = pivot, state.pose[:2] - pivot.centre
+    drives = (
+        DrivenRotation(body="body", angle=rotation),
+        DrivenDisplacement(body="body", displacement=tuple(displacement)),
+    )
+    led = replace(reference, scene=reference.scene.with_effects(*drives))
+    path = solve_mechanism(led, increments=increments)
+    system, z = path.system, path.states[-1]
+    rows = system.layout.multipliers[-2:]
+    torque = z[rows[0][0]]
+    force = z[rows[1][0] : rows[1][0] + 2]
+    full = solver.full_state(system)
+    points = slice(0, system.layout.coordinate_count)
+    strips = [full[system.layout.strip(strip.name)].reshape(-1, 2) for strip in system.scene.strips]
+    assert np.abs(solver.control_points - np.array(strips)).max() < 1e-15
+    assert state.solved
+    return max(
+        abs(state.force[2] - torque) / abs(torque),
+        np.abs(state.force[:2] - force).max() / np.abs(force).max(),
+        np.abs(full - z)[points].max() / TABLE_ONE["length"],
+    )
+
+
+@pytest.mark.parametrize("scene", [{}, ROOTS], ids=["clamps", "roots that turn"])
+@pytest.mark.parametrize("pose", POSES, ids=str)
+def test_agrees_with_the_multiplier_path(pose, scene):
+    """Requirement: forces, moment and shape are those of the driven rotation and displacements to 1e-9."""
+    gates.check("spline_held_pose", disagreement(pose, **scene))
+
+
+def test_another_penalty_stiffness_is_another_pose():
+    """Requirement: the check notices a penalty stiffness that differs by a per mille."""
+    gates.refuse("spline_held_pose", partial(disagreement, POSES[2]))
+
+
+def test_tangent_is_the_derivative_of_the_force():
+    """Requirement: the tangent is the central difference of force and moment in the pose, and symmetric."""
+    solver, state = held(np.array([0.0003, 0.0002]), 0.4)
+    known, step = solver.unknowns, np.array([1e-7, 1e-7, 1e-6])
+    columns = []
+    for k in range(3):
+        ends = []
+        for sign in (1.0, -1.0):
+            solver.restore(known)
+            ends.append(solver.hold(*(state.pose + sign * step * (np.arange(3) == k))).force)
+        columns.append((ends[0] - ends[1]) / (2 * step[k]))
+    scale = np.sqrt(np.outer(np.diag(state.tangent), np.diag(state.tangent)))
+    assert np.abs((np.array(columns).T - state.tangent) / scale).max() < 1e-6
+
+
+def test_a_pose_in_which_strips_buckle_is_refused():
+    """Requirement: pushed straight towards the ground past the Euler load, the strips' straight shape is
+    unstable: the last good state is kept, and how far it went is said."""
+    pivot = cross_axis_pivot(**(SIX | SOFT | ROBUST))
+    solver = HeldPivot(pivot)
+    known = solver.unknowns
+    far, near = (solver.hold(pivot.centre[0], pivot.centre[1] + shift, 0.0) for shift in (-0.004, -4e-6))
+    assert not far.solved
+    assert 0.0 <= far.reached < 1.0
+    assert near.solved
+    solver.restore(known)
+    assert np.array_equal(solver.unknowns, known)
+
+
+def test_warm_start_needs_few_iterations():
+    """Requirement: from one frame to the next, 2 degrees on, at most four Newton iterations a strip."""
+    pivot = cross_axis_pivot(**SIX)
+    path = solve_statics(pivot, rotation=1.0, increments=30)
+    solver = HeldPivot(pivot)
+    work = [
+        solver.hold(*centre, angle).iterations
+        for angle, centre in zip(path.rotation, path.centre, strict=True)
+    ]
+    assert max(work) <= 8

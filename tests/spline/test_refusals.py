@@ -23,7 +23,7 @@ from spline_model import (
     solve_statics,
 )
 from tests.frames import opposed
-from tests.refusals import refused, scene
+from tests.models import refused, scene
 from tests.spline.test_batch_of_mechanisms import linkage
 from tests.table_one import BARE, SIDES, SIX, TABLE_ONE
 
@@ -73,28 +73,12 @@ PIVOTS = [
 ]
 
 
-@pytest.mark.parametrize(("given", "said"), PIVOTS, ids=str)
-def test_pivots_that_make_no_sense(given, said):
-    """Requirement: unknown, contradictory, missing and singular choices are refused with what there is."""
-    refused(lambda: cross_axis_pivot(**SIX | given), said)
-
-
 LIKE = "got 'a load that follows its body', expected a fixed direction"
 
 
-@pytest.mark.parametrize(
-    ("solve", "said"),
-    [
-        (lambda made: solve_many(made, {}, rotation=0.1), f"designs: {LIKE}"),
-        (lambda made: sensitivities(made, solve_statics(made, rotation=0.1)), f"asked: {LIKE}"),
-        (natural_frequencies, f"effects: {LIKE}"),
-        (lambda made: solve_motion(made, integrator="leapfrog"), "expected energy (the default) for damping"),
-    ],
-)
-def test_what_followers_are_refused_by(solve, said):
-    """Requirement: what knows no forces without a potential refuses them."""
-    force = {"force": (1.0, 0.0), "follower": True}
-    refused(lambda: solve(cross_axis_pivot(**SIX | more(applied_force=force))), said)
+def followed():
+    """Return the pivot under a force that turns with its body."""
+    return cross_axis_pivot(**SIX | more(applied_force={"force": (1.0, 0.0), "follower": True}))
 
 
 def clamped(**changed):
@@ -107,17 +91,18 @@ def clamped(**changed):
 
 
 NO_SIDES = {"width": None, "thickness": None, "area": 1e-5, "second_moment_of_area": 1e-16}
-STRIPS = [
-    (partial(cross_axis_pivot, **BARE), *row)
-    for row in (
+#: Sides of a section of the pivot, and of a strip with a clamped width, that do not fit.
+SIDED = [
+    (partial(cross_axis_pivot, **BARE | given), said)
+    for given, said in (
         ({"width": 0.01}, "thickness: got None, expected width and thickness, both or neither"),
         ({"width": -1.0, "thickness": 1.0}, "width: got -1.0, expected a finite number > 0 [m]"),
         (SIDES | {"area": 6e-5}, "area: got 6e-05, expected 5e-05, that of width and thickness, or none"),
         ({"area": 5e-5}, "area: got 'none', expected area and second_moment_of_area, or width and thick"),
     )
 ] + [
-    (clamped, *row)
-    for row in (
+    (partial(clamped, **given), said)
+    for given, said in (
         ({"tip": None}, "tip of strip_0: got None, expected ground or a body for clamped_width"),
         (
             {"tip": None, "tip_joint": "hinge"},
@@ -129,12 +114,6 @@ STRIPS = [
         (NO_SIDES, "width of strip_0: got None, expected width and thickness [m] for clamped_width"),
     )
 ]
-
-
-@pytest.mark.parametrize(("make", "given", "said"), STRIPS)
-def test_strips_that_make_no_sense(make, given, said):
-    """Requirement: sides that do not fit a section, and strips without a clamped width, are refused."""
-    refused(lambda: make(**given), said)
 
 
 def pivot(**given):
@@ -203,6 +182,12 @@ UNREACHED = {"control_points": 8, "penalty_stiffness": 10.0}
 LONG = {"duration": 1e6, "step": 1e-6}
 WITHIN = "duration: got 1000000.0, expected records within 2 GB"
 ASKED = [
+    *((partial(pivot, **given), said) for given, said in PIVOTS),
+    *SIDED,
+    (lambda: solve_many(followed(), {}, rotation=0.1), f"designs: {LIKE}"),
+    (lambda: sensitivities(followed(), solve_statics(followed(), rotation=0.1)), f"asked: {LIKE}"),
+    (lambda: natural_frequencies(followed()), f"effects: {LIKE}"),
+    (lambda: solve_motion(followed(), integrator="leapfrog"), "expected energy (the default) for damping"),
     (lambda: many(order="first"), "one of loads first, together"),
     (lambda: solve_many([TABLE_ONE, SIX | {"length": -1.0}], rotation=1.0), "design 1: length: got -1.0"),
     (lambda: solve_many([TABLE_ONE] * 3, rotation=[1.0, 0.5]), "rotation"),
@@ -265,6 +250,7 @@ ASKED = [
 
 
 @pytest.mark.parametrize(("ask", "said"), ASKED, ids=[f"{k}: {row[1]}" for k, row in enumerate(ASKED)])
-def test_what_cannot_be_asked(ask, said):
-    """Requirement: what a solver cannot answer is refused with name, value and expectation."""
+def test_what_makes_no_sense_is_refused(ask, said):
+    """Requirement: choices that are unknown, contradictory, missing or singular, sides that do not fit a
+    section, and what a solver cannot answer are refused with name, value and expectation."""
     refused(ask, said)

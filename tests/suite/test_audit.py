@@ -6,21 +6,18 @@ What a scene costs is counted here, not timed: an audit is told Newton iteration
 import dataclasses
 import json
 import math
-from pathlib import Path
 
 import pytest
 
 from studies.answers.settings import SplineSettings
 from studies.cases.design import named_design
-from studies.cases.effects import Effects
 from studies.cases.problem import FOLDER
 from studies.effects import audit as module
 from studies.effects import scenes
 from studies.effects.audit import prices
-from studies.effects.scenes import CHANGES, SIZES, Outcome, Variant
+from tests.suite.refused import FINDS
 
 TOLERANCE = 1e-3
-FINDS = Path(__file__).with_name("finds")
 
 
 @pytest.fixture
@@ -104,35 +101,3 @@ def test_what_has_no_price_says_why():
     assert (rows["shear"]["status"], rows["anticlastic"]["status"]) == ("refused", "converged")
     assert "got 'inextensible'" in rows["shear"]["reason"]
     assert math.isnan(rows["shear"]["largest"])
-
-
-WITHIN = dict.fromkeys(CHANGES, 1e-4)
-SIZE = dict.fromkeys(SIZES, 1)
-
-
-def without(*names, **changes):
-    """The outcome of a scene without these effects, with changes."""
-    variant = Variant(dropped=names, effects=Effects(names=("bending",)))
-    return Outcome(variant=variant, size=SIZE, changes=WITHIN | changes)
-
-
-@pytest.mark.parametrize("change", WITHIN)
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_every_change_counts(change, sign):
-    """Requirement: the cheapest scene within the tolerance is none that changes anything by more than it; of
-    effects that can each be removed, the most important one is kept where they cannot all be."""
-    far = {change: sign * 2.0 * TOLERANCE}
-    rows = [
-        without("gravity"),
-        without("stretching", **{change: sign * 0.5 * TOLERANCE}),
-        without("x", **far),
-    ]
-    assert rows[2].largest == pytest.approx(2.0 * TOLERANCE)
-
-    class Run:
-        def outcome(self, scene, _):
-            return without(*scene.dropped, **(far if len(scene.dropped) > 1 else {}))
-
-    full = Variant(dropped=(), effects=Effects(names=("bending", "stretching", "gravity")))
-    found = [*module._fewer(rows, full, Run(), None, TOLERANCE)]
-    assert [each.variant.dropped for each in found] == [("gravity", "stretching"), ("gravity",)]

@@ -17,8 +17,8 @@ from studies.cases.document import parsed
 from studies.cases.problem import named_case
 from studies.sweep.points import solve_chunk
 from studies.sweep.read import plan_of
+from tests.suite.refused import FINDS
 
-FINDS = Path(__file__).parent / "finds"
 CLAMPED = FINDS / "clamped_mechanism.toml"
 #: A pivot on which six control points are 0.5 to 0.9 % off, within what the page's sliders may set.
 STEEP = {"crossing_ratio": 0.8, "inclination": math.radians(65.0)}

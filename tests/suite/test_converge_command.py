@@ -11,7 +11,6 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import SplineSettings
 from studies.cases.problem import named_case
 from studies.convergence import error_estimate
-from studies.convergence.sweep import reaching
 from studies.record.store import Store
 from tests import gates
 
@@ -50,21 +49,6 @@ def test_table_folder_orders_and_counts(command, case, tmp_path):
     elements = pd.read_csv(folder / "elements.csv")
     assert list(elements["elements"]) == [5, 10, 20, 40]
     assert (elements["error_torque"] > 0.0).all()
-
-
-def test_count_that_reaches_an_accuracy_holds_from_there_on():
-    """A count reaches an accuracy when it and all larger ones do, in both; a failed row never does."""
-    table = pd.DataFrame(
-        {
-            "n": [4, 5, 6, 7, 8],
-            "error_trajectory": [1e-5, 1e-2, 1e-4, 1e-6, 1e-8],
-            "error_torque": [1e-5, 1e-3, 1e-3, 1e-5, 1e-7],
-        }
-    )
-    assert reaching(table, "n", 1e-3) == 6
-    assert reaching(table, "n", 1e-4) == 7
-    assert reaching(table, "n", 1e-9) is None
-    assert reaching(table.replace(1e-6, np.nan), "n", 1e-3) == 8
 
 
 def test_the_stress_has_an_estimate_of_its_own():

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from pathlib import Path
 
 import pytest
 
@@ -11,8 +10,8 @@ from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import as_toml, read_design
 from tests.goldens.answers import document_of
+from tests.suite.refused import FINDS
 
-FINDS = Path(__file__).parent / "finds"
 #: Right value: shooting on a stretchable Kirchhoff rod [N].
 SHALLOW_ARCH = 6.281928
 
@@ -54,19 +53,13 @@ def test_weight_that_buckles_the_strips_is_no_bad_input(asked, model, command, t
     assert "limit point" in outcome.err and "of weight" in outcome.err.replace("the weight", "weight")
 
 
+@pytest.mark.slow
 def test_strips_in_a_row_are_loaded_by_what_the_weakest_bears(answered):
     """Requirement: a chain of long strips and one that is 500 times shorter is not loaded by the Euler
     load of the short one: both models have the force at which it turns by 5 degrees."""
     found = answered("critical-load", FINDS / "mixed_lengths.toml", "--model", "spline,fe")
     forces = [answer["rotation_5_deg_N"] for answer in found["answers"]]
     assert forces[0] == pytest.approx(forces[1], rel=1e-6)
-
-
-def test_the_former_name_prints_the_new_one(command):
-    """Requirement: `capacity` still works and prints the new name on the error stream."""
-    outcome = command("capacity", FINDS / "heavy_pivot.toml")
-    warning = "studies: warning: capacity is now called critical-load; version 0.3 ends capacity\n"
-    assert (outcome.code, outcome.err) == (0, warning)
 
 
 def test_a_limit_point_that_coarse_meshes_do_not_have(answered):

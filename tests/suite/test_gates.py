@@ -1,15 +1,18 @@
-"""Gates are honest: complete, tight, used, with teeth, and refusing what cannot be an error."""
+"""Gates are honest: complete, tight, used, with teeth; and mutants fit the code and are noticed."""
 
+import ast
 import datetime
 import math
+import random
 import re
 import tomllib
 from fnmatch import fnmatchcase
+from functools import cache
 
 import pytest
 
 from studies.record.source import ROOT
-from tests import gates
+from tests import gates, mutate
 
 #: A limit is at most this many times what was last measured.
 SLACK = 20.0
@@ -144,7 +147,7 @@ def test_check_passes_and_names_unknown_gates(sound_gate):
 #: what is smaller is an identity to round-off, or to what a solver's tolerance leaves.
 HELD = {"agreement": 7, "fe": 7, "cost": 5, "design": 5, "interactive": 5}
 #: Solutions of one model that stand for the same state, to the tolerance of its paths and motions.
-SAME = {"test_loads_release.py": 2}
+SAME = {"test_loads_release.py": 1}
 #: What theory leaves: the next order of a closed form, a difference for a derivative, the digits of a table.
 THEORY = {
     "test_readout.py": 3,
@@ -170,3 +173,57 @@ def test_accuracies_of_answers_are_gates():
             count = len(literal.findall(path.read_text(encoding="utf-8")))
             found[path.name] = found.get(path.name, 0) + count
     assert {name: count for name, count in found.items() if count} == SAME | THEORY | PROMISED
+
+
+SLIPS = mutate.slips()
+#: Slips that every run of the slow tests tries, drawn again only if the list changes.
+TRIED = random.Random(len(SLIPS)).sample([slip for slip in SLIPS if slip.caught_by], 4)
+
+
+@cache
+def functions(path):
+    """Names of the test functions of a file."""
+    return {each.name for each in ast.walk(ast.parse(path.read_text())) if isinstance(each, ast.FunctionDef)}
+
+
+def fits(slip):
+    """Whether the text of a slip stands once in its file and its test exists, or a reason to survive."""
+    if (mutate.ROOT / slip.file).read_text().count(slip.old) != 1 or slip.old == slip.new:
+        return False
+    if not slip.caught_by:
+        return bool(slip.survives)
+    path, name = slip.caught_by.split("::")
+    return not slip.survives and name.split("[")[0] in functions(mutate.ROOT / path)
+
+
+def test_slips_fit_the_code():
+    """What a slip changes stands once in its file, and the test that notices it exists."""
+    assert [slip.name for slip in SLIPS if not fits(slip)] == []
+
+
+def test_no_slip_is_left_to_the_freshness_of_results():
+    """A slip must show in what is right or wrong, not in results that were computed before it."""
+    assert [slip.name for slip in SLIPS if "test_results" in slip.caught_by] == []
+
+
+def test_slips_are_many_and_everywhere():
+    """There are forty and more, in both models and in the measures that they share."""
+    count = {part: 0 for part in ("fe_reference", "spline_model", "studies")}
+    for slip in SLIPS:
+        count[next(part for part in count if slip.file.startswith(part))] += 1
+    assert len(SLIPS) >= 40
+    assert min(count.values()) >= 10, count
+
+
+def test_page_has_the_slips():
+    """The table of the page on independence is that of the list (`python -m tests.mutate --page`)."""
+    text = mutate.PAGE.read_text()
+    assert mutate.page_with(text) == text
+
+
+@pytest.mark.slow
+def test_some_slips_are_noticed(tmp_path):
+    """Put into a copy of the code, a part of the slips fails the tests that are named, which pass without."""
+    copy = mutate.copied(tmp_path)
+    assert mutate.outcome(copy, [slip.caught_by for slip in TRIED]) == mutate.PASSED
+    assert [slip.name for slip in TRIED if not mutate.slipped(copy, slip)] == []

@@ -1,4 +1,4 @@
-"""Every command explains itself: a purpose, examples that run, and each option with its unit and default."""
+"""Every command explains itself: purpose, examples that run, options with units; former names still work."""
 
 import argparse
 import re
@@ -9,12 +9,15 @@ from pathlib import Path
 
 import pytest
 
+import spline_model
+from spline_model import cross_axis_pivot, impulse_solver
 from studies.__main__ import command_of, main
 from studies.cases.problem import FOLDER
 from studies.commands.arguments import ROTATION
 from studies.commands.parser import Parser, degrees, not_negative, positive
 from studies.record.source import ROOT
 from studies.registry import COMMANDS, selected
+from tests.table_one import TABLE_ONE
 
 #: Commands whose examples take a second or two; those of all others run with the slow tests.
 QUICK = ("solve", "modes", "export", "case", "markers", "list")
@@ -156,3 +159,42 @@ def _own_results(name: str, folder: Path) -> None:
     if name == "draw":
         shutil.copytree(ROOT / "results" / "data" / "paper", folder / "data" / "paper")
         (folder / "figures").mkdir()
+
+
+SOLVE = "solve silicon_pivot --control-points 5 --rotation-deg 5"
+#: Arguments with a former name, and the same arguments with the present name.
+FORMER = {
+    "capacity silicon_pivot": "critical-load silicon_pivot",
+    f"{SOLVE} --slide-stiffness 20": f"{SOLVE} --penalty-stiffness 20",
+    f"{SOLVE} --slide-stiffness=20": f"{SOLVE} --penalty-stiffness=20",
+    f"{SOLVE} --stretch=consistent --measure printed": f"{SOLVE} --stretch=consistent --measure published",
+}
+
+
+@pytest.mark.parametrize("former", FORMER)
+def test_former_words_of_a_command_are_accepted(former, command):
+    """Requirement: the former word gives the same output, and a warning with the present word."""
+    old, new = command(*former.split()), command(*FORMER[former].split())
+    assert (old.code, _untimed(old.out)) == (new.code, _untimed(new.out))
+    assert (new.code, new.err) == (0, "")
+    assert re.fullmatch(r"studies: warning: (\S+) is now called \S+; version 0.3 ends \1\n", old.err)
+
+
+def _untimed(text):
+    """Return the output without the time of the solver."""
+    return re.sub(r"in [\d.e+]+ ms", "", text)
+
+
+def test_former_keywords_of_python_are_accepted():
+    """Requirement: the former keyword, value and function give the same model, with a FutureWarning."""
+    new = cross_axis_pivot(**TABLE_ONE, control_points=5, penalty_stiffness=20.0, axial_modes=3)
+    with pytest.warns(FutureWarning, match="penalty_stiffness"):
+        old = cross_axis_pivot(**TABLE_ONE, control_points=5, slide_stiffness=20.0, axial_modes=3)
+    assert old.design.discretisation == new.design.discretisation
+    with pytest.warns(FutureWarning, match="published"):
+        old = cross_axis_pivot(**TABLE_ONE, control_points=5, measure="printed", stretch="consistent")
+    assert old.design.discretisation.measure == "published"
+    with pytest.warns(FutureWarning, match="published"):
+        assert impulse_solver(new, form="printed").form == "published"
+    with pytest.warns(FutureWarning, match="motion_penalty_stiffness"):
+        assert spline_model.swinging_slide_stiffness is spline_model.motion_penalty_stiffness

@@ -1,8 +1,12 @@
-"""Commands start fast, as nothing heavy is imported before it is needed, and end with their reader."""
+"""Commands start fast, end with their reader, and work from the wheel outside the repository."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
+import sysconfig
+from pathlib import Path
 
 import pytest
 
@@ -108,3 +112,87 @@ def test_an_error_that_nobody_reads_is_quiet_too():
     """With both streams gone, as in `2>&1 | true`, bad input ends without a traceback."""
     code, _ = code_without_a_reader("solve", "no.toml", "--model", "fe", errors=subprocess.STDOUT)
     assert code == 141
+
+
+#: Endings of the files that the packages read.
+DATA = {".toml", ".js", ".css", ".html"}
+EXAMPLE = """
+import studies
+from spline_model import cross_axis_pivot, solve_statics
+from tests_of_wheel import TABLE_ONE
+
+pivot = cross_axis_pivot(**TABLE_ONE, control_points=6)
+path = solve_statics(pivot, rotation=0.2, increments=2)
+studies.plot(path, pivot).save("python.png")
+assert path.rotation[-1] == 0.2
+"""
+
+
+def printed(words: list[str], folder: Path) -> str:
+    """Return what a program prints; kernels run as Python code, which spares their compilation."""
+    env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    env |= {"NUMBA_DISABLE_JIT": "1", "MPLBACKEND": "Agg"}
+    done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True)
+    assert done.returncode == 0, f"{words}: {done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def scripts(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build and install the wheel in a new environment; return the folder of its programs.
+
+    Dependencies come from the environment of the tests, so that no network is needed.
+    """
+    place = tmp_path_factory.mktemp("wheel")
+    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    options = ["--no-deps", "--no-build-isolation", "--no-cache-dir"]
+    source = place / "source"  # a copy: the build leaves files in its folder
+    for name in ("fe_reference", "spline_model", "studies"):
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source)
+    printed([*pip, "wheel", *options, "--wheel-dir", str(place), str(source)], place)
+    printed([sys.executable, "-m", "venv", "--without-pip", "fresh"], place)
+    fresh = place / "fresh"
+    names = {"base": str(fresh), "platbase": str(fresh)}
+    installed = Path(sysconfig.get_path("purelib", "venv", vars=names))
+    (installed / "dependencies.pth").write_text(sysconfig.get_path("purelib"), encoding="utf-8")
+    programs = Path(sysconfig.get_path("scripts", "venv", vars=names))
+    (wheel,) = place.glob("*.whl")
+    python = str(programs / "python")
+    printed([*pip, "--python", python, "install", "--no-deps", "--no-index", str(wheel)], place)
+    return programs
+
+
+@pytest.mark.slow
+def test_wheel_works_outside_the_repository(scripts, tmp_path):
+    """Requirement: the commands run, and their files go to the current folder."""
+    program = str(scripts / "crosspivot")
+    answer = json.loads(printed([program, "solve", "titanium_pivot", "--json", "-"], tmp_path))
+    assert answer["status"] == "converged"
+    printed([program, "case", "--out", "my_pivot.toml"], tmp_path)
+    printed([program, "solve", "my_pivot.toml", "--increments", "2", "--plot", "my_pivot.svg"], tmp_path)
+    assert "paper/fig04_trajectory" in printed([program, "list"], tmp_path)
+    words = ["converge", "my_pivot.toml", "--control-points", "4:5", "--elements", "2:8"]
+    printed([program, *words], tmp_path)
+    assert (tmp_path / "results" / "designs" / "my_pivot" / "elements.csv").is_file()
+    assert (tmp_path / "my_pivot.svg").is_file()
+
+
+@pytest.mark.slow
+def test_python_example_works_outside_the_repository(scripts, tmp_path):
+    """Requirement: names, published cases, tables and the page of the wheel are those of the repository."""
+    python = str(scripts / "python")
+    table = (ROOT / "tests" / "table_one.py").read_text(encoding="utf-8")
+    (tmp_path / "tests_of_wheel.py").write_text(table, encoding="utf-8")
+    (tmp_path / "example.py").write_text(EXAMPLE, encoding="utf-8")
+    printed([python, "example.py"], tmp_path)
+    assert (tmp_path / "python.png").is_file()
+    script = "import studies; print(studies.__path__[0])"
+    package = Path(printed([python, "-c", script], tmp_path).strip())
+    assert ROOT not in package.parents
+    own, installed = (
+        {path.relative_to(each) for path in each.rglob("*") if path.suffix in DATA}
+        for each in (ROOT / "studies", package)
+    )
+    assert own == installed

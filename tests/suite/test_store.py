@@ -1,15 +1,21 @@
-"""Stored results are tidy, whole, traceable and the same every time."""
+"""Stored results are tidy, whole, traceable and the same every time; points and timing of studies."""
 
+import gc
 import getpass
 import json
 import platform
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from studies.record import style
+from studies.commands.results import whole
+from studies.engine import Part, Study
+from studies.record import progress, style
 from studies.record.files import OutputError, replace_folder, write_whole
+from studies.record.progress import Bar, measure, silent
 from studies.record.source import ROOT
 from studies.record.store import Digits, Store, as_csv, differing, inputs
 
@@ -194,3 +200,57 @@ def test_a_study_states_digits_of_its_own(digits, differs):
     """A tolerance holds for a column of one table or of all, for all rows or some; None compares nothing."""
     other = STORED.assign(torque_Nm=STORED["torque_Nm"] * 1.001)
     assert differing("table", STORED, other, digits) == (["torque_Nm"] if differs else [])
+
+
+ASKED: list[int] = []
+
+
+def squared(number):
+    """A row and its neighbour in a table of its own."""
+    ASKED.append(number)
+    return {"squares": {"number": number, "square": number**2}, "next": [{"number": number + 1}]}
+
+
+SQUARES = Study(cases=(), parts=(Part(at=lambda: (1, 2, 4), ask=squared),), figures={})
+TWO_PARTS = Study(
+    cases=(),
+    parts=(Part(at=lambda: (1,), ask=squared, alone=True), Part(at=lambda: (2,), ask=squared)),
+    figures={},
+)
+
+
+def test_what_must_be_alone_comes_after_all_others():
+    """A study is whole as soon as its points are answered; those that must be alone are asked last."""
+    one, other = f"{__name__}:SQUARES", f"{__name__}:TWO_PARTS"
+    ASKED.clear()
+    with ThreadPoolExecutor(1) as pool:
+        found = [*whole({other: TWO_PARTS, one: SQUARES}, silent, pool)]
+    assert [name for name, _, _ in found] == [one, other]
+    assert ASKED == [2, 1, 2, 4, 1]
+    assert all(seconds > 0.0 for _, _, seconds in found)
+
+
+def test_timing_warms_up_and_counts_repeats():
+    """The work runs warm_up + repeat times; collection is off while timed and then restored."""
+    seen = []
+    timing = measure(lambda: seen.append(gc.isenabled()) or len(seen), repeat=3, warm_up=2)
+    assert seen == [True, True, False, False, False]
+    assert gc.isenabled()
+    assert timing.result == 5
+    assert len(timing.seconds) == 3
+    assert min(timing.seconds) <= timing.median <= max(timing.seconds)
+    with pytest.raises(ValueError, match="got 0, expected at least 1"):
+        measure(lambda: None, repeat=0)
+
+
+def test_bar_shows_long_work_on_a_terminal_only(capsys, monkeypatch):
+    """Work that lasts is shown on the error stream where this is a terminal, short work is not."""
+    for terminal, delay, shown in ((True, 60.0, False), (False, 0.0, False), (True, 0.0, True)):
+        monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
+        monkeypatch.setattr(progress, "DELAY", delay)
+        with Bar("work") as bar:
+            bar(1, 2)
+            bar(2, 2)
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert ("work" in captured.err) is shown
