@@ -127,5 +127,5 @@ class Run(Checked):
                     f"with a --step (its own are about {implicit:.2g})"
                 ]
         if steps <= FAR_MORE * MOST_STEPS:
-            ways.append("allow more by --most-steps (most_steps)")
+            ways.append("allow more by most_steps")
         return "; or ".join(ways)

@@ -19,7 +19,6 @@ COMMANDS: dict[str, str] = {
     "solve": "rotate a pivot and report its equilibrium path",
     "release": "release a rotated pivot and report its motion",
     "modes": "report natural frequencies, at rest or at a rotation",
-    "export": "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
     "critical-load": "find the force at which a design loses its stability",
     "compare": "compare designs or models",
     "converge": "refine both models on a design until an accuracy is reached",

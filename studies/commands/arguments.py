@@ -43,6 +43,18 @@ def _file_or_stream(text: str) -> Path:
     return STREAM if text == str(STREAM) else _writable_file(text)
 
 
+def _new_folder(text: str) -> Path:
+    """Parse a folder that is to be written, refused unless it is new or empty."""
+    folder = Path(text)
+    if folder.is_file():
+        raise BadInput(f"got the file {text}, expected a folder")
+    if not folder.is_dir():
+        return _writable_file(text)
+    if others := sorted(path.name for path in folder.iterdir()):
+        raise BadInput(f"got {text} with {others[0]} in it, expected a new or empty folder")
+    return folder
+
+
 def _picture_file(text: str) -> Path:
     """Parse the file of a picture, which must have one of the known endings."""
     if Path(text).suffix[1:].lower() not in PICTURES:
@@ -81,19 +93,7 @@ STRETCH = Argument(
     choices=("mixed", "consistent", "inextensible"),
 )
 #: The options of either discretisation; given for the other model one is refused rather than ignored.
-SPLINE = (
-    CONTROL_POINTS,
-    Argument("--axial-modes M", "axial-force modes a strip (spline; default N - 2)", int),
-    SEGMENTS,
-    MEASURE,
-    STRETCH,
-    Argument("--gauss-points G", "quadrature points of a segment (spline; default: degree + 3)", int),
-    Argument(
-        "--penalty-stiffness S",
-        "of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",
-        parser.not_negative,
-    ),
-)
+SPLINE = CONTROL_POINTS, SEGMENTS, MEASURE, STRETCH
 ELEMENTS = Argument("--elements N", "elements a strip (fe, fe-shear; default 20)", int)
 _WHAT = "spline (default), corotational or shear-deformable FE"
 _ONE = Argument("--model", _WHAT, choices=MODELS, default="spline")
@@ -103,9 +103,9 @@ _SEVERAL = Argument(
     parser.names_of(MODELS),
     default=("spline",),
 )
-#: A design, a model and its settings; the same of one model or several.
+#: Models and their settings, of one model or several; a design, a model and its settings.
+MODELS_OF = EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 MODEL = CASE, EFFECTS, _ONE, *SPLINE, ELEMENTS
-SEVERAL_MODELS = CASE, EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 
 ROTATION = Argument(
     "--rotation-deg X", read=lambda text: keys.ROTATION.parse(parser.degrees(text)), dest="rotation"
@@ -139,6 +139,11 @@ PLOT = Argument(
     "--plot FILE",
     "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
     _picture_file,
+)
+EXPORT = Argument(
+    "--export FOLDER",
+    "write shapes and section forces of all states there, as VTK and CSV (default: no files)",
+    _new_folder,
 )
 OUT = Argument("--out FOLDER", read=Path)
 OUT_FILE = Argument("--out FILE", read=_writable_file)

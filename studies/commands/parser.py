@@ -134,7 +134,6 @@ def _number(expected: str, **limits: Any) -> Callable[[str], float]:
 
 degrees = _number("of degrees")
 positive = _number("above 0", low=0.0)
-not_negative = _number("of at least 0", low=0.0, closed="low")
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:

@@ -3,7 +3,6 @@
     python -m studies solve cross_axis_pivot --control-points 8
     python -m studies solve cross_axis_pivot --model fe --elements 40 --json -
     python -m studies solve four_bar_of_flexures --effects=-gravity --plot four_bar.svg --csv path.csv
-    python -m studies solve cross_axis_pivot --model spline,fe
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 Control points of the spline are added until the estimated error of path, torque, stiffness, stress and
@@ -21,20 +20,18 @@ stiffness of the body is the change of forces and moment at its centre by its x,
 the ground, the other two held, loads fixed and drives released; "x over" and "y over" are those of x and y
 times the square of a strip's length over the stiffness of the rotation. It is shown at some of the states,
 and of all of them in JSON and CSV. If the case defines `yield_strength_Pa`, the output includes the safety
-factor and the rotation or load at first yield. Several models, as in --model spline,fe, are solved one after
-another, with their largest differences over the path, relative to the largest value of the first model.
+factor and the rotation or load at first yield.
 """
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import differences
 from studies.answers.named import quantities_of
 from studies.answers.response import Response
 from studies.answers.settings import Settings
@@ -67,7 +64,7 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
 
 
 @command(
-    *take.SEVERAL_MODELS,
+    *take.MODEL,
     take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
     take.ACCURACY.but(
@@ -78,6 +75,7 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
     take.JSON,
     take.CSV,
     take.PLOT,
+    take.EXPORT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
@@ -86,12 +84,7 @@ def main(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> Response:
         return answer_static(design, settings, accuracy=arguments.accuracy, progress=bar)
 
-    return tell.asked(arguments, ask, _document, _table, stopped=_stopped, beside=_differences, frame=_frame)
-
-
-def _differences(answers: Sequence[Response]) -> dict[str, Any]:
-    """Return the differences of all answers from the first, as JSON has them."""
-    return {"differences": {each.model: differences(each, answers[0]) for each in answers[1:]}}
+    return tell.asked(arguments, ask, _document, _readable, stopped=_stopped, frame=_frame)
 
 
 def _stopped(answer: Response) -> str:
@@ -111,27 +104,14 @@ def _stopped(answer: Response) -> str:
     return f"{reached}{answer.message}{mend}"
 
 
-def _frame(answers: Sequence[Response]) -> "pd.DataFrame":
+def _frame(answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
     import pandas as pd  # only who asks for a table waits for it
 
-    tables = []
-    for answer in answers:
-        found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
-        for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
-            found |= {f"{name}_{key}": column for key, column in place.items()}
-        tables.append(pd.DataFrame(found))
-    return pd.concat(tables)
-
-
-def _table(answers: Sequence[Response]) -> Iterator[str]:
-    """Yield the lines to read: every answer, and how far those after the first are from it."""
-    for answer in answers:
-        yield from _readable(answer)
-        yield from [""] * (len(answers) > 1)
-    for model, apart in _differences(answers)["differences"].items():
-        told = (f"{name.replace('_', ' ')} {value:.1e}" for name, value in apart.items() if value is not None)
-        yield f"{model} differs from {answers[0].model} by: {', '.join(told)}"
+    found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
+    for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
+        found |= {f"{name}_{key}": column for key, column in place.items()}
+    return pd.DataFrame(found)
 
 
 def _arrays(answer: Response) -> dict[str, Array]:

@@ -6,7 +6,7 @@ import pytest
 from studies.answers.adapters import answer_static
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import read_design
-from studies.exchange.formats import tables
+from studies.exchange import tables
 from tests.one_strip import one_strip
 
 LENGTH, PULL, LIFT = 0.1, 0.02, 0.01

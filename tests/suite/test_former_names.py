@@ -13,9 +13,8 @@ SOLVE = "solve silicon_pivot --control-points 5 --rotation-deg 5"
 #: Arguments with a former name, and the same arguments with the present name.
 COMMANDS = {
     "capacity silicon_pivot": "critical-load silicon_pivot",
-    f"{SOLVE} --slide-stiffness 20": f"{SOLVE} --penalty-stiffness 20",
-    f"{SOLVE} --slide-stiffness=20": f"{SOLVE} --penalty-stiffness=20",
     f"{SOLVE} --stretch=consistent --measure printed": f"{SOLVE} --stretch=consistent --measure published",
+    f"{SOLVE} --stretch=consistent --measure=printed": f"{SOLVE} --stretch=consistent --measure=published",
 }
 
 

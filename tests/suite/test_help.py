@@ -12,12 +12,12 @@ import pytest
 from studies.__main__ import command_of, main
 from studies.cases.problem import FOLDER
 from studies.commands.arguments import ROTATION
-from studies.commands.parser import Parser, degrees, not_negative, positive
+from studies.commands.parser import Parser, degrees, positive
 from studies.record.source import ROOT
 from studies.registry import COMMANDS, selected
 
 #: Commands whose examples take a second or two; those of all others run with the slow tests.
-QUICK = ("solve", "modes", "export", "case", "markers", "list")
+QUICK = ("solve", "modes", "case", "markers", "list")
 #: Examples, by how they begin, that are parsed and not run, and why.
 PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
@@ -31,7 +31,7 @@ PARSED = {
 #: What an example is run with beside its own words, so that it writes only here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
-NUMBERS = (float, positive, not_negative, degrees, ROTATION.read)
+NUMBERS = (float, positive, degrees, ROTATION.read)
 UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
 
 
