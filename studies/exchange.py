@@ -94,8 +94,6 @@ def _bodies(answer: Answer) -> pd.DataFrame:
         "body": np.array([body.name for body in bodies]),
         **_placed(along.bodies[..., :2], along.rest_bodies, along.bodies[..., 2]),
         **(_parts(MODES, answer.mode_bodies) if isinstance(answer, Spectrum) else {}),
-        "mass_kg": np.array([body.mass for body in bodies]),
-        "moment_of_inertia_kg_m2": np.array([body.moment_of_inertia for body in bodies]),
     }
     return _table(answer, along.bodies.shape[:2], columns)
 
@@ -149,11 +147,6 @@ def mesh(answer: Answer, state: int) -> Any:
         "part_kind": [np.full(len(parts), kind) for kind, _, parts, _ in cells],
         "part_number": [parts for _, _, parts, _ in cells],
     }
-    for key, name in (("mass_kg", "mass"), ("moment_of_inertia_kg_m2", "moment_of_inertia")):
-        of_cells[key] = [
-            np.array([getattr(answer.design.bodies[n], name) if kind == BODY_CENTRE else 0.0 for n in parts])
-            for kind, _, parts, _ in cells
-        ]
     for name, values in whole.items():
         of_cells[name] = [np.full(len(parts), float(values[state])) for _, _, parts, _ in cells]
     return meshio.Mesh(
