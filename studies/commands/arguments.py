@@ -147,7 +147,7 @@ EXPORT = Argument(
 )
 OUT = Argument("--out FOLDER", read=Path)
 OUT_FILE = Argument("--out FILE", read=_writable_file)
-NAMES = Argument("names NAME", "studies, groups, or all; `list` names them", nargs="+")
+NAMES = Argument("names NAME", "studies, groups, or all; `status` names them", nargs="+")
 RESULTS = Argument(
     "--results FOLDER",
     "folder of tables and figures, default results/ of the clone, or of the current folder without a clone",

@@ -17,7 +17,7 @@ from studies.record.source import ROOT
 from studies.registry import COMMANDS, selected
 
 #: Commands whose examples take a second or two; those of all others run with the slow tests.
-QUICK = ("solve", "modes", "case", "markers", "list")
+QUICK = ("solve", "modes", "case", "markers")
 #: Examples, by how they begin, that are parsed and not run, and why.
 PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
