@@ -18,7 +18,7 @@ from studies.answers.models import Asked, put
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.effects import GROWING
-from studies.cases.keys import GROUND
+from studies.cases.keys import GROUND, LOADS_FIRST
 from studies.errors import BadInput
 
 #: The effect that is raised; those that load or drive bodies are removed.
@@ -102,28 +102,20 @@ class _Question:
     held: bool
     body: str
 
-    def asked(self, settings: Settings, force: float) -> Asked:
-        """Return the design under that force [N] alone, beside weight and pre-strain, as a model has it."""
-        design = self.design
-        left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
-        way = (force * float(np.cos(self.direction)), force * float(np.sin(self.direction)))
-        load = {"force": way, "body": self.body}
-        return put(replace(design, effects=left.plus(**{FORCE: load})), settings)
-
-    def path(self, asked: Asked) -> Any:
-        """Return the path of a model, which stops at rest where weight and pre-strain find no equilibrium."""
-        how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "raise_on_failure": False}
-        try:
-            return asked.model.solve_mechanism(asked.modelled, body=self.body, check=False, **how)
-        except asked.model.InvalidParameter as error:
-            raise BadInput(f"{asked.settings.model}: {error}") from None
-
     def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
-        """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them."""
-        unit = _euler_load(self.design, self.body)
+        """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them.
+
+        Weight and pre-strain act as well; paths stop at rest where these find no equilibrium.
+        """
+        design, unit = self.design, _euler_load(self.design, self.body)
+        left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
+        how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "order": LOADS_FIRST}
         for part in PARTS:
-            asked = self.asked(settings, part * unit)
-            yield part * unit, asked, self.path(asked)
+            force = part * unit
+            way = (force * math.cos(self.direction), force * math.sin(self.direction))
+            load = {FORCE: {"force": way, "body": self.body}}
+            asked = put(replace(design, effects=left.plus(**load)), settings)
+            yield force, asked, asked.static_path(check=False, raise_on_failure=False, **how)
 
 
 def _euler_load(design: Design, body: str) -> float:

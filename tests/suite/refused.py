@@ -73,7 +73,7 @@ WORDS = {
     "solve CASE --elements 4": "--elements: got it with --model spline",
     "solve CASE --elemnts 4": "expected --elements (the nearest option)",
     "solve CASE --effects -gravity": "one that begins with - is given as --effects=-...",
-    "solve CASE --effects=+gravty": "--effects: got gravty, expected gravity (the nearest name), or one of",
+    "solve CASE --effects=+gravty": "--effects: got gravty, expected gravity (the nearest name)",
     "solve CASE --effects=+zzz": "--effects: got zzz, expected one of bending, stretching, inextensible,",
     "solve CASE --effects=+bending": "got +bending, expected an effect beside bending, stretching",
     "modes CASE --effects=-gravity": "got -gravity, expected one of bending, stretching, strip_inertia",
