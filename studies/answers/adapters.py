@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from studies.answers.answer import Answer
-from studies.answers.models import Asked, model_of, put, refusals
+from studies.answers.models import Asked, model_of, put
 from studies.answers.motion import MOVED, NOT_JUDGED, NOTHING_MOVES, UNSTABLE, Motion, Spectrum
 from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings, SplineSettings
@@ -98,7 +98,7 @@ def answer_release(
 
     def solve() -> tuple[Asked, dict[str, Any], Any]:
         asked = put(design, settings, moving=True)
-        with refusals(settings):
+        with asked.refusals():
             at = {"start": start, "body": design.body} | _drive_of(asked)
             return asked, at, model.solve_motion(asked.modelled, check=False, **at, **how)
 
@@ -149,7 +149,7 @@ def answer_modes(
     solve = partial(asked.model.natural_frequencies, asked.modelled, body=design.body, **how)
     state: dict[str, Any] = {"turned": rotation or 0.0, "held": held, "count": count}
     try:
-        with refusals(settings):
+        with asked.refusals():
             timing = measure(solve, repeat=1, warm_up=0)
     except asked.model.ConvergenceError as error:
         return Spectrum.of(asked, None, message=f"statics does not reach the state: {error}", **state)

@@ -25,15 +25,6 @@ def model_of(settings: Settings) -> Any:
     return spline_model
 
 
-@contextmanager
-def refusals(settings: Settings) -> Iterator[None]:
-    """Raise BadInput, in one line, for an input that the model of the settings rejects."""
-    try:
-        yield
-    except model_of(settings).InvalidParameter as error:
-        raise BadInput(f"{settings.model}: {error}") from None
-
-
 def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]:
     """Return the function that computes fields along the strips from a design in the model and states.
 
@@ -104,6 +95,14 @@ class Asked:
             asked = finer(asked)
         return asked
 
+    @contextmanager
+    def refusals(self) -> Iterator[None]:
+        """Raise BadInput, in one line, for an error of the model."""
+        try:
+            yield
+        except self.model.InvalidParameter as error:
+            raise BadInput(f"{self.settings.model}: {error}") from None
+
     def static_path(self, **how: Any) -> Any:
         """Return the model's static solution.
 
@@ -115,7 +114,7 @@ class Asked:
         """
         design = self.design
         given = {"rotation": design.rotation, "increments": design.increments, "order": design.order} | how
-        with refusals(self.settings):
+        with self.refusals():
             return self.model.solve_mechanism(self.modelled, **{"body": design.body} | given)
 
 
@@ -125,10 +124,12 @@ def put(design: Design, settings: Settings, *, moving: bool = False) -> Asked:
     Raises:
         BadInput: a setting or an effect that the model rejects; one line.
     """
-    model = model_of(settings)
+    asked = Asked(design, settings, moving, None)
     scene = {"effects": design.effects.names, "parameters": design.effects.parameters()}
-    with refusals(settings):
-        modelled = design.modelled(model, **scene, **_keywords(model, settings.keywords(), moving))
+    with asked.refusals():
+        modelled = design.modelled(
+            asked.model, **scene, **_keywords(asked.model, settings.keywords(), moving)
+        )
     return Asked(design, settings, moving, modelled)
 
 
