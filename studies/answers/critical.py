@@ -93,40 +93,34 @@ class CriticalLoad(Answer):
         )
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Question:
-    """A design, the body and direction of the force, and whether its rotation is held."""
+def _paths(
+    design: Design, settings: Settings, direction: float, held: bool
+) -> Iterator[tuple[float, Asked, Any]]:
+    """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them.
 
-    design: Design
-    direction: float
-    held: bool
-    body: str
-
-    def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
-        """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them.
-
-        Weight and pre-strain act as well; paths stop at rest where these find no equilibrium.
-        """
-        design, unit = self.design, _euler_load(self.design, self.body)
-        left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
-        how = {"rotation": 0.0 if self.held else None, "increments": INCREMENTS, "order": LOADS_FIRST}
-        for part in PARTS:
-            force = part * unit
-            way = (force * math.cos(self.direction), force * math.sin(self.direction))
-            load = {FORCE: {"force": way, "body": self.body}}
-            asked = put(replace(design, effects=left.plus(**load)), settings)
-            yield force, asked, asked.static_path(check=False, raise_on_failure=False, **how)
+    Weight and pre-strain act as well; paths stop at rest where these find no equilibrium.
+    """
+    unit = _euler_load(design)
+    left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
+    how = {"rotation": 0.0 if held else None, "increments": INCREMENTS, "order": LOADS_FIRST}
+    for part in PARTS:
+        force = part * unit
+        way = (force * math.cos(direction), force * math.sin(direction))
+        load = {FORCE: {"force": way, "body": design.body}}
+        asked = put(replace(design, effects=left.plus(**load)), settings)
+        yield force, asked, asked.static_path(check=False, raise_on_failure=False, **how)
 
 
-def _euler_load(design: Design, body: str) -> float:
-    """Return the Euler loads, clamped at both ends, of the weakest strips between a body and the ground [N].
+def _euler_load(design: Design) -> float:
+    """Return the Euler loads, clamped at both ends, of the weakest strips between the body and the ground
+    [N].
 
     Strips side by side are added up; of strips in a row the weakest counts.
     """
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import maximum_flow
 
-    places = [body, GROUND, *(each.name for each in design.bodies if each.name != body)]
+    places = [str(design.body), GROUND, *(b.name for b in design.bodies if b.name != design.body)]
     strips = design.strips
     loads = np.array([s.youngs_modulus * s.second_moment_of_area / s.length**2 for s in strips])
     shares = np.ceil(loads / loads.max() * FINEST).astype(np.int32)
@@ -156,11 +150,10 @@ def critical_load(
     """
     if design.body is None:
         raise BadInput("body: got none, expected a design with a body that the force acts on")
-    question = _Question(design=design, direction=direction, held=held, body=design.body)
     found: list[CriticalLoad] = []
     for each in _refined(settings):
         try:
-            found.append(_of(question, each))
+            found.append(_of(design, each, direction, held))
         except BadInput:
             if len(found) < 2:
                 raise
@@ -229,20 +222,20 @@ def _fineness(settings: Settings) -> tuple[str, str]:
     return named(settings.segments, settings.points), finer
 
 
-def _of(question: _Question, settings: Settings) -> CriticalLoad:
+def _of(design: Design, settings: Settings, direction: float, held: bool) -> CriticalLoad:
     """Return the critical load with one discretisation."""
-    for tried in question.paths(settings):
+    for tried in _paths(design, settings, direction, held):
         size, asked, path = tried
         lost = [each for each in path.critical_points if each.inertia > 0]
         if lost or path.status.value != "converged":
             break
-    last, place = float(path.load_factor[-1]), list(path.bodies).index(question.body)
+    last, place = float(path.load_factor[-1]), list(path.bodies).index(str(design.body))
     found: dict[str, Any] = {
         "status": str(path.status.value),
         "message": "" if last == 1.0 else str(path.message),
         "reached": size * last,
         "force": None,
-        "turned": float(path.bodies[question.body][-1, 2]),
+        "turned": float(path.bodies[design.body][-1, 2]),
         "kind": NONE,
         "preload": 1.0,
     }
@@ -253,5 +246,5 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
             "kind": UNSTABLE if unstable else str(point.kind),
             "preload": float(point.preload),
         }
-    known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
+    known: dict[str, Any] = {"direction": direction, "held": held, "uncertainty": math.nan}
     return CriticalLoad(asked=asked, solution=path, **known | found)

@@ -15,7 +15,7 @@ import numpy as np
 from studies.answers.answer import Answer
 from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
-from studies.answers.response import PLACES, Response
+from studies.answers.response import PLACES, STRESSES, Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
 from studies.commands.arguments import chosen_settings
@@ -32,15 +32,15 @@ if TYPE_CHECKING:
 NOT_CONVERGED = 3
 #: Analyses whose errors are estimated, or told not to be.
 ESTIMATED = ("static", "modes")
-#: What a static answer prints, and the names by which models estimate its error.
-PRINTED = {
-    "places": PLACES,
-    "centre shift": ("centre_shift",),
-    "torque": ("torque",),
-    "stiffness": ("stiffness",),
-    "stiffness of the body": ("body_stiffness",),
-    "energy": ("energy", "strain_energy"),
-    "stress": ("stress", "largest_stress"),
+#: What a static answer prints: the names by which models estimate its error, and whether it is there.
+PRINTED: dict[str, tuple[tuple[str, ...], Callable[[Response], Any]]] = {
+    "places": (PLACES, attrgetter("bodies")),
+    "centre shift": (("centre_shift",), lambda a: a.crossing is not None and np.any(a.centre_shift)),
+    "torque": (("torque",), lambda a: np.isfinite(a.torque).any()),
+    "stiffness": (("stiffness",), lambda a: np.isfinite(a.stiffness).any()),
+    "stiffness of the body": (("body_stiffness",), lambda a: a.body and np.isfinite(a.body_stiffness).any()),
+    "energy": (("energy", "strain_energy"), lambda a: True),
+    "stress": (STRESSES, lambda a: np.isfinite(a.max_stress).any()),
 }
 
 
@@ -166,17 +166,8 @@ def not_estimated(answer: Any) -> list[str]:
     errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
     if answer.analysis == "modes":
         return [] if errors else ["frequency"]
-    there = {
-        "places": bool(answer.bodies),
-        "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
-        "torque": bool(np.isfinite(answer.torque).any()),
-        "stiffness": bool(np.isfinite(answer.stiffness).any()),
-        "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
-        "energy": True,
-        "stress": bool(np.isfinite(answer.max_stress).any()),
-    }
+    known = [name for name, (of, there) in PRINTED.items() if there(answer) and not errors & set(of)]
     parts = {each.group or each.heading: bool(errors & set(each.estimated)) for each in named(answer.design)}
-    known = [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
     return known + [name for name, sure in parts.items() if not sure]
 
 
