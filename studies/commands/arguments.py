@@ -177,33 +177,20 @@ def turned_design(arguments: argparse.Namespace, why: str) -> Design:
 
 
 def chosen_settings(arguments: argparse.Namespace) -> list[Settings]:
-    """Return the settings of every chosen model; an option that none of them has is an error."""
+    """Return the settings of every chosen model; BadInput for an option that none of them has."""
     models = [arguments.model] if isinstance(arguments.model, str) else arguments.model
-    points, elements = tuple(each.name for each in SPLINE), (ELEMENTS.name,)
-    if "spline" not in models:
-        refuse(arguments, points, elements)
-    elif set(models) == {"spline"}:
-        refuse(arguments, elements, points)
-    found = []
-    for model in models:
-        own = points if model == "spline" else elements
-        given = {name: value for name in own if (value := getattr(arguments, name)) is not None}
-        found.append(settings_of_model(model, **given))
-    return found
-
-
-def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tuple[str, ...]) -> None:
-    """Raise BadInput if an option was given that the chosen model cannot use.
-
-    Args:
-        arguments: of the command.
-        unusable, usable: options of the other model and of this one.
-    """
-    for name in unusable:
-        if getattr(arguments, name) is not None:
-            expected = ", ".join(map(option, usable))
-            model = arguments.model if isinstance(arguments.model, str) else ",".join(arguments.model)
-            raise BadInput(f"{option(name)}: got it with --model {model}, expected only {expected}")
+    options = {model: SPLINE if model == "spline" else (ELEMENTS,) for model in models}
+    usable = dict.fromkeys(each for own in options.values() for each in own)
+    for each in (*SPLINE, ELEMENTS):
+        if each not in usable and getattr(arguments, each.name) is not None:
+            expected = f"only {', '.join(option(own.name) for own in usable)}"
+            raise BadInput(
+                f"{option(each.name)}: got it with --model {','.join(models)}, expected {expected}"
+            )
+    return [
+        settings_of_model(model, **{e.name: v for e in own if (v := getattr(arguments, e.name)) is not None})
+        for model, own in options.items()
+    ]
 
 
 def option(name: str) -> str:
