@@ -187,7 +187,7 @@ def _moved(answer: Response) -> Array:
     """Return the displacements of all centres (S, B) [m], as complex numbers."""
     if not answer.bodies:
         return np.zeros((len(answer.load_factor), 0))
-    centres = np.stack([place[:, :2] for place in answer.bodies.values()], axis=1)
+    centres = np.stack(list(answer.centres.values()), axis=1)
     moved = centres - centres[0]
     return np.asarray(moved[..., 0] + 1j * moved[..., 1])
 

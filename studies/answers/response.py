@@ -72,6 +72,11 @@ class Response(Answer):
         return np.stack((self.load_factor, turns), axis=1)
 
     @property
+    def centres(self) -> dict[str, Array]:
+        """(S, 2) centres of mass of the bodies by name [m]."""
+        return {name: place[:, :2] for name, place in self.bodies.items()}
+
+    @property
     def centre_shift(self) -> Array:
         """(S, 2) displacement of a pivot's point that lies at the strips' crossing at rest [m]."""
         return centre_shift(np.array(self.crossing), self.rotation, self.centre)
