@@ -14,12 +14,9 @@ import numpy as np
 
 from studies.answers.answer import Answer
 from studies.answers.named import named
-from studies.answers.quantities import QUANTITIES
 from studies.answers.response import PLACES, STRESSES, Response
 from studies.answers.settings import Settings
-from studies.answers.strength import strength
 from studies.commands.arguments import chosen_settings
-from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
@@ -176,49 +173,6 @@ def ending(answer: Answer) -> str:
     work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in answer.counters.items())
     parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
     return "; ".join(filter(None, parts))
-
-
-def strength_told(answer: Response) -> Iterator[str]:
-    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
-    found = strength(answer)
-    if math.isnan(found.stress):
-        return
-    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
-        yield "no stress: nothing is turned, and no load acts"
-        return
-    at = _state(found.load_factor, found.rotation)
-    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
-    if found.safety is None:
-        return
-    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
-    if found.yields is None:
-        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
-    else:
-        where = _state(found.yields.load_factor, found.yields.rotation, 6).removeprefix("at ")
-        error = found.yields.error
-        known = f"estimated error {error:.1e}" if math.isfinite(error) else "error not estimated"
-        safety = f"safety {one(found.safety, 4)} against the yield strength{limit}"
-        yield f"{safety}: it yields from {where} on ({known})"
-
-
-def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
-    """Return which state it is, in degrees, or by its load."""
-    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
-        return f"at {math.degrees(rotation):.{digits}g} deg"
-    return f"at load factor {load_factor:.{digits}g}"
-
-
-def strength_document(answer: Response) -> dict[str, Any]:
-    """Return the largest stress and what of it the material bears, as JSON has it."""
-    found = strength(answer)
-    if math.isnan(found.stress):
-        return {}
-    error = found.yields and {"relative_error": found.yields.error}
-    return {
-        "max_stress_Pa": found.stress,
-        **keyed(found, "strip", "station", "load_factor", "rotation_rad", "yield_strength_Pa", "safety"),
-        "yields_from": error and keyed(found.yields, "load_factor", "rotation_rad") | error,
-    }
 
 
 def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:

@@ -33,8 +33,10 @@ import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.named import quantities_of
+from studies.answers.quantities import QUANTITIES
 from studies.answers.response import Response
 from studies.answers.settings import Settings
+from studies.answers.strength import strength
 from studies.answers.validity import validity
 from studies.cases.effects import GROWING
 from studies.commands import answer as tell
@@ -153,7 +155,7 @@ def _document(answer: Response) -> dict[str, Any]:
         "critical_points": _critical(answer),
         **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         **_arrays(answer),
-        "strength": tell.strength_document(answer),
+        "strength": _strength(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
@@ -193,7 +195,7 @@ def _readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from tell.strength_told(answer)
+    yield from _strength_told(answer)
     # of yield the strength has told
     yield from (f"warning: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
@@ -250,3 +252,46 @@ def _body_columns(answer: Response) -> Iterator[Column]:
     yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
     for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
         yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
+
+
+def _strength_told(answer: Response) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
+    found = strength(answer)
+    if math.isnan(found.stress):
+        return
+    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
+        yield "no stress: nothing is turned, and no load acts"
+        return
+    at = _state(found.load_factor, found.rotation)
+    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
+    if found.safety is None:
+        return
+    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
+    if found.yields is None:
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
+    else:
+        where = _state(found.yields.load_factor, found.yields.rotation, 6).removeprefix("at ")
+        error = found.yields.error
+        known = f"estimated error {error:.1e}" if math.isfinite(error) else "error not estimated"
+        safety = f"safety {one(found.safety, 4)} against the yield strength{limit}"
+        yield f"{safety}: it yields from {where} on ({known})"
+
+
+def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
+    """Return which state it is, in degrees, or by its load."""
+    if math.isfinite(rotation) and abs(rotation) > columns.ANGLE_FLOOR:
+        return f"at {math.degrees(rotation):.{digits}g} deg"
+    return f"at load factor {load_factor:.{digits}g}"
+
+
+def _strength(answer: Response) -> dict[str, Any]:
+    """Return the largest stress and what of it the material bears, as JSON has it."""
+    found = strength(answer)
+    if math.isnan(found.stress):
+        return {}
+    error = found.yields and {"relative_error": found.yields.error}
+    return {
+        "max_stress_Pa": found.stress,
+        **tell.keyed(found, "strip", "station", "load_factor", "rotation_rad", "yield_strength_Pa", "safety"),
+        "yields_from": error and tell.keyed(found.yields, "load_factor", "rotation_rad") | error,
+    }
