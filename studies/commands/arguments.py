@@ -10,8 +10,7 @@ from studies.cases import keys
 from studies.cases.design import Design, read_design
 from studies.cases.document import nearest, present
 from studies.cases.problem import FOLDER
-from studies.commands import parser
-from studies.commands.parser import STREAM, Argument, positive, whole_number
+from studies.commands.parser import STREAM, Argument, as_in_file, names_of, positive, whole_number
 from studies.errors import BadInput
 from studies.record.files import PICTURES, require_writable_file
 from studies.record.source import HOME
@@ -100,20 +99,16 @@ _ONE = Argument("--model", _WHAT, choices=MODELS, default="spline")
 _SEVERAL = Argument(
     "--model LIST",
     f"{_WHAT}: spline, fe, fe-shear, or several with commas",
-    parser.names_of(MODELS),
+    names_of(MODELS),
     default=("spline",),
 )
 #: Models and their settings, of one model or several; a design, a model and its settings.
 MODELS_OF = EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 MODEL = CASE, EFFECTS, _ONE, *SPLINE, ELEMENTS
 
-ROTATION = Argument(
-    "--rotation-deg X", read=lambda text: keys.ROTATION.parse(parser.degrees(text)), dest="rotation"
-)
+ROTATION = Argument("--rotation-deg X", read=as_in_file(keys.ROTATION), dest="rotation")
 INCREMENTS = Argument(
-    "--increments K",
-    "increments of the path (default: the case's)",
-    parser.reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
+    "--increments K", "increments of the path (default: the case's)", as_in_file(keys.INCREMENTS, int)
 )
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)

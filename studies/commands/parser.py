@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from studies.cases.document import nearest, present
-from studies.cases.rules import number
+from studies.cases.rules import Rule, number
 from studies.errors import BadInput
 
 #: What stands for the output stream in place of a file.
@@ -122,14 +122,13 @@ def whole_number(low: int) -> Callable[[str], int]:
     return reads(f"a whole number of at least {low}", value_of)
 
 
-def _number(expected: str, **limits: Any) -> Callable[[str], float]:
-    """Return a parser of finite numbers that a rule with these limits admits."""
-    rule = number(f"a finite number {expected}", **limits)
-    return reads(rule.expected, lambda text: rule.parse(float(text)))
+def as_in_file(rule: Rule, kind: Callable[[str], Any] = float) -> Callable[[str], Any]:
+    """Return a parser of numbers of a kind that a rule of case files admits."""
+    return reads(rule.expected, lambda text: rule.parse(kind(text)))
 
 
-degrees = _number("of degrees")
-positive = _number("above 0", low=0.0)
+degrees = as_in_file(number("a finite number of degrees"))
+positive = as_in_file(number("a finite number above 0", low=0.0))
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
