@@ -145,11 +145,7 @@ class Motion(Answer):
     gravity_energy = own("gravity_energy")
     work = own("work")
     dissipated = own("dissipated")
-
-    @property
-    def dissipated_energy(self) -> Array:
-        """Energy (T,) dissipated since the start [J]."""
-        return self.dissipated
+    dissipated_energy = own("dissipated")
 
     @cached_property
     def constraint_residual(self) -> Array:
