@@ -137,7 +137,7 @@ class Run(Checked):
                 "duration",
                 self.duration,
                 f"at most {self.most_steps:.3g} steps of {step:.3g} s, this is {steps:.3g} of them: {way}; "
-                "or allow more by --most-steps (most_steps) [s]",
+                "or allow more by most_steps",
             )
         samples = min(self.samples, steps)
         if 2 * samples * size > MOST_NUMBERS:

@@ -1,14 +1,10 @@
 """Names of commands and studies and their modules, which are imported when they are called."""
 
-import argparse
-import re
 from collections.abc import Iterable
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from studies.cases.document import nearest
-from studies.commands.parser import command
 from studies.errors import BadInput
 
 if TYPE_CHECKING:  # a command that runs no study does not wait for tables and figures
@@ -19,7 +15,6 @@ COMMANDS: dict[str, str] = {
     "solve": "rotate a pivot and report its equilibrium path",
     "release": "release a rotated pivot and report its motion",
     "modes": "report natural frequencies, at rest or at a rotation",
-    "export": "write deformed shapes and section forces as VTK, SVG, CSV, Parquet",
     "critical-load": "find the force at which a design loses its stability",
     "compare": "compare designs or models",
     "converge": "refine both models on a design until an accuracy is reached",
@@ -32,7 +27,6 @@ COMMANDS: dict[str, str] = {
     "interactive": "move and release a pivot by camera or mouse in the browser",
     "markers": "print the sheet with the two markers",
     "calibrate": "find a camera's constants from the marker sheet",
-    "list": "list the studies",
     "run": "compute and draw studies",
     "draw": "redraw studies from their stored tables",
     "verify": "compute stale studies again and mark reproduced ones as fresh",
@@ -47,7 +41,6 @@ PLACES: dict[str, str] = {
     "completion": "studies.commands.compile:completion",
     "markers": "studies.commands.interactive:markers",
     "calibrate": "studies.commands.interactive:calibrate",
-    "list": "studies.registry:listed",
     "run": "studies.commands.results:run",
     "draw": "studies.commands.results:draw",
     "verify": "studies.commands.results:verify",
@@ -100,16 +93,6 @@ def study_of(name: str) -> "Study":
     return study_at(STUDIES[name])
 
 
-def question_of(name: str) -> str:
-    """Return what a study shows, without importing it."""
-    module, _, constant = STUDIES[name].partition(":")
-    path = Path(__file__).parents[1].joinpath(*module.split(".")).with_suffix(".py")
-    text = path.read_text(encoding="utf-8")
-    said = re.search(rf'^{constant} = .*?\)\n"""(.*)', text, re.DOTALL | re.MULTILINE) if constant else None
-    first = said[1] if said else text.removeprefix('"""')
-    return first.partition("\n")[0].removesuffix('"""').removesuffix(".")
-
-
 def selected(names: Iterable[str]) -> list[str]:
     """Return the studies that `names` stand for, in the order of the register.
 
@@ -127,17 +110,3 @@ def selected(names: Iterable[str]) -> list[str]:
             raise BadInput(f"study: got {name}, expected {nearest(name, known, listed=STUDIES)}")
         chosen |= found
     return [study for study in STUDIES if study in chosen]
-
-
-@command()
-def listed(arguments: argparse.Namespace) -> int:
-    """List the studies: the names that `run` and `draw` take.
-
-        python -m studies list
-
-    A study may also be called by its last part, its group, or as one of "all". Exit code 0.
-    """
-    width = max(map(len, STUDIES))
-    for name in STUDIES:
-        print(f"{name:{width}}  {question_of(name)}")
-    return 0

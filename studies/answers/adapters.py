@@ -62,7 +62,6 @@ def answer_release(
     start: float | None = None,
     repeat: int = 1,
     check: bool = False,
-    swings: bool = True,
     **options: Any,
 ) -> Motion:
     """Release a design at rest from a static state and return its motion.
@@ -83,17 +82,14 @@ def answer_release(
         start: rotation at the start [rad]; None for the end of the design's path.
         repeat: timed releases [1].
         check: whether a companion motion estimates how well control points, or elements, resolve the motion.
-        swings: whether a body is required, whose free vibration is reported; if not, strips without bodies
-            are followed too.
         options: `step` [s], `integrator`, `accuracy` [rad, of the splines] and the largest number of
             `records`, which the model checks; None for its default.
 
     Raises:
         BadInput: a setting or option that the model rejects, or a design without bodies; one line.
     """
-    if design.body is None and swings:
-        expected = "`export --analysis release` has the motion of strips alone"
-        raise BadInput(f"bodies: got none, expected a body whose motion is computed; {expected}")
+    if design.body is None:
+        raise BadInput("bodies: got none, expected a body whose motion is computed")
     start, model = design.rotation if start is None else start, model_of(settings)
     how = {"duration": duration} | {name: value for name, value in options.items() if value is not None}
     if isinstance(settings, FeSettings):

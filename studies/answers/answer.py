@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from studies.answers.models import Asked, fields_along
+from studies.answers.models import Asked
 from studies.answers.quantities import peak, stress_of
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
@@ -190,8 +190,7 @@ class Answer:
         """
         if self.solution is None:
             raise BadInput(f"{self.model}: got no state, expected a solution with one: {self.message}")
-        make = fields_along(self.asked.settings, self.analysis)
-        return self._in_full(make(self.asked.fine(self.solution), self._states))
+        return self._in_full(self.asked.fields(self.solution, self._states, self.analysis))
 
     @property
     def _states(self) -> Array:

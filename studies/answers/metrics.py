@@ -166,9 +166,7 @@ def quasi_static_frequency(
     return 1.0 / (4.0 * quarter)
 
 
-def differences(
-    answer: Response, other: Response, names: Iterable[str] | None = None
-) -> dict[str, float | None]:
+def differences(answer: Response, other: Response, names: Iterable[str]) -> dict[str, float | None]:
     """Return the largest difference of quantities of `COMPARED` over the states that both reached, over their
     largest value in `other` [1]; None where there is nothing to compare.
 
@@ -177,9 +175,7 @@ def differences(
     both = min(len(answer.load_factor), len(other.load_factor))
     same = np.abs(answer.load_factor[:both] - other.load_factor[:both]) < NOTHING
     found: dict[str, float | None] = {}
-    for name in names or COMPARED:
-        if name == "body_stiffness" and answer.body is None:
-            continue
+    for name in names:
         mine, theirs = (COMPARED[name](each) for each in (answer, other))
         scale = float(np.abs(theirs).max(initial=0.0))
         apart = np.abs(mine[:both] - theirs[:both])[same]
@@ -196,21 +192,11 @@ def _moved(answer: Response) -> Array:
     return np.asarray(moved[..., 0] + 1j * moved[..., 1])
 
 
-def _without_units(answer: Response) -> Array:
-    """Return the stiffness matrices of the body (S, 3, 3) over the units that make the diagonal at rest
-    one."""
-    unit = np.sqrt(np.abs(np.einsum("ii->i", answer.body_stiffness[0])))
-    return np.asarray(answer.body_stiffness / (unit[:, None] * unit))
-
-
 #: What is compared, by name: arrays over the states; angles count as they are, in rad.
 COMPARED: dict[str, Callable[[Response], Array]] = {
     "path": _moved,
     "torque": attrgetter("torque"),
-    "stiffness": attrgetter("stiffness"),
-    "energy": attrgetter("strain_energy"),
     "stress": attrgetter("max_stress"),
-    "body_stiffness": _without_units,
 }
 
 

@@ -1,9 +1,8 @@
 """The two models side by side: the one file that knows both, and how a design is put to either."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 from studies.answers.settings import FeSettings, Settings
@@ -23,21 +22,6 @@ def model_of(settings: Settings) -> Any:
     import spline_model
 
     return spline_model
-
-
-def fields_along(settings: Settings, analysis: str) -> Callable[[Any, Any], Any]:
-    """Return the function that computes fields along the strips from a design in the model and states.
-
-    analysis: "static" for states of a path, "release" for states of a motion, "modes" for the static state of
-    modes. The fields are those of `studies.answers.answer.Answer.along`.
-    """
-    if isinstance(settings, FeSettings):
-        from fe_reference import strip_fields
-
-        return strip_fields
-    from spline_model import strip_fields as fields_of_splines
-
-    return partial(fields_of_splines, analysis=analysis)
 
 
 @dataclass(frozen=True)
@@ -94,6 +78,15 @@ class Asked:
         for _ in getattr(result.estimate, "meshes", ())[1:]:
             asked = finer(asked)
         return asked
+
+    def fields(self, result: Any, states: Any, analysis: str) -> Any:
+        """Return the fields along the strips of states of a result, as `studies.answers.answer.Answer.along`.
+
+        analysis: "static" for states of a path, "release" for states of a motion, "modes" for the static
+        state of modes.
+        """
+        how = {} if isinstance(self.settings, FeSettings) else {"analysis": analysis}
+        return self.model.strip_fields(self.fine(result), states, **how)
 
     @contextmanager
     def refusals(self) -> Iterator[None]:

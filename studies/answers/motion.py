@@ -34,8 +34,8 @@ NOT_JUDGED = (
     "the start is in equilibrium, whose stability is not judged, as a load follows its body: what moves, if "
     "anything, has grown from round-off; rotate a body slightly before its release"
 )
-
-
+#: Largest displacement of a mode in a picture, in lengths of the longest strip [1].
+AMPLITUDE = 0.1
 #: Amplitude of a mode in a record over that of the largest that counts: less is a ripple.
 LEAST = 0.1
 #: Half width of a line in the spectrum of a Hann window, over the inverse of the record's duration.
@@ -145,11 +145,7 @@ class Motion(Answer):
     gravity_energy = own("gravity_energy")
     work = own("work")
     dissipated = own("dissipated")
-
-    @property
-    def dissipated_energy(self) -> Array:
-        """Energy (T,) dissipated since the start [J]."""
-        return self.dissipated
+    dissipated_energy = own("dissipated")
 
     @cached_property
     def constraint_residual(self) -> Array:
@@ -256,6 +252,12 @@ class Spectrum(Answer):
             return np.asarray(shapes.reshape(-1, count, 3).swapaxes(0, 1))
         shapes = np.asarray(getattr(self.solution, "body_shapes", ()), dtype=float)
         return shapes.reshape(count, len(names), 3)
+
+    def scale_of(self, state: int) -> float:
+        """Return the factor of a mode at unit modal mass for its picture; zero of a mode that moves
+        nothing."""
+        largest = float(np.hypot(*np.moveaxis(self.mode_shape[state], -1, 0)).max())
+        return AMPLITUDE * float(self.along.arc_length.max()) / largest if largest > 0.0 else 0.0
 
     @property
     def body_shapes(self) -> Array:

@@ -223,10 +223,10 @@ def swing_reference(
     """
     settings = (FeSettings(elements=count, element=element) for count in meshes)
     levels = [answer_release(problem, each, duration=duration, records=RECORDS) for each in settings]
-    return limit_of_swings(levels, instants)
+    return _limit_of_swings(levels, instants)
 
 
-def limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
+def _limit_of_swings(levels: Sequence[Motion], instants: Array) -> SwingReference:
     """Return the limit of motions at `instants` (T,) [s], on meshes that are refined by `RATIO` each.
 
     Raises:

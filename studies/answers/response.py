@@ -29,7 +29,8 @@ class Response(Answer):
         torque: (S,) driving torque [N m]; stiffness: (S,) its derivative from the tangent [N m / rad]; NaN
             where nothing is driven.
         bending_energy, axial_energy, shear_energy: (S,) of all strips [J]; zero without shear.
-        gravity_energy: (S,) against rest [J]; work: (S,) of loads and drives since the first state [J].
+        gravity_energy: (S,) against rest [J]; spring_energy: (S,) of the springs between bodies [J];
+            work: (S,) of loads and drives since the first state [J].
         stations: (P,) reference arc length over L [1]; axial_force: (S, G, P) [N]; bending_moment: [N m].
     """
 
@@ -42,6 +43,7 @@ class Response(Answer):
     axial_energy = own("axial_energy")
     shear_energy = own("shear_energy")
     gravity_energy = own("gravity_energy")
+    spring_energy = own("spring_energy")
     work = own("work")
     stations = own("stations")
     axial_force = own("axial_force")
@@ -78,11 +80,6 @@ class Response(Answer):
     def centre_shift(self) -> Array:
         """(S, 2) displacement of a pivot's point that lies at the strips' crossing at rest [m]."""
         return centre_shift(np.array(self.crossing), self.rotation, self.centre)
-
-    @property
-    def spring_energy(self) -> Array:
-        """(S,) of the springs between bodies [J]."""
-        return np.asarray(self.solution.spring_energy)
 
     def exerted(self, body: str, coordinate: str) -> Array:
         """Return the force [N] or moment [N m] (S,) on a body for its prescribed "x", "y" or "rotation"."""

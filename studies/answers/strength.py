@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from studies.answers.models import put
-from studies.answers.response import Response
+from studies.answers.response import STRESSES, Response
 from studies.errors import Unanswered
 from studies.kinds import Array
 
@@ -14,8 +14,6 @@ from studies.kinds import Array
 NEAR = 0.02
 #: Part of a stress below which two are the same: the strips of a symmetric pivot.
 SAME = 1e-9
-#: What the models call the error of the largest stress.
-STRESS = ("stress", "largest_stress")
 #: Part of an increment to which the place is solved for.
 PRECISION = 1e-7
 
@@ -103,7 +101,7 @@ def _first_yield(answer: Response, share: Array) -> _Yield | None:
     known: dict[float, tuple[float, Array]] = {
         float(k): (share[k] - 1.0, places[k]) for k in (after - 1, after)
     }
-    stress = next((answer.errors[name] for name in STRESS if name in answer.errors), np.nan)
+    stress = next((answer.errors[name] for name in STRESSES if name in answer.errors), np.nan)
     error = stress * float(share.max()) / float(share[after] - share[after - 1])
     at = _root(answer, known, after)
     if at is None:  # the path between the increments is not found: their line is all that is known

@@ -15,7 +15,6 @@ MANY, SHOWN = 40, 3
 #: Former name of a command, an option, a setting or a choice -> present name; accepted until version 0.3.
 FORMER: dict[str, str] = {
     "capacity": "critical-load",
-    "--slide-stiffness": "--penalty-stiffness",
     "slide_stiffness": "penalty_stiffness",
     "printed": "published",
 }

@@ -5,7 +5,6 @@ A table `[effects.NAME]` gives the parameters of an effect that the scene names,
 forgotten.
 """
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -217,9 +216,7 @@ def require_known(where: str, name: str) -> None:
     splines."""
     if name in EFFECT_KEYS or name in _registered():
         return
-    near = difflib.get_close_matches(name, EFFECT_KEYS, n=1)
-    hint = f"{near[0]} (the nearest name), or " if near else ""
-    raise CaseError(f"{where}: got {name}, expected {hint}one of {', '.join(EFFECT_KEYS)}")
+    raise CaseError(f"{where}: got {name}, expected {document.nearest(name, EFFECT_KEYS)}")
 
 
 def _require_parameters(where: str, effects: Effects) -> None:

@@ -15,14 +15,6 @@ FREE = "free"
 LONGEST = 64
 
 
-def _anything(value: Any) -> bool:
-    return True
-
-
-def _same(value: Any) -> Any:
-    return value
-
-
 @dataclass(frozen=True, kw_only=True)
 class Rule:
     """Admissible values of a key of a case file.
@@ -34,9 +26,9 @@ class Rule:
     """
 
     expected: str
-    admits: Callable[[Any], bool] = _anything
-    read: Callable[[Any], Any] = _same
-    in_file: Callable[[Any], Any] = _same
+    admits: Callable[[Any], bool] = lambda value: True
+    read: Callable[[Any], Any] = lambda value: value
+    in_file: Callable[[Any], Any] = lambda value: value
     kind: str = ""
 
     def parse(self, value: Any) -> Any:
@@ -166,7 +158,7 @@ def _is_history(value: Any) -> bool:
     return bool(given) and all(before[0] < after[0] for before, after in pairwise(value))
 
 
-#: A truth value; pairs [time in s, factor] in order of time; two instants.
+#: A truth value; pairs [time in s, factor] in order of time; two instants [s].
 TRUTH = Rule(expected="true or false", admits=lambda value: isinstance(value, bool))
 
 

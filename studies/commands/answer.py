@@ -4,7 +4,8 @@ import argparse
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,71 +14,59 @@ import numpy as np
 
 from studies.answers.answer import Answer
 from studies.answers.named import named
-from studies.answers.quantities import QUANTITIES
-from studies.answers.response import PLACES, Response
+from studies.answers.response import PLACES, STRESSES, Response
 from studies.answers.settings import Settings
-from studies.answers.strength import strength
 from studies.commands.arguments import chosen_settings
-from studies.commands.columns import ANGLE_FLOOR, one
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.record.files import write_whole
+from studies.record.files import require_writable_folder, write_whole
 from studies.record.progress import Bar
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from studies.pictures.shown import Shown
-
 NOT_CONVERGED = 3
 #: Analyses whose errors are estimated, or told not to be.
 ESTIMATED = ("static", "modes")
-#: What a static answer prints, and the names by which models estimate its error.
-PRINTED = {
-    "places": PLACES,
-    "centre shift": ("centre_shift",),
-    "torque": ("torque",),
-    "stiffness": ("stiffness",),
-    "stiffness of the body": ("body_stiffness",),
-    "energy": ("energy", "strain_energy"),
-    "stress": ("stress", "largest_stress"),
+#: What a static answer prints: the names by which models estimate its error, and whether it is there.
+PRINTED: dict[str, tuple[tuple[str, ...], Callable[[Response], Any]]] = {
+    "places": (PLACES, attrgetter("bodies")),
+    "centre shift": (("centre_shift",), lambda a: a.crossing is not None and np.any(a.centre_shift)),
+    "torque": (("torque",), lambda a: np.isfinite(a.torque).any()),
+    "stiffness": (("stiffness",), lambda a: np.isfinite(a.stiffness).any()),
+    "stiffness of the body": (("body_stiffness",), lambda a: a.body and np.isfinite(a.body_stiffness).any()),
+    "energy": (("energy", "strain_energy"), lambda a: True),
+    "stress": (STRESSES, lambda a: np.isfinite(a.max_stress).any()),
 }
 
 
 def deliver(
     arguments: argparse.Namespace,
-    document: Mapping[str, Any] | list[dict[str, Any]],
+    document: Mapping[str, Any],
     table: Iterable[str],
     *,
     failure: str | None,
-    answers: Sequence[Any] = (),
-    beside: Callable[[Any], dict[str, Any]] = lambda answers: {},
-    frame: "Callable[[Any], pd.DataFrame] | None" = None,
+    frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
-    """Draw what there is of `answers` where `--plot` says, print `table`, and write `document` where `--json`
-    says and `frame` where `--csv` does; return the exit code. What goes to the output stream stands alone.
+    """Print `table`, and write `document` where `--json` says and `frame` where `--csv` does; return the exit
+    code. What goes to the output stream stands alone.
 
     Args:
         arguments: of the command.
-        document: the answer as a JSON object, or that of each; its arrays and tuples are lists there, and
-            null is what is no finite number. beside: what that of several answers has as well.
+        document: the answer as a JSON object; its arrays and tuples are lists there, and null is what is no
+            finite number.
         table: the answer in lines to read.
         failure: why the answer is not complete; None, or nothing, when it is.
-        frame: makes the answers a table of numbers, of a command that has `--csv`.
+        frame: makes a table of numbers of the answer, of a command that has `--csv`.
     """
-    if answers and getattr(arguments, "plot", None) is not None:
-        shown = [shown_of(arguments.case, each) for each in answers if each.solution is not None]
-        draw(arguments, shown)
     csv, stream = getattr(arguments, "csv", None), getattr(arguments, "json", None)
-    if isinstance(document, list):
-        document = document[0] if len(document) == 1 else {"answers": document, **beside(answers)}
     if STREAM not in (stream, csv) and (lines := list(table)):
         print("\n".join(lines))
     if stream is not None:
         _put(stream, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
     if csv is not None and frame is not None:
-        _put(csv, frame(answers).to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
+        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     return not_converged(failure) if failure else 0
 
 
@@ -85,26 +74,29 @@ def asked(
     arguments: argparse.Namespace,
     ask: Callable[[Settings, Bar], Any],
     document: Callable[[Any], dict[str, Any]],
-    table: Callable[[list[Any]], Iterable[str]],
+    table: Callable[[Any], Iterable[str]],
     *,
     stopped: Callable[[Any], str] = attrgetter("message"),
-    **how: Any,
+    frame: "Callable[[Any], pd.DataFrame] | None" = None,
 ) -> int:
-    """Ask every chosen model, one after another, and deliver the answers; return the exit code.
+    """Ask the chosen model, draw the answer where `--plot` says, and deliver it; return the exit code.
 
     Args:
         arguments: of the command.
         ask: makes an answer of settings, and tells how far it is.
-        document: of an answer its JSON object. table: of all answers the lines to read.
-        stopped: why an answer is not complete. how: keywords of `deliver`.
+        document: of an answer its JSON object. table: of an answer the lines to read.
+        stopped: why an answer is not complete. frame: of an answer a table of numbers.
     """
-    answers = []
-    for settings in chosen_settings(arguments):
-        with Bar(f"{Path(arguments.case).stem}: {settings.model}") as bar:
-            answers.append(ask(settings, bar))
-    failure = "; ".join(stopped(each) for each in answers if not each.converged)
-    whole = [document(each) for each in answers]
-    return deliver(arguments, whole, table(answers), failure=failure, answers=answers, **how)
+    (settings,) = chosen_settings(arguments)
+    with Bar(f"{Path(arguments.case).stem}: {settings.model}") as bar:
+        answer = ask(settings, bar)
+    if getattr(arguments, "plot", None) is not None:
+        draw(arguments, [(arguments.case, answer)] if answer.solution is not None else [])
+    if getattr(arguments, "export", None) is not None and answer.solution is not None:
+        _export(arguments, answer)
+    failure = None if answer.converged else stopped(answer)
+    numbers = frame and partial(frame, answer)
+    return deliver(arguments, document(answer), table(answer), failure=failure, frame=numbers)
 
 
 def _put(target: Path, text: str, form: str) -> None:
@@ -171,17 +163,8 @@ def not_estimated(answer: Any) -> list[str]:
     errors = {name for name, error in answer.errors.items() if math.isfinite(error)}
     if answer.analysis == "modes":
         return [] if errors else ["frequency"]
-    there = {
-        "places": bool(answer.bodies),
-        "centre shift": answer.crossing is not None and bool(np.any(answer.centre_shift)),
-        "torque": bool(np.isfinite(answer.torque).any()),
-        "stiffness": bool(np.isfinite(answer.stiffness).any()),
-        "stiffness of the body": answer.body is not None and bool(np.isfinite(answer.body_stiffness).any()),
-        "energy": True,
-        "stress": bool(np.isfinite(answer.max_stress).any()),
-    }
+    known = [name for name, (of, there) in PRINTED.items() if there(answer) and not errors & set(of)]
     parts = {each.group or each.heading: bool(errors & set(each.estimated)) for each in named(answer.design)}
-    known = [name for name, names in PRINTED.items() if there[name] and not errors & set(names)]
     return known + [name for name, sure in parts.items() if not sure]
 
 
@@ -190,49 +173,6 @@ def ending(answer: Answer) -> str:
     work = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in answer.counters.items())
     parts = (answer.status.replace("_", " "), work, f"solved in {answer.wall_s * 1e3:.3g} ms")
     return "; ".join(filter(None, parts))
-
-
-def strength_told(answer: Response) -> Iterator[str]:
-    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
-    found = strength(answer)
-    if math.isnan(found.stress):
-        return
-    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
-        yield "no stress: nothing is turned, and no load acts"
-        return
-    at = _state(found.load_factor, found.rotation)
-    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
-    if found.safety is None:
-        return
-    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
-    if found.yields is None:
-        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
-    else:
-        where = _state(found.yields.load_factor, found.yields.rotation, 6).removeprefix("at ")
-        error = found.yields.error
-        known = f"estimated error {error:.1e}" if math.isfinite(error) else "error not estimated"
-        safety = f"safety {one(found.safety, 4)} against the yield strength{limit}"
-        yield f"{safety}: it yields from {where} on ({known})"
-
-
-def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
-    """Return which state it is, in degrees, or by its load."""
-    if math.isfinite(rotation) and abs(rotation) > ANGLE_FLOOR:
-        return f"at {math.degrees(rotation):.{digits}g} deg"
-    return f"at load factor {load_factor:.{digits}g}"
-
-
-def strength_document(answer: Response) -> dict[str, Any]:
-    """Return the largest stress and what of it the material bears, as JSON has it."""
-    found = strength(answer)
-    if math.isnan(found.stress):
-        return {}
-    error = found.yields and {"relative_error": found.yields.error}
-    return {
-        "max_stress_Pa": found.stress,
-        **keyed(found, "strip", "station", "load_factor", "rotation_rad", "yield_strength_Pa", "safety"),
-        "yields_from": error and keyed(found.yields, "load_factor", "rotation_rad") | error,
-    }
 
 
 def places(bodies: Mapping[str, Array]) -> dict[str, dict[str, Array]]:
@@ -256,26 +196,37 @@ def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def shown_of(case: str, answer: Answer) -> "Shown":
-    """Return an answer as pictures show it."""
-    from studies.pictures.shown import Shown
-
-    return Shown(name=called(case, answer), answer=answer)
-
-
-def draw(arguments: argparse.Namespace, shown: "list[Shown]") -> None:
-    """Draw answers over one another where `--plot` says, and say where they are."""
+def draw(arguments: argparse.Namespace, answers: Iterable[tuple[str, Answer]]) -> None:
+    """Draw answers with their cases over one another where `--plot` says, and say where they are."""
     from studies.pictures.page import picture  # only who asks for a picture waits for matplotlib
+    from studies.pictures.shown import Shown
     from studies.record.style import printed
 
     target = arguments.plot
+    shown = [Shown(name=called(case, answer), answer=answer) for case, answer in answers]
     try:
         write_whole(target, printed(picture(shown), target.suffix[1:].lower()))
     except BadInput as error:
         print(f"studies: {target}: nothing is drawn: {error}", file=sys.stderr)
     else:
-        taken = STREAM in (arguments.json, getattr(arguments, "csv", None))
-        print(f"{target}: the picture", file=sys.stderr if taken else sys.stdout)
+        print(f"{target}: the picture", file=_aside(arguments))
+
+
+def _export(arguments: argparse.Namespace, answer: Answer) -> None:
+    """Write an answer for other programs where `--export` says, and say what is there."""
+    from studies.exchange import files  # only who exports waits for it
+
+    folder, contents = arguments.export, files(answer)
+    require_writable_folder(folder)  # which makes it
+    for name, content in contents.items():
+        write_whole(folder / name, content)
+    said = f"{folder}: {len(answer.values)} states of {answer.analysis} in {len(contents)} files"
+    print(said, file=_aside(arguments))
+
+
+def _aside(arguments: argparse.Namespace) -> Any:
+    """Return the stream for what is not the answer: not the output where the answer stands alone."""
+    return sys.stderr if STREAM in (arguments.json, getattr(arguments, "csv", None)) else sys.stdout
 
 
 def called(case: str, answer: Any) -> str:

@@ -10,8 +10,7 @@ from studies.cases import keys
 from studies.cases.design import Design, read_design
 from studies.cases.document import nearest, present
 from studies.cases.problem import FOLDER
-from studies.commands import parser
-from studies.commands.parser import STREAM, Argument, positive, whole_number
+from studies.commands.parser import STREAM, Argument, as_in_file, names_of, positive, whole_number
 from studies.errors import BadInput
 from studies.record.files import PICTURES, require_writable_file
 from studies.record.source import HOME
@@ -41,6 +40,18 @@ def _writable_file(text: str) -> Path:
 def _file_or_stream(text: str) -> Path:
     """Parse a file that is to be written, or "-" for the output stream."""
     return STREAM if text == str(STREAM) else _writable_file(text)
+
+
+def _new_folder(text: str) -> Path:
+    """Parse a folder that is to be written, refused unless it is new or empty."""
+    folder = Path(text)
+    if folder.is_file():
+        raise BadInput(f"got the file {text}, expected a folder")
+    if not folder.is_dir():
+        return _writable_file(text)
+    if others := sorted(path.name for path in folder.iterdir()):
+        raise BadInput(f"got {text} with {others[0]} in it, expected a new or empty folder")
+    return folder
 
 
 def _picture_file(text: str) -> Path:
@@ -81,39 +92,23 @@ STRETCH = Argument(
     choices=("mixed", "consistent", "inextensible"),
 )
 #: The options of either discretisation; given for the other model one is refused rather than ignored.
-SPLINE = (
-    CONTROL_POINTS,
-    Argument("--axial-modes M", "axial-force modes a strip (spline; default N - 2)", int),
-    SEGMENTS,
-    MEASURE,
-    STRETCH,
-    Argument("--gauss-points G", "quadrature points of a segment (spline; default: degree + 3)", int),
-    Argument(
-        "--penalty-stiffness S",
-        "of the strains that the axial modes do not see, in EI/L^2 (spline; default: the model's)",
-        parser.not_negative,
-    ),
-)
+SPLINE = CONTROL_POINTS, SEGMENTS, MEASURE, STRETCH
 ELEMENTS = Argument("--elements N", "elements a strip (fe, fe-shear; default 20)", int)
 _WHAT = "spline (default), corotational or shear-deformable FE"
 _ONE = Argument("--model", _WHAT, choices=MODELS, default="spline")
 _SEVERAL = Argument(
     "--model LIST",
     f"{_WHAT}: spline, fe, fe-shear, or several with commas",
-    parser.names_of(MODELS),
+    names_of(MODELS),
     default=("spline",),
 )
-#: A design, a model and its settings; the same of one model or several.
+#: Models and their settings, of one model or several; a design, a model and its settings.
+MODELS_OF = EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 MODEL = CASE, EFFECTS, _ONE, *SPLINE, ELEMENTS
-SEVERAL_MODELS = CASE, EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
 
-ROTATION = Argument(
-    "--rotation-deg X", read=lambda text: keys.ROTATION.parse(parser.degrees(text)), dest="rotation"
-)
+ROTATION = Argument("--rotation-deg X", read=as_in_file(keys.ROTATION), dest="rotation")
 INCREMENTS = Argument(
-    "--increments K",
-    "increments of the path (default: the case's)",
-    parser.reads(keys.INCREMENTS.expected, lambda text: keys.INCREMENTS.parse(int(text))),
+    "--increments K", "increments of the path (default: the case's)", as_in_file(keys.INCREMENTS, int)
 )
 ACCURACY = Argument("--accuracy A", read=positive)
 COUNT = Argument("--count C", "number of modes, default 10", whole_number(1), default=10)
@@ -140,9 +135,14 @@ PLOT = Argument(
     "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
     _picture_file,
 )
+EXPORT = Argument(
+    "--export FOLDER",
+    "write shapes and section forces of all states there, as VTK and CSV (default: no files)",
+    _new_folder,
+)
 OUT = Argument("--out FOLDER", read=Path)
 OUT_FILE = Argument("--out FILE", read=_writable_file)
-NAMES = Argument("names NAME", "studies, groups, or all; `list` names them", nargs="+")
+NAMES = Argument("names NAME", "studies, groups, or all; `status` names them", nargs="+")
 RESULTS = Argument(
     "--results FOLDER",
     "folder of tables and figures, default results/ of the clone, or of the current folder without a clone",
@@ -172,33 +172,20 @@ def turned_design(arguments: argparse.Namespace, why: str) -> Design:
 
 
 def chosen_settings(arguments: argparse.Namespace) -> list[Settings]:
-    """Return the settings of every chosen model; an option that none of them has is an error."""
+    """Return the settings of every chosen model; BadInput for an option that none of them has."""
     models = [arguments.model] if isinstance(arguments.model, str) else arguments.model
-    points, elements = tuple(each.name for each in SPLINE), (ELEMENTS.name,)
-    if "spline" not in models:
-        refuse(arguments, points, elements)
-    elif set(models) == {"spline"}:
-        refuse(arguments, elements, points)
-    found = []
-    for model in models:
-        own = points if model == "spline" else elements
-        given = {name: value for name in own if (value := getattr(arguments, name)) is not None}
-        found.append(settings_of_model(model, **given))
-    return found
-
-
-def refuse(arguments: argparse.Namespace, unusable: tuple[str, ...], usable: tuple[str, ...]) -> None:
-    """Raise BadInput if an option was given that the chosen model cannot use.
-
-    Args:
-        arguments: of the command.
-        unusable, usable: options of the other model and of this one.
-    """
-    for name in unusable:
-        if getattr(arguments, name) is not None:
-            expected = ", ".join(map(option, usable))
-            model = arguments.model if isinstance(arguments.model, str) else ",".join(arguments.model)
-            raise BadInput(f"{option(name)}: got it with --model {model}, expected only {expected}")
+    options = {model: SPLINE if model == "spline" else (ELEMENTS,) for model in models}
+    usable = dict.fromkeys(each for own in options.values() for each in own)
+    for each in (*SPLINE, ELEMENTS):
+        if each not in usable and getattr(arguments, each.name) is not None:
+            expected = f"only {', '.join(option(own.name) for own in usable)}"
+            raise BadInput(
+                f"{option(each.name)}: got it with --model {','.join(models)}, expected {expected}"
+            )
+    return [
+        settings_of_model(model, **{e.name: v for e in own if (v := getattr(arguments, e.name)) is not None})
+        for model, own in options.items()
+    ]
 
 
 def option(name: str) -> str:

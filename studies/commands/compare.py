@@ -30,7 +30,7 @@ from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.cases.effects import INERTIA
 from studies.commands import arguments as take
-from studies.commands.answer import called, deliver, draw, headed, not_estimated, shown_of
+from studies.commands.answer import called, deliver, draw, headed, not_estimated
 from studies.commands.columns import plain, significant, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
@@ -106,7 +106,7 @@ def _values(answer: Response) -> dict[str, Any]:
         take.CASE.read,
         nargs="+",
     ),
-    *(each for each in take.SEVERAL_MODELS if each is not take.CASE),
+    *take.MODELS_OF,
     take.ROTATION.but("end of the paths, in deg (default: the cases')"),
     take.INCREMENTS,
     take.ACCURACY.but("wanted relative error of the paths, as of `solve` (default: that of `solve`)"),
@@ -122,7 +122,7 @@ def main(arguments: argparse.Namespace) -> int:
     with Bar("compare") as bar:
         found = [_solved(case, settings, arguments) for case, settings in watched(asked, bar)]
     if arguments.plot is not None and all(len(each.path.load_factor) for each in found):
-        draw(arguments, [shown_of(each.case, each.path) for each in found])
+        draw(arguments, [(each.case, each.path) for each in found])
     failed = (f"{LETTERS[k]}: {e.path.message}" for k, e in enumerate(found) if not e.path.converged)
     document = {"designs": [_document(each) for each in found]}
     return deliver(arguments, document, _readable(found), failure="; ".join(failed))

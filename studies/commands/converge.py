@@ -56,9 +56,6 @@ def _counts(low: int) -> Callable[[str], tuple[int, int]]:
     take.ELEMENTS.but(
         "of the meshes, by doubling, default 5:160", read=_counts(1), default=(5, 160), metavar="A:B"
     ),
-    take.SEGMENTS.but(default=1),
-    take.MEASURE.but(choices=("material", "spatial"), default="material"),
-    take.STRETCH.but(default="mixed"),
     take.OUT.but("of tables and figure (default: results/designs/<name of the case>)"),
 )
 def main(arguments: argparse.Namespace) -> int:
@@ -67,8 +64,7 @@ def main(arguments: argparse.Namespace) -> int:
     problem = take.turned_design(arguments, "rotation to relate errors to")
     meshes = _doubled(*arguments.elements)
     first, last = arguments.control_points
-    form = {name: getattr(arguments, name) for name in ("segments", "measure", "stretch")}
-    settings = [SplineSettings(control_points=count, **form) for count in range(first, last + 1)]
+    settings = [SplineSettings(control_points=count) for count in range(first, last + 1)]
     output = arguments.out or HOME / "results" / "designs" / Path(arguments.case).stem
     require_writable_folder(output)
     try:

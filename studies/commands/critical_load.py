@@ -1,9 +1,9 @@
 """Find the critical load of a pivot or mechanism: the force in one direction at which it loses stability.
 
     python -m studies critical-load cross_axis_pivot --force-direction-deg -90
-    python -m studies critical-load parallel_strip_guide --force-direction-deg -90 --held --model spline,fe
+    python -m studies critical-load parallel_strip_guide --force-direction-deg -90 --held
 
-A dead force acts at the centre of the body of the case or of --body. Its direction is an angle from x to y in
+A dead force acts at the centre of the body of the case. Its direction is an angle from x to y in
 the axes of the ground. The force is raised from zero until stability is lost at a bifurcation or a limit
 point, up to twice the Euler loads of the strips that bear the body. Strips side by side are added up; of
 strips in a row the weakest counts. The rotation of the body is free, so that it may tip over, or --held.
@@ -12,10 +12,8 @@ and pre-strain alone is checked first.
 
 A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
 error, as that of the rotation. Without --control-points the spline takes more control points until the force
-settles; elements are doubled until three meshes agree, and their limit is taken. If three discretisations
-find no critical load, the force at which the rotation passes 5 degrees and the force at first yield are
-printed. Exit code 0: a critical load, or none up to the largest force; 2: bad input; 3: not resolved, the
-discretisations disagree.
+settles; elements are doubled until three meshes agree, and their limit is taken. Exit code 0: a critical
+load, or none up to the largest force; 2: bad input; 3: not resolved, the discretisations disagree.
 """
 
 import argparse
@@ -23,7 +21,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from studies.answers.critical import AGREED, UNSTABLE, CriticalLoad, critical_load
+from studies.answers.critical import UNSTABLE, CriticalLoad, critical_load
 from studies.answers.settings import Settings
 from studies.commands import answer as tell
 from studies.commands import arguments as take
@@ -36,7 +34,7 @@ DIGITS, NO_TURN = 6, 1e-3
 
 
 @command(
-    *take.SEVERAL_MODELS,
+    *take.MODEL,
     Argument(
         "--force-direction-deg X",
         "of the force, in deg from x to y, default -90: down",
@@ -45,13 +43,12 @@ DIGITS, NO_TURN = 6, 1e-3
         default=-90.0,
     ),
     take.HELD.but("hold the rotation of the body (default: it is free)"),
-    Argument("--body NAME", "that the force acts on (default: the case's)"),
     take.JSON,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Raise the force and report; return the exit code."""
     design = take.chosen_design(arguments)
-    how = {"direction": math.radians(arguments.direction), "held": arguments.held, "body": arguments.body}
+    how = {"direction": math.radians(arguments.direction), "held": arguments.held}
 
     def ask(settings: Settings, bar: Bar) -> CriticalLoad:
         return critical_load(design, settings, **how)
@@ -75,23 +72,14 @@ def _document(found: CriticalLoad) -> dict[str, Any]:
         "borne_N": found.reached,
         "rotation_rad": found.turned,
         "rotation_error_rad": found.turned_error,
-        "rotation_5_deg_N": found.soft,
-        "yield_N": found.yields,
-        "soft_relative_error": found.softer,
     }
 
 
-def _readable(found: list[CriticalLoad]) -> Iterator[str]:
-    """Yield the verdict of every model, and how far they are apart."""
-    for each in found:
-        yield tell.described(each)
-        way = f"force at {math.degrees(each.direction):g} deg, rotation {'held' if each.held else 'free'}"
-        yield f"{way}: {_verdict(each)}"
-        if each.converged and each.force is None:
-            yield _softening(each)
-    for each in found[1:]:
-        if (apart := _apart(found[0], each)) is not None:
-            yield f"{each.model} differs from {found[0].model} by {apart}"
+def _readable(found: CriticalLoad) -> Iterator[str]:
+    """Yield the model and its verdict."""
+    yield tell.described(found)
+    way = f"force at {math.degrees(found.direction):g} deg, rotation {'held' if found.held else 'free'}"
+    yield f"{way}: {_verdict(found)}"
 
 
 def _verdict(found: CriticalLoad) -> str:
@@ -108,29 +96,3 @@ def _verdict(found: CriticalLoad) -> str:
     else:
         said = f"buckles at {one(found.force, DIGITS)} N{turned} ({found.kind})"
     return f"{said}, estimated error {found.uncertainty:.1e}"
-
-
-def _softening(found: CriticalLoad) -> str:
-    """Return where a design without a critical load turns too far and yields."""
-    soft = "the rotation stays below 5 deg"
-    if found.held:
-        soft = "the rotation is held"
-    elif found.soft is not None:
-        soft = f"the rotation passes 5 deg at {one(found.soft, DIGITS)} N"
-    yields = "no strip yields, or the yield strength is not given"
-    if found.yields is not None:
-        yields = f"first yield at {one(found.yields, DIGITS)} N"
-    error = f", estimated error {found.softer:.1e}" if math.isfinite(found.softer) else ""
-    return f"{soft}; {yields}{error}"
-
-
-def _apart(one_model: CriticalLoad, other: CriticalLoad) -> str | None:
-    """Return how far two models are apart; None where one of them is not resolved."""
-    if not (one_model.converged and other.converged):
-        return None
-    if one_model.kind == other.kind == "":
-        return None
-    apart = abs(other.value / one_model.value - 1.0) if one_model.value else math.inf
-    if (one_model.kind == UNSTABLE) != (other.kind == UNSTABLE) or not apart <= AGREED:
-        return f"its verdict: {other.verdict} against {one_model.verdict}"
-    return f"{apart:.1e}"

@@ -45,6 +45,7 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
     ),
     take.JSON,
     take.PLOT,
+    take.EXPORT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
@@ -72,9 +73,8 @@ def _document(answer: Spectrum) -> dict[str, Any]:
     }
 
 
-def _readable(answers: list[Spectrum]) -> Iterator[str]:
+def _readable(answer: Spectrum) -> Iterator[str]:
     """Yield the lines of a short table."""
-    (answer,) = answers
     yield tell.described(answer)
     yield "displacement of the body at unit modal mass"
     shapes = zip(("x", "y", "rotation"), SHAPE_UNITS, answer.body_shapes.T, strict=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from studies.cases.document import nearest, present
-from studies.cases.rules import number
+from studies.cases.rules import Rule, number
 from studies.errors import BadInput
 
 #: What stands for the output stream in place of a file.
@@ -50,12 +50,11 @@ class Argument:
         usage: its name and that of its value, as "--step S"; an option without a value, or choices, is a
             switch.
         said: of it in the help. read: what makes a value of its text.
-        group: heading that it stands under in the help.
         keywords: of `ArgumentParser.add_argument` beside these.
     """
 
-    def __init__(self, usage: str, said: str = "", read: Any = None, *, group: str = "", **keywords: Any):
-        self.usage, self.said, self.read, self.group, self.keywords = usage, said, read, group, keywords
+    def __init__(self, usage: str, said: str = "", read: Any = None, **keywords: Any):
+        self.usage, self.said, self.read, self.keywords = usage, said, read, keywords
 
     @property
     def name(self) -> str:
@@ -64,11 +63,11 @@ class Argument:
 
     def but(self, said: str = "", **changed: Any) -> "Argument":
         """Return the same argument, with what else is to be known of it here."""
-        given = {"said": said or self.said, "read": self.read, "group": self.group} | self.keywords
+        given = {"said": said or self.said, "read": self.read} | self.keywords
         return Argument(self.usage, **given | changed)
 
-    def add_to(self, parser: Any) -> None:
-        """Add it to a parser, or to a group of one."""
+    def add_to(self, parser: Parser) -> None:
+        """Add it to a parser."""
         name, _, value = self.usage.partition(" ")
         known: dict[str, Any] = {"help": self.said}
         known |= {"type": self.read} if self.read else {}
@@ -89,11 +88,8 @@ class Command:
     def parser(self, name: str, text: str | None) -> Parser:
         """Return the parser of the command of that name, which `text` explains."""
         parser = Parser(prog=f"python -m studies {name}", description=text)
-        groups: dict[str, Any] = {"": parser}
         for each in self.takes:
-            if each.group not in groups:
-                groups[each.group] = parser.add_argument_group(each.group)
-            each.add_to(groups[each.group])
+            each.add_to(parser)
         return parser
 
 
@@ -126,15 +122,13 @@ def whole_number(low: int) -> Callable[[str], int]:
     return reads(f"a whole number of at least {low}", value_of)
 
 
-def _number(expected: str, **limits: Any) -> Callable[[str], float]:
-    """Return a parser of finite numbers that a rule with these limits admits."""
-    rule = number(f"a finite number {expected}", **limits)
-    return reads(rule.expected, lambda text: rule.parse(float(text)))
+def as_in_file(rule: Rule, kind: Callable[[str], Any] = float) -> Callable[[str], Any]:
+    """Return a parser of numbers of a kind that a rule of case files admits."""
+    return reads(rule.expected, lambda text: rule.parse(kind(text)))
 
 
-degrees = _number("of degrees")
-positive = _number("above 0", low=0.0)
-not_negative = _number("of at least 0", low=0.0, closed="low")
+degrees = as_in_file(number("a finite number of degrees"))
+positive = as_in_file(number("a finite number above 0", low=0.0))
 
 
 def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:

@@ -47,12 +47,8 @@ from studies.cases.effects import DEFAULT
 from studies.commands import answer as tell
 from studies.commands import arguments as take
 from studies.commands.columns import angle, plain, quantity, table
-from studies.commands.parser import Argument, command, whole_number
+from studies.commands.parser import Argument, command
 from studies.record.progress import Bar
-
-#: Options of the motion that only the finite elements have, and those of both models.
-FE_OPTIONS = ("most_steps",)
-OPTIONS = ("step", "integrator", "accuracy")
 
 #: Parts of an estimate that are angles [rad].
 ANGLES = ("accuracy", "rotation", "time", "space")
@@ -85,26 +81,19 @@ LINES = 20
         "(splines; default: none is asked for)"
     ),
     Argument("--no-check", "omit the companion motions that estimate the resolution"),
-    Argument(
-        "--most-steps N",
-        "explicit steps that are not too many to begin with (finite elements; default 20000000)",
-        whole_number(1),
-    ),
     take.JSON,
     take.PLOT,
+    take.EXPORT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Release and report; return the exit code."""
     design, start = take.chosen_design(arguments), arguments.rotation
 
     def ask(settings: Settings, bar: Bar) -> Motion:
-        if settings.model == "spline":
-            take.refuse(arguments, FE_OPTIONS, OPTIONS)
-        options = {name: getattr(arguments, name) for name in (*OPTIONS, *FE_OPTIONS)}
-        duration, options["step"] = _pace(arguments, design, settings)
-        return answer_release(
-            design, settings, start=start, duration=duration, check=not arguments.no_check, **options
-        )
+        duration, step = _pace(arguments, design, settings)
+        how = {"step": step, "integrator": arguments.integrator, "accuracy": arguments.accuracy}
+        check = not arguments.no_check
+        return answer_release(design, settings, start=start, duration=duration, check=check, **how)
 
     return tell.asked(arguments, ask, _document, _readable)
 
@@ -186,9 +175,8 @@ def _document(answer: Motion) -> dict[str, Any]:
     }
 
 
-def _readable(answers: list[Motion]) -> Iterator[str]:
+def _readable(answer: Motion) -> Iterator[str]:
     """Yield the lines of a short table: a few of the instants, of the released body."""
-    (answer,) = answers
     yield tell.described(answer)
     last, scale = len(answer.time) - 1, flexural_scale(answer.design)
     shown = sorted({round(last * part / LINES) for part in range(LINES + 1)} if last >= 0 else ())

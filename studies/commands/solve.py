@@ -3,7 +3,6 @@
     python -m studies solve cross_axis_pivot --control-points 8
     python -m studies solve cross_axis_pivot --model fe --elements 40 --json -
     python -m studies solve four_bar_of_flexures --effects=-gravity --plot four_bar.svg --csv path.csv
-    python -m studies solve cross_axis_pivot --model spline,fe
 
 Of a pivot coordinates have their origin at A1, the ground clamp of strip 1; rotation is counter-clockwise.
 Control points of the spline are added until the estimated error of path, torque, stiffness, stress and
@@ -21,23 +20,23 @@ stiffness of the body is the change of forces and moment at its centre by its x,
 the ground, the other two held, loads fixed and drives released; "x over" and "y over" are those of x and y
 times the square of a strip's length over the stiffness of the rotation. It is shown at some of the states,
 and of all of them in JSON and CSV. If the case defines `yield_strength_Pa`, the output includes the safety
-factor and the rotation or load at first yield. Several models, as in --model spline,fe, are solved one after
-another, with their largest differences over the path, relative to the largest value of the first model.
+factor and the rotation or load at first yield.
 """
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from studies.answers.adapters import answer_static
-from studies.answers.metrics import differences
 from studies.answers.named import quantities_of
+from studies.answers.quantities import QUANTITIES
 from studies.answers.response import Response
 from studies.answers.settings import Settings
+from studies.answers.strength import strength
 from studies.answers.validity import validity
 from studies.cases.effects import GROWING
 from studies.commands import answer as tell
@@ -67,7 +66,7 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
 
 
 @command(
-    *take.SEVERAL_MODELS,
+    *take.MODEL,
     take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
     take.ACCURACY.but(
@@ -78,6 +77,7 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
     take.JSON,
     take.CSV,
     take.PLOT,
+    take.EXPORT,
 )
 def main(arguments: argparse.Namespace) -> int:
     """Solve and report; return the exit code."""
@@ -86,12 +86,7 @@ def main(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> Response:
         return answer_static(design, settings, accuracy=arguments.accuracy, progress=bar)
 
-    return tell.asked(arguments, ask, _document, _table, stopped=_stopped, beside=_differences, frame=_frame)
-
-
-def _differences(answers: Sequence[Response]) -> dict[str, Any]:
-    """Return the differences of all answers from the first, as JSON has them."""
-    return {"differences": {each.model: differences(each, answers[0]) for each in answers[1:]}}
+    return tell.asked(arguments, ask, _document, _readable, stopped=_stopped, frame=_frame)
 
 
 def _stopped(answer: Response) -> str:
@@ -111,27 +106,14 @@ def _stopped(answer: Response) -> str:
     return f"{reached}{answer.message}{mend}"
 
 
-def _frame(answers: Sequence[Response]) -> "pd.DataFrame":
+def _frame(answer: Response) -> "pd.DataFrame":
     """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
     import pandas as pd  # only who asks for a table waits for it
 
-    tables = []
-    for answer in answers:
-        found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
-        for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
-            found |= {f"{name}_{key}": column for key, column in place.items()}
-        tables.append(pd.DataFrame(found))
-    return pd.concat(tables)
-
-
-def _table(answers: Sequence[Response]) -> Iterator[str]:
-    """Yield the lines to read: every answer, and how far those after the first are from it."""
-    for answer in answers:
-        yield from _readable(answer)
-        yield from [""] * (len(answers) > 1)
-    for model, apart in _differences(answers)["differences"].items():
-        told = (f"{name.replace('_', ' ')} {value:.1e}" for name, value in apart.items() if value is not None)
-        yield f"{model} differs from {answers[0].model} by: {', '.join(told)}"
+    found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
+    for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
+        found |= {f"{name}_{key}": column for key, column in place.items()}
+    return pd.DataFrame(found)
 
 
 def _arrays(answer: Response) -> dict[str, Array]:
@@ -173,7 +155,7 @@ def _document(answer: Response) -> dict[str, Any]:
         "critical_points": _critical(answer),
         **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         **_arrays(answer),
-        "strength": tell.strength_document(answer),
+        "strength": _strength(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
         **tell.keyed(answer, "counters", "wall_s"),
@@ -213,7 +195,7 @@ def _readable(answer: Response) -> Iterator[str]:
         body = answer.body if answer.crossing is None else "the body"
         yield f"stiffness of {body} about its centre at fixed loads, and over that of the rotation"
         yield from columns.table(list(_body_columns(answer)))
-    yield from tell.strength_told(answer)
+    yield from _strength_told(answer)
     # of yield the strength has told
     yield from (f"warning: {each}" for each in validity(answer).outside)
     yield from tell.estimated(answer)
@@ -270,3 +252,46 @@ def _body_columns(answer: Response) -> Iterator[Column]:
     yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
     for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
         yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
+
+
+def _strength_told(answer: Response) -> Iterator[str]:
+    """Yield where the stress is largest and what of it the material bears; round-off is no stress."""
+    found = strength(answer)
+    if math.isnan(found.stress):
+        return
+    if found.stress < next(q for q in QUANTITIES if q.unit == "Pa").least(answer.design):
+        yield "no stress: nothing is turned, and no load acts"
+        return
+    at = _state(found.load_factor, found.rotation)
+    yield f"largest stress {one(found.stress / 1e6, 5)} MPa, of {found.strip} {found.place}, {at}"
+    if found.safety is None:
+        return
+    limit = f" of {one(found.yield_strength / 1e6, 4)} MPa" if found.yield_strength is not None else ""
+    if found.yields is None:
+        yield f"safety {one(found.safety, 4)} against the yield strength{limit}, which is not reached"
+    else:
+        where = _state(found.yields.load_factor, found.yields.rotation, 6).removeprefix("at ")
+        error = found.yields.error
+        known = f"estimated error {error:.1e}" if math.isfinite(error) else "error not estimated"
+        safety = f"safety {one(found.safety, 4)} against the yield strength{limit}"
+        yield f"{safety}: it yields from {where} on ({known})"
+
+
+def _state(load_factor: float, rotation: float, digits: int = 4) -> str:
+    """Return which state it is, in degrees, or by its load."""
+    if math.isfinite(rotation) and abs(rotation) > columns.ANGLE_FLOOR:
+        return f"at {math.degrees(rotation):.{digits}g} deg"
+    return f"at load factor {load_factor:.{digits}g}"
+
+
+def _strength(answer: Response) -> dict[str, Any]:
+    """Return the largest stress and what of it the material bears, as JSON has it."""
+    found = strength(answer)
+    if math.isnan(found.stress):
+        return {}
+    error = found.yields and {"relative_error": found.yields.error}
+    return {
+        "max_stress_Pa": found.stress,
+        **tell.keyed(found, "strip", "station", "load_factor", "rotation_rad", "yield_strength_Pa", "safety"),
+        "yields_from": error and tell.keyed(found.yields, "load_factor", "rotation_rad") | error,
+    }

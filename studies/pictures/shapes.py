@@ -12,7 +12,6 @@ from matplotlib.lines import Line2D
 from studies.answers.answer import Answer
 from studies.answers.motion import Spectrum
 from studies.cases.keys import GROUND
-from studies.exchange.vtk import mode_scale
 from studies.kinds import Array
 from studies.record import style
 from studies.record.style import BLACK, BLUE, GREEN, Look
@@ -54,7 +53,7 @@ def modes(answer: Spectrum, look: Look) -> Figure:
         panel.set_axis_off()
     for state, panel in enumerate(panels[:count]):
         still, centres = answer.along.shape[state], answer.along.bodies[state, :, :2]
-        scale = mode_scale(answer, state)
+        scale = answer.scale_of(state)
         moved = still + scale * answer.mode_shape[state], centres + scale * answer.mode_bodies[state, :, :2]
         _at_rest(panel, answer, still, centres)
         _deformed(panel, answer, *moved, **_line(look))

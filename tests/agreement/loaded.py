@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from studies.answers.models import fields_along, put
+from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import DEFAULT, Effects
@@ -124,7 +124,7 @@ def solution(asked: Design, settings: Settings) -> tuple[Any, Any]:
     """Return the model's own answer for the static path, and its fields along the strips."""
     posed = put(asked, settings)
     found = posed.static_path()
-    return found, fields_along(settings, "static")(posed.modelled, found.states)
+    return found, posed.fields(found, found.states, "static")
 
 
 def state(asked: Design, settings: Settings) -> State:

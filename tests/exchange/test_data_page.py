@@ -12,8 +12,7 @@ from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES
 from studies.cases.design import named_design, read_design
 from studies.cases.problem import FOLDER
-from studies.exchange.formats import tables
-from studies.exchange.vtk import mesh
+from studies.exchange import mesh, tables
 from studies.record.source import ROOT
 from studies.record.store import RESULTS
 from tests.exchange.test_files import solved

@@ -1,7 +1,6 @@
 """What is exported reads back as it was solved, in full or not at all."""
 
 import io
-import json
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -17,10 +16,7 @@ from studies.answers.adapters import answer_modes, answer_release, answer_static
 from studies.answers.answer import Answer
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.cases.design import named_design
-from studies.exchange.formats import FORMATS, tables
-from studies.exchange.vtk import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, mesh, mode_scale
-
-SMALL = ["--increments", "2"]
+from studies.exchange import BODY_ARM, BODY_CENTRE, CLAMP, STRIP, files, mesh, tables
 
 
 @cache
@@ -49,8 +45,8 @@ KINDS = pytest.mark.parametrize("kind", ["static", "mechanism", "loads", "modes"
 def test_vtk_reads_back(kind, tmp_path):
     """Every .vtu holds its state, and the .pvd names them in order with their times."""
     found = solved(kind)
-    files = FORMATS["vtk"](found)
-    for name, content in files.items():
+    written = {name: content for name, content in files(found).items() if not name.endswith(".csv")}
+    for name, content in written.items():
         (tmp_path / name).write_bytes(content)
     series = ElementTree.parse(tmp_path / f"{found.analysis}.pvd").getroot().findall("Collection/DataSet")
     assert [float(each.attrib["timestep"]) for each in series] == pytest.approx(found.values)
@@ -62,7 +58,7 @@ def test_vtk_reads_back(kind, tmp_path):
             assert np.array_equal(read.point_data[name], values, equal_nan=True), name
         for name, values in made.cell_data.items():
             assert np.array_equal(np.concatenate(read.cell_data[name]), np.concatenate(values)), name
-    assert len(series) == len(files) - 1 == len(found.values)
+    assert len(series) == len(written) - 1 == len(found.values)
 
 
 @KINDS
@@ -73,7 +69,7 @@ def test_mesh_holds_what_was_solved(kind):
     along, moves = found.along, found.analysis == "modes"
     strips, stations = along.rotation.shape[1:]
     count = strips * stations
-    mode = mode_scale(found, last) * found.mode_shape[last] if moves else 0.0
+    mode = found.scale_of(last) * found.mode_shape[last] if moves else 0.0
     assert made.points[:count, :2] == pytest.approx((along.shape[last] + mode).reshape(-1, 2))
     assert not made.points[:, 2].any()
     rest = made.points[:count, :2] - made.point_data["displacement_m"][:count, :2]
@@ -91,60 +87,44 @@ def test_mesh_holds_what_was_solved(kind):
     assert (kinds == BODY_CENTRE).sum() == len(found.design.bodies)
     assert (kinds == BODY_ARM).sum() == len(carried)
     assert (kinds == CLAMP).sum() == len(clamped)
-    assert np.concatenate(made.cell_data["mass_kg"])[kinds == BODY_CENTRE].sum() == pytest.approx(
-        sum(body.mass for body in found.design.bodies)
-    )
     total = made.point_data["reaction_force_N"].sum(axis=0)[:2]
     assert total == pytest.approx(along.reactions[last, ..., :2].sum(axis=(0, 1)))
 
 
 @KINDS
-def test_tables_agree_in_every_format(kind):
-    """CSV and Parquet hold the same tables."""
+def test_tables_read_back(kind):
+    """CSV holds the tables as they are."""
     found = solved(kind)
-    files, name = FORMATS["csv"](found) | FORMATS["parquet"](found), found.analysis
+    written = files(found)
     for table, frame in tables(found).items():
-        pd.testing.assert_frame_equal(pd.read_csv(io.BytesIO(files[f"{name}_{table}.csv"])), frame)
-        pd.testing.assert_frame_equal(pd.read_parquet(io.BytesIO(files[f"{name}_{table}.parquet"])), frame)
+        read = pd.read_csv(io.BytesIO(written[f"{found.analysis}_{table}.csv"]))
+        pd.testing.assert_frame_equal(read, frame)
     rows = tables(found)["strips"]
     assert len(rows) == found.along.axial_force.size
     assert rows["axial_force_N"].to_numpy() == pytest.approx(found.along.axial_force.ravel())
 
 
-def export(folder: Path, *options: str) -> int:
-    return main(["export", "cross_axis_pivot", "--model", "spline", "--out", str(folder), *SMALL, *options])
+def solve(folder: Path, *options: str) -> int:
+    return main(["solve", "cross_axis_pivot", "--increments", "2", "--export", str(folder), *options])
 
 
-def test_command_writes_what_is_asked_for(tmp_path, capsys):
-    """The command writes the formats it is asked for, and names the files in a manifest."""
-    assert export(tmp_path / "new" / "out", "--formats", "vtk,csv") == 0
-    written = {path.name for path in (tmp_path / "new" / "out").iterdir()}
+def test_command_writes_series_and_tables(tmp_path, capsys):
+    """The command writes a series and tables, and names the folder; a folder with anything in it is refused
+    untouched."""
+    assert solve(tmp_path / "new") == 0
+    written = {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()}
     expected = {"static.pvd", "static_0000.vtu", "static_0001.vtu", "static_0002.vtu"}
-    expected |= {f"static_{table}.csv" for table in ("states", "strips", "bodies", "reactions")}
-    assert written == expected | {"export.json"}
-    manifest = json.loads((tmp_path / "new" / "out" / "export.json").read_text())
-    assert set(manifest["files"]) == written - {"export.json"}
+    assert written.keys() == expected | {
+        f"static_{table}.csv" for table in ("states", "strips", "bodies", "reactions")
+    }
     assert "3 states" in capsys.readouterr().out
-
-
-def test_a_former_export_is_replaced_whole(tmp_path):
-    """A second export leaves no file of the first; a folder with anything else in it is refused untouched."""
-    assert export(tmp_path / "out", "--formats", "vtk") == 0
-    assert export(tmp_path / "out", "--formats", "csv", "--increments", "1") == 0
-    assert not list((tmp_path / "out").glob("*.vtu"))
-    (tmp_path / "out" / "notes.txt").write_text("mine")
-    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
-    assert export(tmp_path / "out") == 2
-    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+    assert solve(tmp_path / "new", "--model", "fe") == 2
+    assert {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()} == written
 
 
 def test_a_path_that_stops_is_exported_as_far_as_it_goes(tmp_path, capsys):
     """The part that a finer mesh has too of a path that stops is written, with exit code 3 and why."""
-    options = ["--model", "fe", "--elements", "2", "--rotation-deg", "350", "--increments", "2"]
-    code = main(["export", "cross_axis_pivot", *options, "--out", str(tmp_path / "out"), "--formats", "csv"])
-    assert code == 3
+    options = ["--model", "fe", "--elements", "2", "--rotation-deg", "350"]
+    assert solve(tmp_path / "out", *options) == 3
     assert "not converged" in capsys.readouterr().err
-    document = json.loads((tmp_path / "out" / "export.json").read_text())
-    assert document["status"] == "not_converged"
-    assert document["message"]
     assert pd.read_csv(tmp_path / "out" / "static_states.csv")["load_factor"].tolist() == [0.0]

@@ -10,7 +10,7 @@ import pytest
 from studies.answers.adapters import answer_release, answer_static
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.cases.design import Design, named_design, read_design
-from studies.exchange.formats import tables
+from studies.exchange import tables
 from tests import gates
 from tests.one_strip import one_strip
 

@@ -24,7 +24,6 @@ QUICK = (
     "modes {case}{mass} --model fe --elements 8 --count 4",
 )
 SLOW = (
-    "solve {case} --model spline,fe --elements 8 --increments 4",
     "solve {case} --control-points 6 --increments 4 --measure spatial --stretch consistent",
     "solve {case} --model fe --elements 5 --increments 4 --accuracy 1e-2",
     "modes {case}{mass} --count 4",
@@ -57,7 +56,6 @@ UNREPEATABLE = (
     "audit polymer_pivot",
     "modes parallelogram.toml --effects=+strip_inertia --control-points 6 --rotation-deg 5",
     "size large_steel_pivot",
-    "solve own_weight.toml --model spline,fe",
 )
 #: Asked of a pivot and a mechanism: each starts a process.
 SWEPT = ("cross_axis_pivot", "parallel_strip_guide")

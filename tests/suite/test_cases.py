@@ -350,15 +350,6 @@ def test_modes_of_strips_alone(model, pulled_strip, command):
 
 @pytest.mark.parametrize("model", ["fe", "fe-shear", "spline"])
 def test_release_of_strips_alone_is_refused(model, pulled_strip, refused):
-    """A release reports the swing of a body: without one it is refused in one line that says what can be."""
-    text = "studies: bodies: got none, expected a body whose motion is computed; `export"
+    """A release reports the swing of a body: without one it is refused in one line."""
+    text = "studies: bodies: got none, expected a body whose motion is computed"
     assert refused("release", pulled_strip, "--model", model, says=text).startswith(text)
-
-
-@pytest.mark.parametrize("model", ["fe", "fe-shear"])
-def test_motion_of_strips_alone_is_exported(model, pulled_strip, command, tmp_path):
-    """The motion of strips alone is written."""
-    words = ("--model", model, "--elements", 4, "--analysis", "release", "--duration", 1e-5, "--records", 2)
-    ended = command("export", pulled_strip, *words, "--formats", "csv", "--out", tmp_path / "out")
-    assert ended.code == 0
-    assert list((tmp_path / "out").glob("release_strips.csv"))

@@ -132,7 +132,7 @@ def test_every_command_answers_one_design_to_the_accuracy(pivot, command, tmp_pa
     row = row_of(case=str(pivot), vary={"strip": {"crossing_ratio": [STEEP["crossing_ratio"]]}})
     assert apart(row, good) < ACCURACY
     assert row["estimated_error"] <= ACCURACY and row["reason"] == ""
-    outcome = command("export", pivot, "--out", tmp_path / "out", "--formats", "csv")
+    outcome = command("solve", pivot, "--export", tmp_path / "out")
     assert "estimated error: trajectory" in outcome.out
     (exported,) = (tmp_path / "out").glob("static_states.csv")
     assert f"{good['torque_Nm']:.4g}"[:4] in exported.read_text()

@@ -14,13 +14,13 @@ from spline_model import cross_axis_pivot, impulse_solver
 from studies.__main__ import command_of, main
 from studies.cases.problem import FOLDER
 from studies.commands.arguments import ROTATION
-from studies.commands.parser import Parser, degrees, not_negative, positive
+from studies.commands.parser import Parser, degrees, positive
 from studies.record.source import ROOT
 from studies.registry import COMMANDS, selected
 from tests.table_one import TABLE_ONE
 
 #: Commands whose examples take a second or two; those of all others run with the slow tests.
-QUICK = ("solve", "modes", "export", "case", "markers", "list")
+QUICK = ("solve", "modes", "case", "markers")
 #: Examples, by how they begin, that are parsed and not run, and why.
 PARSED = {
     "run paper": "takes minutes, and `make results` runs it",
@@ -34,7 +34,7 @@ PARSED = {
 #: What an example is run with beside its own words, so that it writes only here.
 BESIDE = {name: ["--results", "results"] for name in ("run", "draw", "verify")}
 
-NUMBERS = (float, positive, not_negative, degrees, ROTATION.read)
+NUMBERS = (float, positive, degrees, ROTATION.read)
 UNIT = re.compile(r"\bin (s|deg|rad|m|mm|MPa|N m/rad|EI/L\^2)\b|\brelative\b|\bin s or rad\b")
 
 
@@ -165,9 +165,8 @@ SOLVE = "solve silicon_pivot --control-points 5 --rotation-deg 5"
 #: Arguments with a former name, and the same arguments with the present name.
 FORMER = {
     "capacity silicon_pivot": "critical-load silicon_pivot",
-    f"{SOLVE} --slide-stiffness 20": f"{SOLVE} --penalty-stiffness 20",
-    f"{SOLVE} --slide-stiffness=20": f"{SOLVE} --penalty-stiffness=20",
     f"{SOLVE} --stretch=consistent --measure printed": f"{SOLVE} --stretch=consistent --measure published",
+    f"{SOLVE} --stretch=consistent --measure=printed": f"{SOLVE} --stretch=consistent --measure=published",
 }
 
 

@@ -73,7 +73,7 @@ def test_modes_beyond_those_that_there_are_told(case, command):
     "model",
     [
         ["fe", "--elements", 1],
-        ["spline", "--stretch", "inextensible", "--control-points", 6, "--axial-modes", 1],
+        ["spline", "--stretch", "inextensible", "--control-points", 6],
     ],
 )
 def test_state_that_statics_cannot_reach(verb, model, case, command):

@@ -60,7 +60,7 @@ def test_a_quantity_is_one_entry(tmp_path):
     assert "clamp moment" in run("solve", case, "--plot", "path.svg")
     assert pd.read_csv(tmp_path / "path.csv")[KEY].tolist() == pytest.approx(answer[KEY])
     assert "clamp moment" in (tmp_path / "path.svg").read_text(encoding="utf-8")
-    run("export", case, "--formats", "csv,vtk", "--out", "out")
+    run("solve", case, "--export", "out")
     assert pd.read_csv(tmp_path / "out" / "static_states.csv")[KEY].iloc[-1] == pytest.approx(answer[KEY][-1])
     assert KEY in next((tmp_path / "out").glob("*_0020.vtu")).read_text(errors="ignore")
     assert any(line.startswith("clamp moment, end") for line in run("compare", case, case).splitlines())

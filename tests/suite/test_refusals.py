@@ -138,12 +138,10 @@ def test_every_key_of_a_sweep(tmp_path, refused):
 #: Option -> words that it must refuse beside one that is neither a number nor a name that it knows.
 BEYOND = {
     **dict.fromkeys(("duration", "step", "accuracy", "tolerance", "stiffness"), ("0", "-1", "nan", "inf")),
-    **dict.fromkeys(("count", "records", "processes", "workers"), ("0", "-1", "1.5")),
-    "slide-stiffness": ("-1", "nan", "inf"),
+    **dict.fromkeys(("count", "processes", "workers"), ("0", "-1", "1.5")),
     "rotation-deg": ("nan", "720", "-400", "inf"),
     "increments": ("0", "100001", "2.5"),
     "model": ("fe,fe", "spline,rod", ""),
-    "formats": ("vtk,vtk", "vtk,step", ""),
 }
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from studies.record.source import ROOT
-from studies.registry import STUDIES, question_of, selected
+from studies.registry import STUDIES, selected
 
 HEAVY = (
     *("numpy", "scipy", "numba", "skfem", "pandas", "matplotlib"),
@@ -36,7 +36,7 @@ def _loaded_by(words: list[str]) -> set[str]:
     return set(done.stdout.splitlines()[-1].split()[1:])
 
 
-@pytest.mark.parametrize("words", [["--help"], [], ["list"], ["sweep", "--help"]])
+@pytest.mark.parametrize("words", [["--help"], [], ["case"], ["sweep", "--help"]])
 def test_overview_imports_nothing_heavy(words):
     """Help and lists load no numerical package."""
     assert _loaded_by(words) == set()
@@ -56,14 +56,6 @@ def test_names_of_studies():
     )
     assert selected(["paper"]) == [name for name in STUDIES if name.startswith("paper/")]
     assert selected(["all", "paper"]) == list(STUDIES)
-
-
-def test_every_study_says_what_it_shows():
-    """What a study shows is a line of its own, be it the first of its module or that below its constant."""
-    questions = [question_of(study) for study in STUDIES]
-    assert len(set(questions)) == len(STUDIES)
-    assert all(len(each) > 20 and '"' not in each for each in questions)
-    assert question_of("stability/rotation").startswith("Rotation to a half turn and beyond")
 
 
 @pytest.mark.parametrize("package, part", [("spline_model", "strip.laws"), ("fe_reference", "law")])
@@ -102,7 +94,7 @@ def code_without_a_reader(*words: str, errors: int | None = subprocess.PIPE) -> 
     return done.returncode, done.stderr or ""
 
 
-@pytest.mark.parametrize("words", [["list"], TABLE], ids=["list", "table"])
+@pytest.mark.parametrize("words", [["case"], TABLE], ids=["case", "table"])
 def test_a_reader_that_leaves_ends_the_command_quietly(words):
     """No traceback, nothing on the error stream, and the code that a shell gives for SIGPIPE."""
     assert code_without_a_reader(*words) == (141, "")
@@ -172,7 +164,6 @@ def test_wheel_works_outside_the_repository(scripts, tmp_path):
     assert answer["status"] == "converged"
     printed([program, "case", "--out", "my_pivot.toml"], tmp_path)
     printed([program, "solve", "my_pivot.toml", "--increments", "2", "--plot", "my_pivot.svg"], tmp_path)
-    assert "paper/fig04_trajectory" in printed([program, "list"], tmp_path)
     words = ["converge", "my_pivot.toml", "--control-points", "4:5", "--elements", "2:8"]
     printed([program, *words], tmp_path)
     assert (tmp_path / "results" / "designs" / "my_pivot" / "elements.csv").is_file()
