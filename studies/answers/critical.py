@@ -4,7 +4,7 @@ It counts only if two discretisations have it at the same force; their differenc
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -15,6 +15,7 @@ from spline_model.solution import named
 from studies.answers.answer import Answer
 from studies.answers.metrics import extrapolate
 from studies.answers.models import Asked, put
+from studies.answers.response import Response
 from studies.answers.settings import FeSettings, Settings
 from studies.cases.design import Design
 from studies.cases.effects import GROWING
@@ -33,6 +34,8 @@ ALIKE = 3
 SETTLED, AGREED = 1e-5, 1e-2
 #: Parts of the largest Euler load that those of the strips are added up in.
 FINEST = 2**20
+#: Rotation that counts as soft [rad], and relative width to which its force is found.
+SOFT, FOUND = math.radians(5.0), 1e-9
 UNSTABLE, NONE = "unstable at zero force", ""
 
 
@@ -51,6 +54,8 @@ class CriticalLoad(Answer):
             the last two discretisations are apart in it [rad]; NaN where they are not resolved.
         kind: of the critical point, or UNSTABLE. preload: share of weight and pre-strain that acts there [1].
         uncertainty: relative, of force or share [1]; NaN if unknown.
+        soft, yields: force at which the rotation exceeds SOFT, and at which a strip yields [N], if no
+            critical load is found; None otherwise. softer: relative uncertainty of both [1].
     """
 
     analysis = "critical load"
@@ -64,6 +69,9 @@ class CriticalLoad(Answer):
     preload: float
     uncertainty: float
     turned_error: float = math.nan
+    soft: float | None = None
+    yields: float | None = None
+    softer: float = math.nan
 
     @property
     def value(self) -> float:
@@ -93,22 +101,33 @@ class CriticalLoad(Answer):
         )
 
 
-def _paths(
-    design: Design, settings: Settings, direction: float, held: bool
-) -> Iterator[tuple[float, Asked, Any]]:
-    """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them.
+@dataclass(frozen=True, kw_only=True)
+class _Question:
+    """A design, the direction of the force on its body, and whether the rotation is held."""
 
-    Weight and pre-strain act as well; paths stop at rest where these find no equilibrium.
-    """
-    unit = _euler_load(design)
-    left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
-    how = {"rotation": 0.0 if held else None, "increments": INCREMENTS, "order": LOADS_FIRST}
-    for part in PARTS:
-        force = part * unit
-        way = (force * math.cos(direction), force * math.sin(direction))
+    design: Design
+    direction: float
+    held: bool
+
+    def path(self, settings: Settings, force: float) -> tuple[Asked, Any]:
+        """Return the path to a force [N] alone, beside weight and pre-strain.
+
+        It stops at rest where these find no equilibrium.
+        """
+        design = self.design
+        left = design.effects.renamed([name for name in design.effects.names if name not in GROWING])
+        way = (force * math.cos(self.direction), force * math.sin(self.direction))
         load = {FORCE: {"force": way, "body": design.body}}
         asked = put(replace(design, effects=left.plus(**load)), settings)
-        yield force, asked, asked.static_path(check=False, raise_on_failure=False, **how)
+        rotation = 0.0 if self.held else None
+        how = {"rotation": rotation, "increments": INCREMENTS, "order": LOADS_FIRST}
+        return asked, asked.static_path(check=False, raise_on_failure=False, **how)
+
+    def paths(self, settings: Settings) -> Iterator[tuple[float, Asked, Any]]:
+        """Yield forces [N], in the Euler loads of the strips that bear the body, and the paths to them."""
+        unit = _euler_load(self.design)
+        for part in PARTS:
+            yield part * unit, *self.path(settings, part * unit)
 
 
 def _euler_load(design: Design) -> float:
@@ -150,10 +169,11 @@ def critical_load(
     """
     if design.body is None:
         raise BadInput("body: got none, expected a design with a body that the force acts on")
+    question = _Question(design=design, direction=direction, held=held)
     found: list[CriticalLoad] = []
     for each in _refined(settings):
         try:
-            found.append(_of(design, each, direction, held))
+            found.append(_of(question, each))
         except BadInput:
             if len(found) < 2:
                 raise
@@ -164,7 +184,7 @@ def critical_load(
             settled = _alike(found, ALIKE if found[-1].kind == NONE else 2, SETTLED)
         if settled:
             break
-    return _agreed(_above_round_off(found) if isinstance(settings, FeSettings) else found)
+    return _agreed(question, _above_round_off(found) if isinstance(settings, FeSettings) else found)
 
 
 def _above_round_off(found: Sequence[CriticalLoad]) -> Sequence[CriticalLoad]:
@@ -196,7 +216,7 @@ def _refined(settings: Settings) -> Iterator[Settings]:
         yield from (replace(settings, control_points=POINTS[0], segments=each) for each in finer_ones)
 
 
-def _agreed(found: Sequence[CriticalLoad]) -> CriticalLoad:
+def _agreed(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
     """Return what the last two discretisations agree on, with their difference; or that they do not."""
     last, apart = found[-1], found[-1].apart(found[-2])
     if apart > AGREED:
@@ -205,7 +225,7 @@ def _agreed(found: Sequence[CriticalLoad]) -> CriticalLoad:
         return replace(last, status="not_converged", message=message, force=None, kind=NONE)
     last = replace(last, turned_error=abs(last.turned - found[-2].turned))
     if last.kind == NONE:
-        return last
+        return _softened(question, (*found[:-1], last))
     value, error = last.value, apart * last.value
     if isinstance(last.asked.settings, FeSettings) and _alike(found, ALIKE, AGREED):
         limit = extrapolate([np.array([each.value]) for each in found[-ALIKE:]])
@@ -222,20 +242,20 @@ def _fineness(settings: Settings) -> tuple[str, str]:
     return named(settings.segments, settings.points), finer
 
 
-def _of(design: Design, settings: Settings, direction: float, held: bool) -> CriticalLoad:
+def _of(question: _Question, settings: Settings) -> CriticalLoad:
     """Return the critical load with one discretisation."""
-    for tried in _paths(design, settings, direction, held):
+    for tried in question.paths(settings):
         size, asked, path = tried
         lost = [each for each in path.critical_points if each.inertia > 0]
         if lost or path.status.value != "converged":
             break
-    last, place = float(path.load_factor[-1]), list(path.bodies).index(str(design.body))
+    last, place = float(path.load_factor[-1]), list(path.bodies).index(str(question.design.body))
     found: dict[str, Any] = {
         "status": str(path.status.value),
         "message": "" if last == 1.0 else str(path.message),
         "reached": size * last,
         "force": None,
-        "turned": float(path.bodies[design.body][-1, 2]),
+        "turned": float(path.bodies[question.design.body][-1, 2]),
         "kind": NONE,
         "preload": 1.0,
     }
@@ -246,5 +266,46 @@ def _of(design: Design, settings: Settings, direction: float, held: bool) -> Cri
             "kind": UNSTABLE if unstable else str(point.kind),
             "preload": float(point.preload),
         }
-    known: dict[str, Any] = {"direction": direction, "held": held, "uncertainty": math.nan}
+    known: dict[str, Any] = {"direction": question.direction, "held": question.held, "uncertainty": math.nan}
     return CriticalLoad(asked=asked, solution=path, **known | found)
+
+
+def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
+    """Return the last answer of a design without a critical load with the forces at which it turns and
+    yields."""
+    body = question.design.body
+    shares: dict[str, Callable[[Response], Any]] = {
+        "soft": lambda answer: np.abs(answer.bodies[body][:, 2]) / SOFT,
+        "yields": lambda answer: answer.yield_share,
+    }
+    if any(strip.yield_strength is None for strip in question.design.strips):
+        del shares["yields"]
+    forces: dict[str, float | None] = {}
+    apart = [FOUND]
+    for name, share in shares.items():
+        coarse, fine = (_passing(question, each.asked.settings, share) for each in found[-2:])
+        forces[name] = fine
+        if fine is not None:
+            same = coarse == fine  # such as both passed without any force
+            apart.append(0.0 if same else abs(coarse / fine - 1.0) if coarse and fine else math.nan)
+    softer = max(apart) if any(forces.values()) else math.nan
+    return replace(found[-1], soft=forces["soft"], yields=forces.get("yields"), softer=softer)
+
+
+def _passing(question: _Question, settings: Settings, share: Callable[[Response], Any]) -> float | None:
+    """Return the force [N] at which a share of a limit first is 1, by solutions that end there; or None."""
+
+    def path(force: float) -> Any:
+        return share(Response.of(*question.path(settings, force))) - 1.0
+
+    for size, asked, first in question.paths(settings):
+        known = share(Response.of(asked, first)) - 1.0
+        beyond = np.flatnonzero(known >= 0.0)
+        if beyond.size and beyond[0] > 0:
+            from scipy.optimize import brentq
+
+            below, above = ((beyond[0] - back) / INCREMENTS * size for back in (1, 0))
+            return float(brentq(lambda force: path(force)[-1], below, above, rtol=FOUND))
+        if beyond.size:
+            return 0.0
+    return None

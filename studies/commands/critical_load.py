@@ -12,8 +12,10 @@ and pre-strain alone is checked first.
 
 A critical load is printed only if two discretisations have it within 1 %; their difference is the estimated
 error, as that of the rotation. Without --control-points the spline takes more control points until the force
-settles; elements are doubled until three meshes agree, and their limit is taken. Exit code 0: a critical
-load, or none up to the largest force; 2: bad input; 3: not resolved, the discretisations disagree.
+settles; elements are doubled until three meshes agree, and their limit is taken. If three discretisations
+find no critical load, the force at which the rotation passes 5 degrees and the force at first yield are
+printed. Exit code 0: a critical load, or none up to the largest force; 2: bad input; 3: not resolved, the
+discretisations disagree.
 """
 
 import argparse
@@ -72,6 +74,9 @@ def _document(found: CriticalLoad) -> dict[str, Any]:
         "borne_N": found.reached,
         "rotation_rad": found.turned,
         "rotation_error_rad": found.turned_error,
+        "rotation_5_deg_N": found.soft,
+        "yield_N": found.yields,
+        "soft_relative_error": found.softer,
     }
 
 
@@ -80,6 +85,8 @@ def _readable(found: CriticalLoad) -> Iterator[str]:
     yield tell.described(found)
     way = f"force at {math.degrees(found.direction):g} deg, rotation {'held' if found.held else 'free'}"
     yield f"{way}: {_verdict(found)}"
+    if found.converged and found.force is None:
+        yield _softening(found)
 
 
 def _verdict(found: CriticalLoad) -> str:
@@ -96,3 +103,17 @@ def _verdict(found: CriticalLoad) -> str:
     else:
         said = f"buckles at {one(found.force, DIGITS)} N{turned} ({found.kind})"
     return f"{said}, estimated error {found.uncertainty:.1e}"
+
+
+def _softening(found: CriticalLoad) -> str:
+    """Return where a design without a critical load turns too far and yields."""
+    soft = "the rotation stays below 5 deg"
+    if found.held:
+        soft = "the rotation is held"
+    elif found.soft is not None:
+        soft = f"the rotation passes 5 deg at {one(found.soft, DIGITS)} N"
+    yields = "no strip yields, or the yield strength is not given"
+    if found.yields is not None:
+        yields = f"first yield at {one(found.yields, DIGITS)} N"
+    error = f", estimated error {found.softer:.1e}" if math.isfinite(found.softer) else ""
+    return f"{soft}; {yields}{error}"
