@@ -2,12 +2,11 @@
 
 Data flow one way, and so do the imports:
 
-    strip, effects -> model -> mesh
-    mesh, law (bending), places, loads, matrix -> structure -> control
+    strip, effects -> model; law, places, loads, matrix -> structure (with the mesh) -> control
     control (with Newton's method) -> response (with critical points) -> path -> statics
     structure -> mass, drives -> actions -> motion -> schemes -> dynamics
     statics -> modes; all -> solution -> refined (meshes to a wanted accuracy) -> statics, modes
-    plate: one strip as a plate, the stiffness that beam theory neglects, and the rigidity with it -> mesh
+    plate: one strip as a plate, the stiffness that beam theory neglects, and its rigidity -> structure
 
 What is scikit-fem's, and what is not: the mesh of the strips, the basis of three linear fields on it, the
 numbering of its degrees of freedom and the pattern of the assembled matrices are scikit-fem's. The energies
@@ -26,9 +25,8 @@ from .modes import Modes, natural_frequencies
 from .motion import Trajectory
 from .plate import PlateFactors, plate_factors
 from .response import CriticalPoint
-from .section_forces import StripFields, strip_fields
 from .solid import SolidPath, SolidStrip, solve_solids
-from .solution import ErrorEstimate, StaticSolution, Status
+from .solution import ErrorEstimate, StaticSolution, Status, StripFields, strip_fields
 from .statics import solve_mechanism, solve_statics
 from .strip import StripDesign
 

@@ -70,23 +70,6 @@ class DrivenRotation(Checked):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Piece:
-    """Equal steps of a motion.
-
-    Attributes:
-        time: instant at which they begin [s].
-        step: length of one step [s].
-        steps: their number.
-        kept: whether a sample is at their end.
-    """
-
-    time: float
-    step: float
-    steps: int
-    kept: bool
-
-
-@dataclass(frozen=True, kw_only=True)
 class Span:
     """A part of a motion, `begin` to `end` [s], on which all drives go at constant rates.
 
@@ -130,9 +113,10 @@ class Span:
                 after[place][free] -= np.linalg.solve(mass[:, free], impulse)
         return after
 
-    def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[Piece]:
+    def pieces(self, step: float, chunks: Sequence[int]) -> Iterator[tuple[float, float, int, bool]]:
         """Yield the pieces of a motion whose samples are `chunks` of steps [s] apart.
 
+        Of each piece: begin and step [s], number of steps, and whether a sample is at its end.
         Chunks within which a span begins or ends are cut there, in whole steps of their own.
         """
         close, done = SAME * step * sum(chunks), 0
@@ -141,11 +125,10 @@ class Span:
             done += many
             begin, end = max(low, self.begin), min(high, self.end)
             if end - begin >= high - low - close:
-                yield Piece(time=low, step=step, steps=many, kept=True)
+                yield low, step, many, True
             elif end - begin > close:
                 steps = max(1, math.ceil((end - begin) / step * (1.0 - SAME)))
-                kept = end >= high - close
-                yield Piece(time=begin, step=(end - begin) / steps, steps=steps, kept=kept)
+                yield begin, (end - begin) / steps, steps, end >= high - close
 
 
 def drive_spans(model: Model, drive: DrivenRotation | None, duration: float) -> list[Span]:

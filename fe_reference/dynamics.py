@@ -241,7 +241,7 @@ def solve_motion(
     """
     require_model(mechanism)
     mechanism.effects.require_inertia()
-    run = Run(**asked)
+    run, check = Run(**asked), flag("check", check)
     y, remark = np.zeros(structure_of(mechanism).size), ""
     if run.settled:
         y, remark = settled_state(mechanism, run.start, run.body, run.increments, starts=True)
@@ -249,7 +249,7 @@ def solve_motion(
     begin: dict[str, float | str] = {} if run.start is None else {"start_rad": run.start}
     remarks = [f"the way to the start: {remark}"] if remark else []
     motion = trajectory(samples, begin | settings, remarks).checked(raise_on_failure)
-    if not flag("check", check) or not run.settled:
+    if not check or not run.settled:
         return motion
     return checked(mechanism, motion, start=run.start, body=run.body, drive=run.drive)
 
@@ -334,11 +334,11 @@ def _compared(model: Model, motion: Trajectory, mesh: Model, asked: dict[str, An
     steps = (None,) if "critical_step_s" in motion.settings else (own, ratio * own)
     runs = [solve_motion(mesh, check=False, step=step, **asked) for step in steps]
     found = [moves(model, motion, stride), *(moves(mesh, run) for run in runs)]
-    part = max(1.0, 1.0 / (1.0 - ratio**2)) if ratio < 1.0 else 1.0
+    part = 1.0 / (1.0 - ratio**2) if ratio < 1.0 else 1.0
     turns, places = (
         part
-        * np.sum([np.abs(one[: samples + 1] - two[: samples + 1]) for one, two in pairwise(each)], axis=0)
-        for each in zip(*found, strict=True)
+        * np.sum([np.abs(one - two) for one, two in pairwise(each[: samples + 1] for each in kind)], axis=0)
+        for kind in zip(*found, strict=True)
     )
     places = np.linalg.norm(places, axis=2)
     remarks = [motion.resolution, _remark(model, motion, turns, places, stride)]

@@ -10,7 +10,7 @@ import numpy as np
 
 from .actions import Actions, Instant
 from .arrays import Array, Flags
-from .drives import Piece, Span
+from .drives import Span
 from .mass import RigidBodies, carried_over, couplings
 from .solution import Answer, Status
 from .structure import Structure, structure_of
@@ -58,8 +58,9 @@ class Scheme:
         now = self.actions.resist(y, v, time)
         return replace(now, a=-self.inverse * now.force)
 
-    def go(self, now: Instant, piece: Piece, samples: "Samples") -> Instant | None:
-        """Return the instant after a piece of steps, or None where the motion stopped; books their work."""
+    def go(self, now: Instant, step: float, steps: int, samples: "Samples") -> Instant | None:
+        """Return the instant after steps of equal length [s], or None where the motion stopped; books their
+        work."""
         raise NotImplementedError
 
     def swing(self, y: Array, v: Array, ways: Flags) -> float:
@@ -203,12 +204,12 @@ def course(
         if not samples.time:
             samples.still = not caught.any() and bool(scheme.unloaded(now)[~scheme.held].all())
             samples.take(scheme, now, begun)
-        for piece in span.pieces(step, chunks):
-            after = scheme.go(replace(now, time=piece.time), piece, samples)
-            if after is None or (piece.kept and not samples.take(scheme, after, begun)):
+        for time, own, many, kept in span.pieces(step, chunks):
+            after = scheme.go(replace(now, time=time), own, many, samples)
+            if after is None or (kept and not samples.take(scheme, after, begun)):
                 return samples
             now = after
-            if piece.kept and progress is not None:
+            if kept and progress is not None:
                 progress(len(samples.time) - 1, len(chunks))
         samples.books[0] += scheme.beside(now) - begun
         y, v = now.y, now.v
@@ -227,7 +228,7 @@ class Trajectory(Answer):
         gravity_energy (T,): of the weight, zero in the shape at rest [J].
         work, dissipated (T,): by loads and dampers since the start [J].
         shape (T, G, P, 2): positions of the nodes [m].
-        states (T, size): reduced coordinates, for `section_forces`.
+        states (T, size): reduced coordinates, for `strip_fields`.
         counters: steps, force_evaluations; implicit also iterations, factorisations, halvings.
         history: residual norms of implicit steps.
         settings: integrator, step_s, critical_step_s (explicit), start_rad and what else defines the run.

@@ -32,7 +32,7 @@ with which a beam of this rigidity has both stiffnesses of the plate above, exac
 
 It is a rigidity of the section, and so one that holds in large rotations.
 
-A strip of large curvature keeps its curl at the margins alone (`bending`): the part f of the width. Clamps
+A strip of large curvature keeps its curl at the margins alone (`law`): the part f of the width. Clamps
 hold this curl like that of a strip of width f b, so that nu^2 g(s, b/L) becomes
 
     P(s, f) = nu^2 f g(s, f b/L).
@@ -53,8 +53,8 @@ from skfem import Basis, BilinearForm, ElementTriArgyris, LinearForm, MeshTri, c
 from skfem.helpers import dd, ddot, trace
 
 from .arrays import Array
-from .bending import TERMS
 from .errors import InvalidParameter
+from .law import TERMS
 
 #: Halvings of the elements towards the corner, and elements a width along the rest of a narrow strip.
 LAYERS, ALONG = 6, 2

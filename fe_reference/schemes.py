@@ -38,7 +38,6 @@ import numpy as np
 
 from .actions import Actions, Instant, advance
 from .arrays import Array, Flags
-from .drives import Piece
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
@@ -115,15 +114,15 @@ class Explicit(Scheme):
                 "generalised-alpha where strips or bodies have no inertia: their stable step is zero [name]",
             )
 
-    def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant:
-        """Return the instant after a piece of steps."""
-        s, actions, h, totals = self.structure, self.actions, piece.step, np.zeros(2)
+    def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant:
+        """Return the instant after steps of h [s]."""
+        s, actions, totals = self.structure, self.actions, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
         state = s.displacement(now.y), s.velocity(now.y, late)
         drives = actions.coupled, s.coordinates[self.held]
-        advance(actions.acting, *drives, s.spread(self.inverse), state, totals, now.time, h, piece.steps)
+        advance(actions.acting, *drives, s.spread(self.inverse), state, totals, now.time, h, steps)
         y, late = (s.gathered(moved) for moved in state)
-        after = actions.resist(y, late, now.time + piece.steps * h)
+        after = actions.resist(y, late, now.time + steps * h)
         a = -self.inverse * after.force
         v = late + 0.5 * h * a
         # what the loop gathered is brought from mid-step to the sample
@@ -131,7 +130,7 @@ class Explicit(Scheme):
         given = after.load_power - now.load_power + led
         samples.books += totals
         samples.books += 0.5 * h * given, h * (after.loss_power - now.loss_power)
-        samples.counters.update(steps=piece.steps, force_evaluations=piece.steps + 1)
+        samples.counters.update(steps=steps, force_evaluations=steps + 1)
         return replace(after, v=v, a=a)
 
     def remarks(self, samples: Samples, step: float) -> list[str]:
@@ -188,19 +187,19 @@ class Implicit(Scheme):
         now = super().start(time, y, v, held)
         return replace(now, a=np.where(self.unloaded(now), 0.0, now.a))
 
-    def go(self, now: Instant, piece: Piece, samples: Samples) -> Instant | None:
-        """Return the instant after a piece of steps, or None where one has no solution."""
+    def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant | None:
+        """Return the instant after steps of h [s], or None where one has no solution."""
         begin = now.time
-        for done in range(1, piece.steps + 1):
-            after = self.step(now, piece.step, samples)
+        for done in range(1, steps + 1):
+            after = self.step(now, h, samples)
             if after is None:
-                samples.message = f"no solution of the step of {piece.step:.3g} s at {now.time:.6g} s"
+                samples.message = f"no solution of the step of {h:.3g} s at {now.time:.6g} s"
                 return None
             powers = np.array([self._powers(at) for at in (now, after)])
-            samples.books += 0.5 * piece.step * powers.sum(axis=0)
+            samples.books += 0.5 * h * powers.sum(axis=0)
             samples.content += self.mass @ after.a**2, self.mass @ after.v**2
             samples.counters["steps"] += 1
-            now = replace(after, time=begin + done * piece.step)
+            now = replace(after, time=begin + done * h)
         return now
 
     def step(self, now: Instant, h: float, samples: Samples, depth: int = 0) -> Instant | None:

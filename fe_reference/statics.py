@@ -13,8 +13,7 @@ from .law import FORCES
 from .model import Model, require_model
 from .path import COUNTERS, Path, Progress, follow
 from .refined import confirmed, limit_of
-from .section_forces import strip_fields
-from .solution import ENERGIES, StaticSolution, Status
+from .solution import ENERGIES, StaticSolution, Status, strip_fields
 from .structure import structure_of
 
 #: How loads and a rotation meet.

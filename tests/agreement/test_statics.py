@@ -114,7 +114,7 @@ def test_derived_data_agree():
         for mine, right in (
             (
                 derived(one, one.length, ours.design.bodies[0]),
-                derived(other, theirs.lengths[0], theirs.body),
+                derived(other, theirs.lengths[0], theirs.bodies[0]),
             ),
             (ours.clamp_points, theirs.rest[:, [0, -1]]),
             (ours.clamp_directions, ends / np.linalg.norm(ends, axis=2, keepdims=True)),
