@@ -221,6 +221,8 @@ class Stepper(Moves):
     changes its velocity at once: energy that it loses counts as dissipated, energy that it gains as work.
     """
 
+    name = "energy"
+
     def __init__(self, start: Start) -> None:
         self.motion, self.first = start.motion, start.z
         self.model = model = require_reduced(self.motion.system)
@@ -228,12 +230,12 @@ class Stepper(Moves):
         self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
         sizes = sizes_of(model, self._masses)
-        self._state, self._work = State.of(sizes), zeros(Scratch, sizes)
-        self._state.y[:] = from_unknowns(model, start.z)
-        self._state.rate[:], self._state.velocity[:] = self._rates(start.v)
-        self._state.push[:], self._state.acceleration[:] = self._rates(start.acceleration)
-        self.width = self._state.record.size + ENERGIES
-        look(self._state, self._arrays)
+        self.state, self._work = State.of(sizes), zeros(Scratch, sizes)
+        self.state.y[:] = from_unknowns(model, start.z)
+        self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
+        self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
+        self.width = self.state.record.size + ENERGIES
+        look(self.state, self._arrays)
 
     def _rates(self, given: Array) -> tuple[Array, Array]:
         """Rates of the bodies (Q,) and control points (S, 2 n) from those (Q,) of the scene."""
@@ -246,13 +248,13 @@ class Stepper(Moves):
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails."""
         asked = time, step, begin, end, every, self.active
-        given = self._state, self._arrays, self._masses, TOLERANCE, self._work, self.counters
+        given = self.state, self._arrays, self._masses, TOLERANCE, self._work, self.counters
         return int(_run(*asked, *given, records))
 
     def record(self) -> Array:
         """Return the present state's record (W,): lengths over L, energies over EI/L [1]."""
         record = np.zeros(self.width)
-        store(self._state, self._arrays, self._masses, record)
+        store(self.state, self._arrays, self._masses, record)
         return record
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
@@ -261,7 +263,7 @@ class Stepper(Moves):
         Axial forces and multipliers are the means of the steps that end there.
         """
         model, layout = self.model, self.model.system.layout
-        y, rate, velocity, clamped, reaction = self._state.parted(records[:, :-ENERGIES])
+        y, rate, velocity, clamped, reaction = self.state.parted(records[:, :-ENERGIES])
         z = unknowns_of(model, np.ascontiguousarray(y), reaction, clamped)
         v = np.zeros((len(records), layout.coordinate_count))
         poses = 3 * len(layout.bodies)
@@ -278,7 +280,7 @@ class Stepper(Moves):
         slowest = np.nan_to_num(self._arrays.local.lanes[:, SPEED_AT] / model.strips.speed).min(axis=1)
         ends = self._work.y[len(model.bodies.rest) :].reshape(len(slowest), -1)[:, own - 2 : own]
         slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
-        return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
+        return why(self.counters, model.system.scene, model.strips, self.state.y, int(np.argmin(slowest)))
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
@@ -289,19 +291,10 @@ class Stepper(Moves):
         self.motion = self.motion.from_here(z, self.active, before, time)
         self._masses = Masses.of(self.motion, self.model)
         v, lost = self.motion.catch(z, v, self.active, time, span)
-        self._state.rate[:], self._state.velocity[:] = self._rates(v)
+        self.state.rate[:], self.state.velocity[:] = self._rates(v)
         lost /= self.model.energy
         # energy is lost where a drive catches a body, not where it changes its own rate; gained it is by work
         if lost > 0.0 and (self.active > before).any():
-            self._state.totals[1] += lost
+            self.state.totals[1] += lost
         else:
-            self._state.totals[0] -= lost
-
-    def kept(self) -> list[Array]:
-        """Return copies of the state's arrays, in their units and shapes, for ``take_back``."""
-        return [array.copy() for array in self._state]
-
-    def take_back(self, kept: list[Array]) -> None:
-        """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
-        for array, value in zip(self._state, kept, strict=True):
-            array[:] = value
+            self.state.totals[0] -= lost

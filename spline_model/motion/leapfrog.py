@@ -30,6 +30,7 @@ from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
 from spline_model.motion.arrays import Masses, Places, State, sizes_of, zeros
 from spline_model.motion.energy_consistent import forward, store
+from spline_model.motion.moves import STEP
 from spline_model.motion.start import Motion, Start
 from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import kernel, part
@@ -202,6 +203,7 @@ class Stepper(energy_consistent.Stepper):
     stages: evaluations of the accelerations in a step.
     """
 
+    name = NAME
     most_gain = LARGEST_GAIN
     watched = sys.maxsize
     smallest = 1.0
@@ -209,12 +211,17 @@ class Stepper(energy_consistent.Stepper):
     def __init__(self, start: Start) -> None:
         require_explicit(start.motion)
         super().__init__(start)
-        model, masses, state = self.model, self._masses, self._state
+        model, masses, state = self.model, self._masses, self.state
         grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
         w, room = _rates_of(model, masses, state), _Room.of(model, masses, grid)
         self.record()  # fills what is given along the strips
+        self._start = start
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
+
+    def default_step(self) -> float:
+        """Return the default, or a stable step where that is shorter [s]."""
+        return min(STEP, PART * critical_step(self.motion, self._start.z))
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps from the first on; at any time, as nothing that acts has a history."""

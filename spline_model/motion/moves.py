@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, Whole, fir
 from spline_model.motion.start import SAME, Array, Motion
 from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS, WHOLE
 
+STEP = 5e-5
+"""Default step [s]: some 240 steps a swing of Table 1."""
 SMALLEST_STEP = 2.0**-14
 """Least fraction of a step before the run is given up."""
 MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
@@ -72,6 +74,7 @@ class Steps(NamedTuple):
 class Moves:
     """A scene in motion, advanced in steps that are halved at need.
 
+    name: of the scheme, settings: others that a trajectory has; state: arrays that a step changes.
     most_gain: of energy; watched: steps after which the energy is looked at, at the latest; smallest: part of
     a step that is taken at least where it fails, 1 if none is; first: unknowns (N,) of the first record, None
     where that says as much; width: numbers of a record, of which the first are the poses in L and the last
@@ -82,9 +85,25 @@ class Moves:
     watched = WATCHED
     smallest = SMALLEST_STEP
     first: Array | None = None
+    name: str
+    settings: dict[str, Any] = {}  # noqa: RUF012 - nobody changes it
+    state: Any
     motion: Motion
     counters: NDArray[np.int64]
     width: int
+
+    def default_step(self) -> float:
+        """Return the step [s] where none is given."""
+        return STEP
+
+    def kept(self) -> list[Array]:
+        """Return copies of the state's arrays, in their units and shapes, for ``take_back``."""
+        return [array.copy() for array in self.state]
+
+    def take_back(self, kept: list[Array]) -> None:
+        """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
+        for array, value in zip(self.state, kept, strict=True):
+            array[:] = value
 
     def instants(self, run: Steps) -> list[float]:
         """Return the instants inside a run at which drives begin, change or end [s]."""

@@ -183,6 +183,8 @@ def _run(time, step, begin, end, every, poses, masses, arrays, tolerance, counte
 class _Stepper(Moves):
     """Bodies on massless strips that the scheme advances."""
 
+    name = NAME
+
     def __init__(self, model: Reduced, y: Array, start: Start) -> None:
         self.motion, self._model = start.motion, model
         self._masses = Masses.of(self.motion, model)

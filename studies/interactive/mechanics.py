@@ -16,7 +16,7 @@ from spline_model.solution import Status
 from spline_model.statics import solve_mechanism
 from studies.cases.design import flexural_scale
 from studies.interactive.design import PRINTED, Curve, Placing, Snapshot
-from studies.interactive.motion import Motion, Pull, motion
+from studies.interactive.motion import Motion, Pull
 from studies.interactive.presets import STEP, Piece
 from studies.kinds import Array
 
@@ -211,7 +211,7 @@ class Mechanics:
 
     def _move(self, solver: str, sweeps: int, z: Array, v: Array) -> None:
         """Move from unknowns z and velocities v (Q,) on; energies are counted from there."""
-        self._motion = motion(solver, sweeps, self._acting, z, v)
+        self._motion = Motion(solver, sweeps, self._acting, z, v)
         now = self._motion.state()
         self.begun = now.strain + now.kinetic + self._potential(now.z[self._system.layout.body(self._body)])
         self.snapshot = self._dynamic(self._motion)

@@ -8,15 +8,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from spline_model import sequential_impulse
 from spline_model.compile import compile_scene
 from spline_model.effects import StripDamping
 from spline_model.held import HeldPivot, HeldState
 from spline_model.mechanism import Mechanism
-from spline_model.motion.energy_consistent import Stepper
+from spline_model.motion import energy_consistent
+from spline_model.motion.moves import Moves
 from spline_model.motion.records import KINETIC, STRAIN
 from spline_model.motion.start import Start, set_in_motion
 from spline_model.motion.step import NEWTON
-from spline_model.sequential_impulse import impulse_solver, stability_limit
 from spline_model.solution import Later
 from studies.kinds import Array
 
@@ -51,78 +52,46 @@ class _Moving(NamedTuple):
     iterations: int
 
 
-class _Energy:
-    """The energy-consistent integrator, one call a frame."""
+class Motion:
+    """A solver that was started from a state; `longest`: step [s] that it can take.
 
-    longest = math.inf
+    The published impulses, whose forces are explicit, take steps that are cut to what is stable.
+    """
 
-    def __init__(self, design: Mechanism, z: Array, v: Array) -> None:
-        system = compile_scene(design.released())
-        known = Later(z[None, : system.layout.size].copy)
-        self._stepper, self._iterations = Stepper(Start(set_in_motion(system), known, v)), 0
-        self._stepper.smallest = SMALLEST_PART
+    def __init__(self, solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> None:
+        system, self.longest, self._iterations = compile_scene(design.released()), math.inf, 0
+        start = Start(set_in_motion(system), Later(z[None, : system.layout.size].copy), v)
+        self._stepper: Moves
+        if solver == "energy":
+            self._stepper, self._counted = energy_consistent.Stepper(start), NEWTON
+            self._stepper.smallest = SMALLEST_PART
+            return
+        swept = sweeps if solver == "published" else None
+        self._stepper = sequential_impulse.Stepper(start, form=solver, sweeps=swept)
+        self._counted = sequential_impulse.COUNTERS.index("sweeps")
+        if solver == "published":
+            limit, damping = sequential_impulse.stability_limit(design), system.scene.of(StripDamping)
+            time = max((each.relaxation_time for each in damping), default=0.0)
+            # damping is explicit too: h^2 + 2 T h < limit^2
+            self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
 
     def advance(self, steps: int, step: float) -> float:
-        """Take `steps` steps of `step` seconds, halved at need down to SMALLEST_PART; returns the time done
-        [s], 0 where the solver fails, the last good state being kept."""
+        """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
+        good state being kept. Where a step must be cut below its least part, not all of it is done."""
+        parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
+        step, steps = min(step / parts, self.longest), steps * parts
         stepper = self._stepper
-        before, kept = int(stepper.counters[NEWTON]), stepper.kept()
-        for _ in range(steps):
-            if not stepper.advance(0.0, step):
-                stepper.take_back(kept)
-                return 0.0
-        self._iterations = int(stepper.counters[NEWTON]) - before
+        before, kept = int(stepper.counters[self._counted]), stepper.kept()
+        if stepper.take(0.0, step, 0, steps, steps + 1, np.zeros((0, stepper.width))) < steps:
+            stepper.take_back(kept)
+            return 0.0
+        self._iterations = int(stepper.counters[self._counted]) - before
         return steps * step
 
     def state(self) -> _Moving:
         """Return the present state."""
         (z,), (v,), (row,) = self._stepper.look()
         return _Moving(z, v, float(row[KINETIC]), float(row[STRAIN]), self._iterations)
-
-
-class _Impulses:
-    """Sequential impulses: at once, stable at any step, or as published by sweeps, in steps that are cut to
-    what is stable."""
-
-    def __init__(self, design: Mechanism, z: Array, v: Array, form: str, sweeps: int) -> None:
-        swept, body = sweeps if form == "published" else None, design.design.bodies[0].name
-        self._solver = solver = impulse_solver(design, form=form, sweeps=swept, body=body)
-        self._out, self.longest = solver.look(solver.start_at(z, v)), math.inf
-        if form == "published":
-            limit, damping = stability_limit(design), solver.system.scene.of(StripDamping)
-            time = max((each.relaxation_time for each in damping), default=0.0)
-            # damping is explicit too: h^2 + 2 T h < limit^2
-            self.longest = STABLE_PART * limit**2 / (math.hypot(limit, time) + time)
-
-    def advance(self, steps: int, step: float) -> float:
-        """As of the other; where a step must be cut below its least part, none counts."""
-        parts = min(MOST_PARTS, max(1, math.ceil(step / self.longest)))
-        step, steps = min(step / parts, self.longest), steps * parts
-        out = self._solver.step(self._out.state, step, steps)
-        if not out.complete:
-            return 0.0
-        self._out = out
-        return steps * step
-
-    def state(self) -> _Moving:
-        """Return the present state."""
-        out = self._out
-        now, sweeps = out.state, out.counters["sweeps"]
-        return _Moving(now.z, now.v, out.kinetic_energy, out.strain_energy, sweeps)
-
-
-#: A solver that was started from a state; `longest`: step [s] that it can take.
-Motion = _Energy | _Impulses
-
-
-def motion(solver: str, sweeps: int, design: Mechanism, z: Array, v: Array) -> Motion:
-    """Return the motion of the released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI].
-
-    sweeps: largest number for one linear system of the published form [1].
-    """
-    if solver == "energy":
-        return _Energy(design, z, v)
-    return _Impulses(design, z, v, solver, sweeps)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,13 +9,14 @@ from spline_model import (
     BodyDesign,
     StripDesign,
     compliant_mechanism,
-    impulse_solver,
     motion_penalty_stiffness,
     solve_impulses,
     solve_release,
 )
+from spline_model.compile import compile_scene
+from spline_model.impulses.arrays import SOLVES
 from tests import gates
-from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, total
+from tests.spline.swings import POLYMER, QUARTER, SECTION, pivot, stepper, total
 from tests.table_one import TABLE_ONE
 
 # ---- order and agreement ----
@@ -77,15 +78,12 @@ def test_no_energy_gain_in_ten_thousand_steps(design, settings):
 def test_work_of_a_picture():
     """Requirement: the four steps of a picture need few linear systems: 4 a step but after a release."""
     for design, step in ((TABLE_ONE, 0.01), (TABLE_ONE, 1e-3), (TABLE_ONE, 2e-4), (POLYMER, 0.01)):
-        solver = impulse_solver(pivot(design))
-        state, solves = solver.start(QUARTER), []
+        swing, solves = stepper(pivot(design), QUARTER), [0]
         for _ in range(100):
-            outcome = solver.step(state, step, count=4)
-            assert outcome.complete
-            state = outcome.state
-            solves.append(outcome.counters["solves"])
-        assert max(solves) <= 30
-        assert np.percentile(solves, 95) <= 16
+            assert swing.take(0.0, step, 0, 4, 5, np.zeros((0, swing.width))) == 4
+            solves.append(int(swing.counters[SOLVES]))
+        assert np.diff(solves).max() <= 30
+        assert np.percentile(np.diff(solves), 95) <= 16
 
 
 # ---- sweeps ----
@@ -120,9 +118,8 @@ def tumbling(form, step):
     free = compliant_mechanism(
         strips=[strip], bodies=bodies, control_points=5, penalty_stiffness=motion_penalty_stiffness(5)
     )
-    solver = impulse_solver(free, body="left", form=form, tolerance=1e-11)
-    system, layout, mass = solver.system, solver.system.layout, solver.motion.mass
-    q = system.rest[: layout.coordinate_count]
+    system = compile_scene(free.released())
+    layout, mass, q = system.layout, system.mass, system.rest[: system.layout.coordinate_count]
     # a rigid motion, 0.3 m/s along x and 5 rad/s about the origin
     v = np.zeros(len(q))
     at = [*range(0, 2 * 5, 2), *layout.bodies.values()]
@@ -138,11 +135,10 @@ def tumbling(form, step):
             p[start + 2] for start in layout.bodies.values()
         )
 
-    state = solver.start_at(system.rest, v)
-    linear, angular = momenta(state)
-    outcome = solver.step(state, step, count=round(0.01 / step))
-    assert outcome.complete
-    after, turned = momenta(outcome.state)
+    flight, count = stepper(free, v=v, form=form, tolerance=1e-11), round(0.01 / step)
+    linear, angular = momenta(flight.state)
+    assert flight.take(0.0, step, 0, count, count + 1, np.zeros((0, flight.width))) == count
+    after, turned = momenta(flight.state)
     return np.abs(after - linear).max() / np.linalg.norm(linear), abs(turned / angular - 1.0)
 
 
