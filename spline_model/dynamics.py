@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import FIRST, MOST
-from spline_model.accurate_motion import Task, solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
-from spline_model.content import starts_still, unresolved, with_companion
+from spline_model.content import Task, starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
@@ -89,7 +88,6 @@ def solve_motion(
     duration: float = 0.05,
     step: float | None = None,
     integrator: str = "energy",
-    accuracy: float | None = None,
     records: int | None = None,
     after: Trajectory | None = None,
     check: bool = True,
@@ -120,19 +118,15 @@ def solve_motion(
     integrator : str
         "energy" (default, cannot create energy; with massless strips, only the bodies are dynamic), or
         "leapfrog", the fastest, for free scenes of which no strip is damped or massless.
-    accuracy : float, rad and 1, default None
-        Wanted error over the run, of rotations and of places over the longest strip, instead of a step: steps
-        and control points are chosen, and the trajectory has its `estimate`.
     records : int, default None
-        Largest number of records; default every step, or with an accuracy 128 per period or more.
+        Largest number of records; default every step.
     after : Trajectory, default None
         A motion of this mechanism to continue from its last record, instead of `start`; time, work, losses
         and the clock of loads and drives run on.
     check : bool, default True
         Compute companion motions with two control points more and with a quarter of the step. They estimate
         `rotation_error` and `displacement_error`, and set `resolution` where these are large. They cost about
-        five other motions, or one by the leapfrog where it can be used. None is made with an accuracy, which
-        has its own estimate, or with `after`.
+        five other motions, or one by the leapfrog where it can be used. None is made with `after`.
 
     Returns
     -------
@@ -168,16 +162,13 @@ def solve_motion(
         require_kind("drive", drive, DrivenRotation, "a DrivenRotation or None")
     if after is not None:
         require_kind("after", after, Trajectory, "a motion of this mechanism or None")
-    _check(integrator, duration, start, step, accuracy)
-    if accuracy is not None and after is not None:
-        raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
+    require_choice("integrator", integrator, tuple(INTEGRATORS))
+    require_positive("duration", duration, "s")
+    if start is not None:
+        require_finite("start", start, "rad")
+    if step is not None:
+        require_positive("step", step, "s")
     body = mechanism.design.body_named(body)
-    if accuracy is not None:
-        reached, _ = next(_settled(mechanism, start, body))
-        task = Task(
-            mechanism=reached, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
-        )
-        return solve_accurately(task, accuracy, records)
     asked = Asked(body, drive, duration, step, records, INTEGRATORS[integrator])
     if after is not None:
         return moved(mechanism.in_motion(), None, asked, Laps(), after).counted_on(after)
@@ -242,23 +233,21 @@ def moved(
     width = motion.system.layout.size + motion.system.layout.coordinate_count + 7
     steps = Steps.of(asked.duration, step, asked.records, width)
     laps.lap("compile")
-    run = carry(stepper, steps)
-    laps.lap("solve")
-    return Trajectory.of(
-        motion.system,
-        run,
-        effects=mechanism.effects,
-        body=asked.body,
+    return carry(
+        stepper,
+        steps,
+        laps=laps,
         settings={
             "integrator": stepper.name,
             "step_s": steps.step,
             "penalty_stiffness": mechanism.design.discretisation.slide,
             **stepper.settings,
         },
+        effects=mechanism.effects,
+        body=asked.body,
         unresolved=partial(asked.unresolved, scene, begun, steps.step),
         way=_way_to_start(path) if path else "",
         still=partial(starts_still, begun, mechanism.design),
-        laps=laps,
     )
 
 
@@ -272,11 +261,11 @@ def checked(
 ) -> Trajectory:
     """Return a motion with its estimated errors [rad, 1] and its ``resolution``, from companion motions.
 
-    start: rotation at the start [rad]. The arguments are those of the motion. A motion that stopped, or that
-    has an estimate, is returned unchanged.
+    start: rotation at the start [rad]. The arguments are those of the motion. A motion that stopped is
+    returned unchanged.
     """
     mechanism = mechanism.on(trajectory.segments, trajectory.control_points).in_motion()
-    if trajectory.status is not Status.CONVERGED or trajectory.estimate is not None:
+    if trajectory.status is not Status.CONVERGED:
         return trajectory
     task = Task(
         mechanism=mechanism,
@@ -339,17 +328,3 @@ def _begin(motion: Motion, held: Later | None, after: Trajectory | None) -> Star
     if after.velocities.shape[1] != count or after.states.shape[1] < known:
         raise InvalidParameter("after", "a motion of another mechanism", f"one of {count} coordinates")
     return Start(motion.later(float(after.time[-1])), Later(after.states.copy), after.velocities[-1].copy())
-
-
-def _check(
-    integrator: str, duration: float, start: float | None, step: float | None, accuracy: float | None
-) -> None:
-    require_choice("integrator", integrator, tuple(INTEGRATORS))
-    require_positive("duration", duration, "s")
-    if start is not None:
-        require_finite("start", start, "rad")
-    for name, value in (("step", step), ("accuracy", accuracy)):
-        if value is not None:
-            require_positive(name, value, "s" if name == "step" else "rad")
-    if accuracy is not None and (step is not None or integrator != "energy"):
-        raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")

@@ -20,7 +20,6 @@ transposed Jacobian, Eq 30 its minus sign.
 from __future__ import annotations
 
 import math
-import sys
 from functools import partial
 
 import numpy as np
@@ -44,7 +43,15 @@ from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import linear_modes
 from spline_model.motion.arrays import zeros
 from spline_model.motion.moves import Moves
-from spline_model.motion.records import Trajectory, rows_of
+from spline_model.motion.records import (
+    DISSIPATED,
+    ENERGIES,
+    KINETIC,
+    STRAIN,
+    WEIGHT,
+    WORK,
+    Trajectory,
+)
 from spline_model.motion.start import Start
 from spline_model.newton import Laps
 from spline_model.scene import Scene
@@ -104,7 +111,6 @@ class Stepper(Moves):
     """
 
     most_gain = math.inf
-    watched = sys.maxsize
     smallest = 1.0
 
     def __init__(
@@ -146,10 +152,13 @@ class Stepper(Moves):
 
     def shown(self, records: Array) -> tuple[Array, Array]:
         """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
-        z, v = self.unknowns(records)
-        work = (z[:, : v.shape[1]] - self.state.begun) @ loads_of(self.motion)
-        energies = np.column_stack((records[:, -2], work, records[:, -1]))
-        return z[:, self.motion.system.layout.poses], rows_of(self.motion, z, v, energies)
+        (z, v), system = self.unknowns(records), self.motion.system
+        q, rows = z[:, : v.shape[1]], np.zeros((len(z), ENERGIES))
+        rows[:, KINETIC] = 0.5 * ((v @ system.mass) * v).sum(axis=1)
+        rows[:, WEIGHT] = -q @ system.weight if system.weight.size else 0.0
+        rows[:, WORK] = (q - self.state.begun) @ loads_of(self.motion)
+        rows[:, STRAIN], rows[:, DISSIPATED] = records[:, -2], records[:, -1]
+        return z[:, system.layout.poses], rows
 
     def counted(self, steps: int) -> dict[str, int]:
         """What was counted, by name."""
@@ -163,7 +172,7 @@ class Stepper(Moves):
 def _unresolved(scene: Scene, start: Start, step: float) -> str:
     """How far a step [s] under-resolves the swing at rest, or an empty string."""
     system = start.motion.system
-    squares = linear_modes(system, system.rest, start.motion.mass)[0]
+    squares = linear_modes(system, system.rest, start.motion.system.mass)[0]
     period = 2 * math.pi / math.sqrt(squares[0]) if squares[0] > 0 else math.inf
     if step * STEPS_PER_PERIOD <= period:
         return ""

@@ -309,27 +309,3 @@ class FrequencyEstimate:
     segments: int
     control_points: int
     trials: tuple[int, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class MotionEstimate:
-    """Estimated error of a motion that was solved to an ``accuracy`` [rad].
-
-    Attributes
-    ----------
-    rotation : float, rad
-        Largest error over the motion, of rotations [rad] and of places over the longest strip [1].
-    time, space : float, rad
-        Errors of the steps and of the control points, which may cancel in part.
-    control_points : int
-        Chosen number.
-    runs : int
-        Number of computed motions.
-    """
-
-    accuracy: float
-    rotation: float
-    time: float
-    space: float
-    control_points: int
-    runs: int

@@ -84,8 +84,8 @@ class Problem(NamedTuple):
             held_at=drives.coordinate,
             held_row=drives.row,
             held_to=drives.origin + drives.factors[drives.first] * drives.target,
-            mass=motion.mass,
-            drag=motion.drag if motion.drag.size else np.zeros((count, count)),
+            mass=motion.system.mass,
+            drag=motion.system.drag if motion.system.drag.size else np.zeros((count, count)),
             force=loads_of(motion) + (tables.weight if tables.weight.size else 0.0),
             rigidity=motion.rigidity,
             relaxation=motion.relaxation,
@@ -194,6 +194,6 @@ def _constraints(
 def _require_mass(motion: Motion, start: list[int], size: list[int], names: list[str]) -> None:
     """Refuse a group without inertia: an impulse would change its velocity without bound."""
     for at, count, name in zip(start, size, names, strict=True):
-        block = motion.mass[at : at + count, at : at + count]
+        block = motion.system.mass[at : at + count, at : at + count]
         if np.linalg.eigvalsh(block)[0] <= 0:
             raise InvalidParameter("effects", f"no inertia of {name}", "inertia of every strip and body")

@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
-from spline_model.motion.bodies import cayley, turned
+from spline_model.motion.bodies import turned
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
-from spline_model.motion.strip import SHARE, SLOPE, keep_curve, lost_between, quadratic
+from spline_model.motion.strip import keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
@@ -60,21 +60,8 @@ def forward(y, arrays, masses):
 
 
 @part()
-def _hold(s, state, strips, work):
-    """What the clamps do to a strip, from the forces of the step just solved."""
-    own, force, mean = work.line.size - 6, work.force[s], work.mean[s]
-    for e in range(2):
-        inner, outer, stick, clamped = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e, state.clamped[s, e]
-        moving = (strips.tips[s] if e else strips.roots[s]) >= 0
-        for k in range(2):
-            clamped[k] = force[outer + k] + force[inner + k]
-        across = mean[stick] * force[inner + 1] - mean[stick + 1] * force[inner]
-        clamped[2] = mean[SHARE + e] * across / (mean[SLOPE + e] if moving else 1.0)
-
-
-@part()
 def _count_work(time, h, active, state, masses, work):
-    """What loads and drives did in the solved step, and what the drives' reactions were."""
+    """What loads and drives did in the solved step."""
     dy, totals = work.dy, state.totals
     for f in range(masses.load_at.size):
         i = masses.load_at[f]
@@ -86,11 +73,8 @@ def _count_work(time, h, active, state, masses, work):
         moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
         totals[0] += load_at(f, time + 0.5 * h, masses) * moved
     for d in range(masses.drive_at.size):
-        state.reaction[d] = 0.0
         if active[d] == 1:
-            i = masses.drive_at[d]
-            totals[0] += work.residual[i] * dy[i]
-            state.reaction[d] = work.residual[i] / (cayley(dy[i])[0] if i % 3 == 2 else 1.0)
+            totals[0] += work.residual[masses.drive_at[d]] * dy[masses.drive_at[d]]
 
 
 @part()
@@ -119,7 +103,6 @@ def _accept(time, h, active, state, arrays, masses, work):
         for i in range(at, at + modes):
             work.y[i] = dy[i]
         keep_curve(s, strips, local, state)
-        _hold(s, state, strips, work)
     copy(work.y, state.y)
 
 
@@ -224,7 +207,7 @@ class Stepper(Moves):
     name = "energy"
 
     def __init__(self, start: Start) -> None:
-        self.motion, self.first = start.motion, start.z
+        self.motion = start.motion
         self.model = model = require_reduced(self.motion.system)
         self._arrays, self._masses = model.arrays(), Masses.of(self.motion, model)
         self.counters = np.zeros(6, dtype=np.int64)
@@ -260,11 +243,12 @@ class Stepper(Moves):
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Return unknowns (R, N) [m, rad, N] and velocities (R, Q) [m/s, rad/s] of records (R, W).
 
-        Axial forces and multipliers are the means of the steps that end there.
+        Axial forces are the means of the steps that end there. Multipliers are zero: clamps are solved.
         """
         model, layout = self.model, self.model.system.layout
-        y, rate, velocity, clamped, reaction = self.state.parted(records[:, :-ENERGIES])
-        z = unknowns_of(model, np.ascontiguousarray(y), reaction, clamped)
+        y, rate, velocity = self.state.parted(records[:, :-ENERGIES])
+        z = unknowns_of(model, np.ascontiguousarray(y), np.zeros((len(y), len(self.active))))
+        z[:, layout.multiplier_start :] = 0.0
         v = np.zeros((len(records), layout.coordinate_count))
         poses = 3 * len(layout.bodies)
         v[:, layout.poses] = rate[:, :poses] * np.tile(model.system.scales.pose, poses // 3)

@@ -18,7 +18,6 @@ not kept, so that it would be of first order. One evaluation, second order, stab
 from __future__ import annotations
 
 import math
-import sys
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -205,7 +204,6 @@ class Stepper(energy_consistent.Stepper):
 
     name = NAME
     most_gain = LARGEST_GAIN
-    watched = sys.maxsize
     smallest = 1.0
 
     def __init__(self, start: Start) -> None:
@@ -250,16 +248,18 @@ def critical_step(motion: Motion, z: Array) -> float:
 def highest_frequency(motion: Motion, z: Array) -> float:
     """Return the highest circular frequency at a state and at rest [rad/s]."""
     system = motion.system
-    return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
+    return math.sqrt(
+        max(linear_modes(system, state, motion.system.mass)[0][-1] for state in (z, system.rest))
+    )
 
 
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    if motion.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
+    if motion.system.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
         expected = "energy (the default) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
     layout = motion.system.layout
-    blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
+    blocks = [motion.system.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
         raise InvalidParameter("integrator", NAME, "energy for strips without mass")
 

@@ -51,8 +51,8 @@ from studies.commands.parser import Argument, command, whole_number
 from studies.record.progress import Bar
 
 #: Options of the motion that only the finite elements have, and those of both models.
-FE_OPTIONS = ("most_steps",)
-OPTIONS = ("step", "integrator", "accuracy")
+FE_OPTIONS = ("most_steps", "accuracy")
+OPTIONS = ("step", "integrator")
 
 #: Parts of an estimate that are angles [rad].
 ANGLES = ("accuracy", "rotation", "time", "space")
@@ -81,8 +81,8 @@ LINES = 20
     take.STEP,
     take.INTEGRATOR,
     take.ACCURACY.but(
-        "wanted error of the rotation, in rad: chooses steps and raises the control points, or doubles "
-        "the elements (default: none is asked for)"
+        "wanted error of the rotation, in rad: chooses steps and doubles the elements (finite elements; "
+        "default: none is asked for)"
     ),
     Argument("--no-check", "omit the companion motions that estimate the resolution"),
     Argument(

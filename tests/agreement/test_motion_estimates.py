@@ -155,17 +155,6 @@ def test_a_drive_that_begins_with_a_jump_of_speed_has_its_error_in_the_estimate(
     assert 0.5 * 3.7e-3 < motion.rotation_error < 4.0 * 3.7e-3
 
 
-@pytest.mark.slow
-def test_an_accuracy_holds_where_a_drive_begins_with_a_jump_of_speed():
-    """The search ended at 12 control points with an estimate of 3.3e-4 rad, a tenth of the error."""
-    design, duration = led_with_a_jump()
-    asked = put(design, SplineSettings(), moving=True)
-    motion = splines.solve_motion(asked.modelled, body=design.body, duration=duration, accuracy=1e-3)
-    exact = spline(design, 21, 1920, duration, check=False)
-    assert motion.status.value == "converged"
-    assert abs(motion.rotation[-1] - exact.rotation[-1]) < min(1e-3, 2.0 * motion.estimate.rotation)
-
-
 def test_what_only_translates_has_an_error():
     """The crown of an arch hardly turns: its error is one of displacement, which steps of 2 ms make large."""
     design = read_design(str(FINDS / "shallow_arch.toml"))
