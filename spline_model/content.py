@@ -168,7 +168,7 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
     free[count:] = 0.0  # the stiffness of stretching alone, no force's
     limp = points._replace(numbers=points.numbers.copy())
     limp.numbers[:, RIGIDITY] = 0.0
-    assemble(free, limp, system.tables.clamps, gradient, hessian, np.empty((5, 4)))
+    assemble(free, limp, system.clamps, gradient, hessian, np.empty((5, 4)))
     stiffness = hessian[:count, :count].copy()
     for i, effect in enumerate(system.scene.of(MixedStretching)):
         if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):

@@ -179,7 +179,7 @@ def solve_motion(
 def _energy(start: Start) -> Moves:
     """The default scheme; with massless strips only the bodies are dynamic."""
     start.motion.require_material()
-    return quasi_static.stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
+    return quasi_static.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
 
 
 INTEGRATORS: dict[str, Scheme] = {"energy": _energy, leapfrog.NAME: leapfrog.Stepper}

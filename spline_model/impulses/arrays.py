@@ -68,7 +68,7 @@ class Problem(NamedTuple):
         one block.
         """
         system, drives = motion.system, motion.drives
-        layout, tables, count = system.layout, system.tables, system.layout.coordinate_count
+        layout, clamps, count = system.layout, system.clamps, system.layout.coordinate_count
         strips = {name: g for g, name in enumerate(layout.strips)}
         bodies = {name: len(strips) + g for g, name in enumerate(layout.bodies)}
         start = [at for at, _ in layout.strips.values()] + list(layout.bodies.values())
@@ -79,14 +79,14 @@ class Problem(NamedTuple):
         rows = np.array([row for block in blocks for row in block], dtype=np.int64).reshape(-1, 3)
         ends = [len(rows)] if sweeps is None else np.cumsum([len(block) for block in blocks])
         return cls(
-            points=tables.points,
-            clamps=tables.clamps,
+            points=system.points,
+            clamps=clamps,
             held_at=drives.coordinate,
             held_row=drives.row,
             held_to=drives.origin + drives.factors[drives.first] * drives.target,
             mass=motion.system.mass,
             drag=motion.system.drag if motion.system.drag.size else np.zeros((count, count)),
-            force=loads_of(motion) + (tables.weight if tables.weight.size else 0.0),
+            force=loads_of(motion) + (system.weight if system.weight.size else 0.0),
             rigidity=motion.rigidity,
             relaxation=motion.relaxation,
             unit=system.scales.unit / system.scales.energy,
@@ -95,7 +95,7 @@ class Problem(NamedTuple):
             groups=np.array((start, size), dtype=np.int64).T.copy(),
             rows=rows,
             first=np.array([0, *ends], dtype=np.int64),
-            grounded=int((tables.clamps.place[:, BODY] < 0).any() or drives.row.size > 0),
+            grounded=int((clamps.place[:, BODY] < 0).any() or drives.row.size > 0),
             sweeps=sweeps or 1,
             tolerance=float(tolerance),
         )

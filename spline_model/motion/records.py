@@ -30,7 +30,7 @@ QUIET = 1e-6
 
 def _clamp_gaps(motion: Motion, c: int, z: Array) -> Array:
     """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m]."""
-    clamps = motion.system.tables.clamps
+    clamps = motion.system.clamps
     (end, inner, body, _), (sign, bx, by, direction) = clamps.place[c], clamps.numbers[c]
     pose = z[:, body : body + 3].T if body >= 0 else np.zeros((3, len(z)))
     p, d = z[:, end : end + 2].T, sign * (z[:, inner : inner + 2] - z[:, end : end + 2]).T
@@ -146,7 +146,7 @@ class Trajectory(Tabulated):
     def constraint_residual(self) -> Array:
         """Largest constraint residual (T,) [m]."""
         largest = np.zeros(len(self.time))
-        for c in range(len(self.motion.system.tables.clamps.place)):
+        for c in range(len(self.motion.system.clamps.place)):
             largest = np.maximum(largest, np.abs(_clamp_gaps(self.motion, c, self.states)).max(axis=0))
         return largest
 

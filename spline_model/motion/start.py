@@ -121,7 +121,7 @@ class Motion:
             return v, 0.0
         size, count = z.size, v.size
         gradient, hessian = np.empty(size), np.empty((size, size))
-        points, clamps = self.system.tables.points, self.system.tables.clamps
+        points, clamps = self.system.points, self.system.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
         frames, arms = self.system.frames, np.zeros(size)
         carry(z, frames, arms)
