@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from spline_model.pivot import cross_axis_pivot as cross_axis_pivot
     from spline_model.section_forces import strip_fields as strip_fields
     from spline_model.sensitivity import sensitivities as sensitivities
-    from spline_model.sequential_impulse import impulse_solver as impulse_solver
     from spline_model.sequential_impulse import solve_impulses as solve_impulses
     from spline_model.solution import Status as Status
     from spline_model.statics import solve_mechanism as solve_mechanism
@@ -56,7 +55,6 @@ _HOMES = {
     "StripDesign": "design",
     "compliant_mechanism": "mechanism",
     "cross_axis_pivot": "pivot",
-    "impulse_solver": "sequential_impulse",
     "motion_penalty_stiffness": "discretisation",
     "natural_frequencies": "modes",
     "plate_factors": "effects.plate",

@@ -15,39 +15,24 @@ errors fall slowly with their number, and two more often err alike. The companio
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import compile_scene
-from spline_model.discretisation import motion_penalty_stiffness
-from spline_model.effects import DrivenRotation
-from spline_model.effects.boundary import Driven
-from spline_model.errors import InvalidParameter
-from spline_model.mechanism import Mechanism
-from spline_model.modes import linear_modes
+from spline_model.content import JUMP, MORE, Task
 from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
-from spline_model.motion.start import set_in_motion
 from spline_model.solution import MotionEstimate, Status
-from spline_model.statics import static_state
 
 Array = NDArray[np.float64]
 
-MORE = 2
-"""Control points more, for the estimate and from one trial to the next."""
 MOST = 14
 """Control points at which the search ends: each two more halve the explicit step and double its work."""
-MOST_DRIVEN, HIGHEST = 18, 24
-"""The same where a drive changes its speed: such motions have no explicit steps, and need more of them; and
-the most of a companion there, as round-off stops motions from 27 on."""
-JUMP = 2.0
-"""What half as many control points more count there: 3 for errors that fall with their number, 1 for those
-that fall fast."""
+MOST_DRIVEN = 18
+"""The same where a drive changes its speed: such motions have no explicit steps, and need more of them."""
 INSTANTS = 32
 """Instants a period of the swing at rest at which runs are compared: a step of the coarsest lies between."""
 FINE = 4
@@ -64,75 +49,6 @@ DOUBT = 0.25
 """The part of the difference of explicit runs that is added, for want of a third below the critical step."""
 MOST_STEPS = 500_000
 """Energy-consistent steps at which the search ends where there are no explicit ones."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Task:
-    """A motion of a mechanism from the static state at the rotation ``start`` [rad] of a body.
-
-    The attributes are the arguments of ``spline_model.dynamics.solve_motion``, which is ``solve``.
-    """
-
-    mechanism: Mechanism
-    start: float | None
-    body: str
-    drive: DrivenRotation | None
-    duration: float
-    solve: Callable[..., Trajectory]
-
-    @property
-    def length(self) -> float:
-        """Length of the longest strip [m], in which displacements count."""
-        return max(strip.length for strip in self.mechanism.design.strips)
-
-    @cached_property
-    def jumps(self) -> bool:
-        """Whether velocities jump in the motion, as a drive changes its speed or catches a body."""
-        drives = [*self.mechanism.released().of(Driven), *([] if self.drive is None else [self.drive])]
-        return any(_changes_speed(each) for each in drives)
-
-    def finer(self, n: int) -> int:
-        """Control points of the companion of a motion with n of them."""
-        return max(n + MORE, min(math.ceil(1.5 * n), HIGHEST)) if self.jumps else n + MORE
-
-    @cached_property
-    def frequency(self) -> float:
-        """Slowest circular frequency at rest [rad/s], 0 for none."""
-        system = compile_scene(self.mechanism.released())
-        squares = linear_modes(system, system.rest, set_in_motion(system).mass)[0]
-        return math.sqrt(max(float(squares[0]), 0.0))
-
-    def run(self, n: int, integrator: str, step: float, records: int) -> Trajectory:
-        """The motion with n control points by an integrator, with a step [s] and a number of records."""
-        asked = {name: getattr(self, name) for name in ("start", "body", "drive", "duration")}
-        asked |= {"step": step, "integrator": integrator, "records": records}
-        return self.solve(self.with_points(n), **asked, check=False)
-
-    def critical(self, n: int) -> float:
-        """The longest stable explicit step with n control points [s], 0 where it cannot be used."""
-        if self.drive is not None:
-            return 0.0
-        chosen = self.with_points(n)
-        motion = set_in_motion(compile_scene(chosen.released()))
-        try:
-            leapfrog.require_explicit(motion)
-        except InvalidParameter:
-            return 0.0
-        held = static_state(chosen.at_start(), self.start, body=self.body)[: motion.system.layout.size]
-        return leapfrog.critical_step(motion, held)
-
-    @cached_property
-    def with_points(self) -> Callable[[int], Mechanism]:
-        """The mechanism with n control points, and a penalty stiffness in proportion; one object a number."""
-        mechanism, grid = self.mechanism, self.mechanism.design.discretisation
-
-        def made(n: int) -> Mechanism:
-            if n == grid.points:
-                return mechanism
-            slide = grid.slide * motion_penalty_stiffness(n) / motion_penalty_stiffness(grid.points)
-            return mechanism.with_discretisation(control_points=n, penalty_stiffness=slide)
-
-        return cache(made)
 
 
 def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajectory:
@@ -167,12 +83,6 @@ def solve_accurately(task: Task, accuracy: float, records: int | None) -> Trajec
         n += MORE
 
 
-def _changes_speed(drive: Driven) -> bool:
-    """Return whether a drive moves a body by a history, which is linear between its times, or catches it."""
-    factors = {factor for _, factor in drive.history or ()}
-    return drive.held[0] > 0.0 or (drive.moves and len(factors) > 1)
-
-
 def _comparison(task: Task, records: int | None) -> tuple[int, int]:
     """Spacings of the instants at which runs are compared, and every which fine record is kept."""
     least = max(math.ceil(INSTANTS * task.duration * task.frequency / (2 * math.pi)), INSTANTS)
@@ -203,7 +113,7 @@ def _answer(fine: Trajectory, estimate: MotionEstimate, every: int) -> Trajector
     changes: dict[str, Any] = {
         name: value[::every] for name, value in vars(fine).items() if isinstance(value, np.ndarray)
     }
-    changes["whole"] = fine.whole.thinned(every)
+    changes["make"] = lambda: (fine.states[::every], fine.velocities[::every])
     changes["bodies"] = {name: place[::every] for name, place in fine.bodies.items()}
     changes["settings"] = fine.settings | {"accuracy_rad": estimate.accuracy}
     return replace(fine, status=status, message=message, estimate=estimate, **changes)

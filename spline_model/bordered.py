@@ -47,16 +47,15 @@ def evaluate(
     Equilibrium is gradient = 0: its rows are force balance, axial compatibility and, with a minus sign, the
     constraints. Frames are put into z where their bodies carry them.
     """
-    tables, frames, arms = system.tables, system.frames, np.empty_like(z)
+    frames, arms, drives, loads = system.frames, np.empty_like(z), system.drives, system.loads
     if frames.place.size:
         carry(z, frames, arms)
-    bending, axial, _ = assemble(z, tables.points, tables.clamps, gradient, hessian, np.empty((5, 4)))
-    drives, loads = tables.drives, tables.loads
+    bending, axial, _ = assemble(z, system.points, system.clamps, gradient, hessian, np.empty((5, 4)))
     gradient[drives.row] -= z[drives.coordinate] - drives.origin - load_factor * drives.target
     gradient[drives.coordinate] -= z[drives.row]
     hessian[drives.row, drives.coordinate] = hessian[drives.coordinate, drives.row] = -1.0
     np.subtract.at(gradient, loads.coordinate, load_factor * loads.value)
-    gradient[: tables.weight.size] -= tables.weight
+    gradient[: system.weight.size] -= system.weight
     system.followers.subtract(z, load_factor, gradient, hessian)
     if system.springs.size:
         at = system.layout.poses

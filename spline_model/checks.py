@@ -24,7 +24,7 @@ the points of a Bezier strip of more than twenty are known no better. Another br
 
 def refuse(system: System, z: Array) -> str:
     """Return why a converged state z (N,) [m, rad, N] is no strip; an empty string if it is one."""
-    clamps = system.tables.clamps
+    clamps = system.clamps
     for c, ((end, inner, body, _), numbers) in enumerate(zip(clamps.place, clamps.numbers, strict=True)):
         chord = numbers[SIGN] * (z[inner : inner + 2] - z[end : end + 2])
         angle = numbers[DIRECTION] + (z[body + 2] if body >= 0 else 0.0)

@@ -31,7 +31,7 @@ from spline_model.frames import Frames
 from spline_model.layout import Layout
 from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
-from spline_model.tables import ClampTable, DriveTable, LoadTable, Tables, between_bodies, frames_of, weight
+from spline_model.tables import ClampTable, DriveTable, LoadTable, between_bodies, frames_of, weight
 
 Array = NDArray[np.float64]
 Table = TypeVar("Table")
@@ -143,15 +143,9 @@ class System:
         return np.asarray(0.5 * (force * moved).sum(axis=-1))
 
     @cached_property
-    def tables(self) -> Tables:
-        """All tables, which the bordered form and the motions walk."""
-        return Tables(
-            points=self.points,
-            clamps=self._table("clamps", ClampTable.of),
-            drives=self.drives,
-            loads=self.loads,
-            weight=self.weight,
-        )
+    def clamps(self) -> ClampTable:
+        """Clamped ends of strips."""
+        return self._table("clamps", ClampTable.of)
 
     def once(self, name: str, make: Callable[[System], Any]) -> Any:
         """Return what ``make`` makes of the system, kept with it under a name."""

@@ -11,19 +11,22 @@ the companion has half as many control points more.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.accurate_motion import JUMP, MORE, Task
 from spline_model.basis import SlideModes
 from spline_model.bordered import assemble
 from spline_model.compile import System, compile_scene
 from spline_model.design import Design
-from spline_model.effects import MixedStretching
+from spline_model.discretisation import motion_penalty_stiffness
+from spline_model.effects import DrivenRotation, MixedStretching
+from spline_model.effects.boundary import Driven
 from spline_model.errors import ConvergenceError, InvalidParameter
+from spline_model.mechanism import Mechanism
 from spline_model.modes import SLIDE_SHARE, linear_modes
 from spline_model.motion import leapfrog
 from spline_model.motion.records import Trajectory
@@ -31,6 +34,7 @@ from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.quadrature import RIGIDITY
 from spline_model.scene import Scene
+from spline_model.statics import static_state
 
 Array = NDArray[np.float64]
 
@@ -52,6 +56,12 @@ FINER, ORDER = 4, 2
 SHARED = 1.5
 """What errors are more than such companions tell, which do not resolve the fastest waves either: on 30 random
 releases their sum was 0.37 to 3.2 times the error."""
+MORE, HIGHEST = 2, 24
+"""Control points more of a companion, and the most where a drive changes its speed: round-off stops motions
+from 27 on."""
+JUMP = 2.0
+"""What half as many control points more count there: 3 for errors that fall with their number, 1 for those
+that fall fast."""
 COMPARED = 1000
 """Instants at which the two are compared, about: at least so many where the motion has as many records."""
 
@@ -87,8 +97,8 @@ def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> l
     all of it.
     """
     system = motion.system
-    squares, shapes, slide = linear_modes(system, z, motion.mass)
-    push, speed = shapes.T @ motion.mass @ acceleration, shapes.T @ motion.mass @ v
+    squares, shapes, slide = linear_modes(system, z, motion.system.mass)
+    push, speed = shapes.T @ motion.system.mass @ acceleration, shapes.T @ motion.system.mass @ v
     frequency = np.sqrt(np.maximum(squares, 0.0))
     stored = np.divide(push**2, np.abs(squares), out=np.zeros_like(push), where=squares != 0.0)
     energy = 0.5 * stored + 0.5 * speed**2
@@ -133,7 +143,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
         start = Start(set_in_motion(compile_scene(scene)), start.known, start.v)
     motion = start.motion
     system = motion.system
-    lowest = linear_modes(system, system.rest, motion.mass)[0][0]
+    lowest = linear_modes(system, system.rest, motion.system.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
     return _resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
@@ -144,7 +154,7 @@ def starts_still(start: Start, design: Design) -> bool:
     That is of the largest that cancel, of stretching by displacements of a strip's length.
     """
     motion, scales = start.motion, start.motion.system.scales
-    force = (motion.mass @ start.acceleration) * scales.unit[: len(start.v)] / scales.energy
+    force = (motion.system.mass @ start.acceleration) * scales.unit[: len(start.v)] / scales.energy
     stiffest = max(strip.axial_rigidity for strip in design.strips) * scales.length / scales.energy
     least = max(STILL_FORCE, ROUND_OFF * np.finfo(float).eps * stiffest)
     return not start.v.any() and float(np.abs(force).max(initial=0.0)) <= least
@@ -158,7 +168,7 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
     free[count:] = 0.0  # the stiffness of stretching alone, no force's
     limp = points._replace(numbers=points.numbers.copy())
     limp.numbers[:, RIGIDITY] = 0.0
-    assemble(free, limp, system.tables.clamps, gradient, hessian, np.empty((5, 4)))
+    assemble(free, limp, system.clamps, gradient, hessian, np.empty((5, 4)))
     stiffness = hessian[:count, :count].copy()
     for i, effect in enumerate(system.scene.of(MixedStretching)):
         if effect.axial_compliance > 0 and not isinstance(effect.modes, SlideModes):
@@ -168,6 +178,75 @@ def _stretching_share(system: System, z: Array, shapes: Array, squares: Array) -
     strain = np.einsum("im,ij,jm->m", shapes, stiffness, shapes)
     shares: Array = np.divide(strain, np.abs(squares), out=np.zeros_like(strain), where=squares != 0.0)
     return shares
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """A motion of a mechanism from the static state at the rotation ``start`` [rad] of a body.
+
+    The attributes are the arguments of ``spline_model.dynamics.solve_motion``, which is ``solve``.
+    """
+
+    mechanism: Mechanism
+    start: float | None
+    body: str
+    drive: DrivenRotation | None
+    duration: float
+    solve: Callable[..., Trajectory]
+
+    @property
+    def length(self) -> float:
+        """Length of the longest strip [m], in which displacements count."""
+        return max(strip.length for strip in self.mechanism.design.strips)
+
+    @cached_property
+    def jumps(self) -> bool:
+        """Whether velocities jump in the motion, as a drive changes its speed or catches a body."""
+        drives = [*self.mechanism.released().of(Driven), *([] if self.drive is None else [self.drive])]
+        return any(_changes_speed(each) for each in drives)
+
+    def finer(self, n: int) -> int:
+        """Control points of the companion of a motion with n of them."""
+        return max(n + MORE, min(math.ceil(1.5 * n), HIGHEST)) if self.jumps else n + MORE
+
+    @cached_property
+    def frequency(self) -> float:
+        """Slowest circular frequency at rest [rad/s], 0 for none."""
+        system = compile_scene(self.mechanism.released())
+        squares = linear_modes(system, system.rest, set_in_motion(system).system.mass)[0]
+        return math.sqrt(max(float(squares[0]), 0.0))
+
+    def run(self, n: int, integrator: str, step: float, records: int) -> Trajectory:
+        """The motion with n control points by an integrator, with a step [s] and a number of records."""
+        asked = {name: getattr(self, name) for name in ("start", "body", "drive", "duration")}
+        asked |= {"step": step, "integrator": integrator, "records": records}
+        return self.solve(self.with_points(n), **asked, check=False)
+
+    def critical(self, n: int) -> float:
+        """The longest stable explicit step with n control points [s], 0 where it cannot be used."""
+        if self.drive is not None:
+            return 0.0
+        chosen = self.with_points(n)
+        motion = set_in_motion(compile_scene(chosen.released()))
+        try:
+            leapfrog.require_explicit(motion)
+        except InvalidParameter:
+            return 0.0
+        held = static_state(chosen.at_start(), self.start, body=self.body)[: motion.system.layout.size]
+        return leapfrog.critical_step(motion, held)
+
+    @cached_property
+    def with_points(self) -> Callable[[int], Mechanism]:
+        """The mechanism with n control points, and a penalty stiffness in proportion; one object a number."""
+        mechanism, grid = self.mechanism, self.mechanism.design.discretisation
+
+        def made(n: int) -> Mechanism:
+            if n == grid.points:
+                return mechanism
+            slide = grid.slide * motion_penalty_stiffness(n) / motion_penalty_stiffness(grid.points)
+            return mechanism.with_discretisation(control_points=n, penalty_stiffness=slide)
+
+        return cache(made)
 
 
 def with_companion(task: Task, motion: Trajectory) -> Trajectory:
@@ -201,6 +280,12 @@ def with_companion(task: Task, motion: Trajectory) -> Trajectory:
         )
     remark = f"error not estimated: a companion {failures[-1]}"
     return replace(motion, checked=remark, seconds=laps.lap("check") | motion.seconds)
+
+
+def _changes_speed(drive: Driven) -> bool:
+    """Return whether a drive moves a body by a history, which is linear between its times, or catches it."""
+    factors = {factor for _, factor in drive.history or ()}
+    return drive.held[0] > 0.0 or (drive.moves and len(factors) > 1)
 
 
 Companion = tuple[int, str, float, float]

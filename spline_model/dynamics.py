@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.accuracy import FIRST, MOST
-from spline_model.accurate_motion import Task, solve_accurately
+from spline_model.accurate_motion import solve_accurately
 from spline_model.compile import compile_scene
 from spline_model.confirmed import MORE
-from spline_model.content import starts_still, unresolved, with_companion
+from spline_model.content import Task, starts_still, unresolved, with_companion
 from spline_model.effects import DrivenRotation
 from spline_model.errors import (
     ConvergenceError,
@@ -31,21 +31,17 @@ from spline_model.motion.records import Trajectory
 from spline_model.motion.start import Motion, Start, set_in_motion
 from spline_model.newton import Laps
 from spline_model.pivot import Pivot
+from spline_model.scene import Scene
 from spline_model.solution import Later, Status
 from spline_model.static_answers import StaticSolution
 from spline_model.statics import settle
 
 Array = NDArray[np.float64]
 
-INTEGRATORS: dict[str, Callable[..., Moves]] = {
-    "energy": energy_consistent.Stepper,
-    leapfrog.NAME: leapfrog.Stepper,
-}
+Scheme = Callable[[Start], Moves]
 """What makes of a start what advances it."""
 MOST_IN_MOTION = 14
 """Control points at which a motion that stops is given up, where their number is left open."""
-STEP = 5e-5
-"""Default step of the energy integrator [s]: some 240 steps a swing of Table 1."""
 
 
 def solve_release(pivot: Pivot, *, start: float | None = math.pi / 2, **options: Any) -> Trajectory:
@@ -119,8 +115,8 @@ def solve_motion(
         A rotation that is held or driven in a part of the run.
     duration : float, s
     step : float, s, default None
-        Default STEP, or a stable one of the leapfrog. It is shortened so that a whole number of steps fits
-        between the records.
+        Default ``spline_model.motion.moves.STEP``, or a stable one of the leapfrog. It is shortened so that a
+        whole number of steps fits between the records.
     integrator : str
         "energy" (default, cannot create energy; with massless strips, only the bodies are dynamic), or
         "leapfrog", the fastest, for free scenes of which no strip is damped or massless.
@@ -172,9 +168,17 @@ def solve_motion(
         require_kind("drive", drive, DrivenRotation, "a DrivenRotation or None")
     if after is not None:
         require_kind("after", after, Trajectory, "a motion of this mechanism or None")
-    _check(integrator, duration, start, step, accuracy)
-    if accuracy is not None and after is not None:
-        raise InvalidParameter("accuracy", accuracy, "a step for a motion that goes on after another")
+    require_choice("integrator", integrator, tuple(INTEGRATORS))
+    require_positive("duration", duration, "s")
+    if start is not None:
+        require_finite("start", start, "rad")
+    for name, value in (("step", step), ("accuracy", accuracy)):
+        if value is not None:
+            require_positive(name, value, "s" if name == "step" else "rad")
+    if accuracy is not None and (step is not None or integrator != "energy" or after is not None):
+        raise InvalidParameter(
+            "accuracy", accuracy, "no step and no `after` beside it, and the energy integrator"
+        )
     body = mechanism.design.body_named(body)
     if accuracy is not None:
         reached, _ = next(_settled(mechanism, start, body))
@@ -182,30 +186,43 @@ def solve_motion(
             mechanism=reached, start=start, body=body, drive=drive, duration=duration, solve=solve_motion
         )
         return solve_accurately(task, accuracy, records)
-    asked = _Asked(body, drive, duration, step, records, integrator)
+    asked = Asked(body, drive, duration, step, records, INTEGRATORS[integrator])
     if after is not None:
-        return _moved(mechanism.in_motion(), None, asked, Laps(), after).counted_on(after)
+        return moved(mechanism.in_motion(), None, asked, Laps(), after).counted_on(after)
     trajectory = _followed(mechanism, start, asked)
     return checked(mechanism, trajectory, start=start, body=body, drive=drive) if check else trajectory
 
 
-class _Asked(NamedTuple):
-    """What ``solve_motion`` is asked for beside the mechanism and its start."""
+def _energy(start: Start) -> Moves:
+    """The default scheme; with massless strips only the bodies are dynamic."""
+    start.motion.require_material()
+    return quasi_static.Stepper(start) if start.motion.massless else energy_consistent.Stepper(start)
+
+
+INTEGRATORS: dict[str, Scheme] = {"energy": _energy, leapfrog.NAME: leapfrog.Stepper}
+
+
+class Asked(NamedTuple):
+    """What is asked for in addition to a mechanism and its start.
+
+    step: None for the default of the scheme; unresolved: says what a step does not resolve.
+    """
 
     body: str
     drive: DrivenRotation | None
     duration: float
     step: float | None
     records: int | None
-    integrator: str
+    scheme: Scheme
+    unresolved: Callable[[Scene, Start, float], str] = unresolved
 
 
-def _followed(mechanism: Mechanism, start: float | None, asked: _Asked) -> Trajectory:
+def _followed(mechanism: Mechanism, start: float | None, asked: Asked) -> Trajectory:
     """The motion; where control points are left open and it stops, with more of them, or the longest one."""
     found: list[Trajectory] = []
     laps = Laps()
     for chosen, path in _settled(mechanism, start, asked.body):
-        found.append(_moved(chosen, path, asked, laps))
+        found.append(moved(chosen, path, asked, laps))
         if found[-1].status is Status.CONVERGED:
             return found[-1]
         if found[-1].control_points >= MOST_IN_MOTION:
@@ -214,54 +231,41 @@ def _followed(mechanism: Mechanism, start: float | None, asked: _Asked) -> Traje
     return max(found, key=lambda each: float(each.time[-1]))
 
 
-def _moved(
+def moved(
     mechanism: Mechanism,
     path: StaticSolution | None,
-    asked: _Asked,
+    asked: Asked,
     laps: Laps,
     after: Trajectory | None = None,
 ) -> Trajectory:
     """The motion with given control points, from the end of a path or after another motion."""
     laps.lap("start")
-    scene, drive, integrator = mechanism.released(), asked.drive, asked.integrator
+    scene, drive = mechanism.released(), asked.drive
     motion = set_in_motion(compile_scene(scene if drive is None else scene.with_effects(drive)))
     laps.lap("compile")
     begun = _begin(motion, path.unknowns if path else None, after)
     laps.lap("start")
-    if integrator != "leapfrog":
-        motion.require_material()
-    step = _default_step(integrator, begun, asked.duration) if asked.step is None else asked.step
+    stepper = asked.scheme(begun)
+    step = min(stepper.default_step(), asked.duration) if asked.step is None else asked.step
     width = motion.system.layout.size + motion.system.layout.coordinate_count + 7
     steps = Steps.of(asked.duration, step, asked.records, width)
     laps.lap("compile")
-    stepper, ran = INTEGRATORS[integrator], integrator
-    if integrator == "energy" and motion.massless:
-        stepper, ran = quasi_static.stepper, quasi_static.NAME
-    run = carry(stepper(begun), steps)
-    laps.lap("solve")
-    return Trajectory.of(
-        motion.system,
-        run,
-        effects=mechanism.effects,
-        body=asked.body,
+    return carry(
+        stepper,
+        steps,
+        laps=laps,
         settings={
-            "integrator": ran,
+            "integrator": stepper.name,
             "step_s": steps.step,
             "penalty_stiffness": mechanism.design.discretisation.slide,
+            **stepper.settings,
         },
-        unresolved=partial(unresolved, scene, begun, steps.step),
+        effects=mechanism.effects,
+        body=asked.body,
+        unresolved=partial(asked.unresolved, scene, begun, steps.step),
         way=_way_to_start(path) if path else "",
         still=partial(starts_still, begun, mechanism.design),
-        laps=laps,
     )
-
-
-def _default_step(integrator: str, start: Start, duration: float) -> float:
-    """STEP, or a stable one of the leapfrog where it is shorter; at most the duration [s]."""
-    step = min(STEP, duration)
-    if integrator == leapfrog.NAME:
-        step = min(step, leapfrog.PART * leapfrog.critical_step(start.motion, start.z))
-    return step
 
 
 def checked(
@@ -341,17 +345,3 @@ def _begin(motion: Motion, held: Later | None, after: Trajectory | None) -> Star
     if after.velocities.shape[1] != count or after.states.shape[1] < known:
         raise InvalidParameter("after", "a motion of another mechanism", f"one of {count} coordinates")
     return Start(motion.later(float(after.time[-1])), Later(after.states.copy), after.velocities[-1].copy())
-
-
-def _check(
-    integrator: str, duration: float, start: float | None, step: float | None, accuracy: float | None
-) -> None:
-    require_choice("integrator", integrator, tuple(INTEGRATORS))
-    require_positive("duration", duration, "s")
-    if start is not None:
-        require_finite("start", start, "rad")
-    for name, value in (("step", step), ("accuracy", accuracy)):
-        if value is not None:
-            require_positive(name, value, "s" if name == "step" else "rad")
-    if accuracy is not None and (step is not None or integrator != "energy"):
-        raise InvalidParameter("accuracy", accuracy, "no step beside it, and the energy integrator")

@@ -9,8 +9,8 @@ the constraints hold, at a fixed step h.
 "stable"   Elastic forces implicit, the axial ones as constraints with compliance, constraints
            fulfilled by the positions, iterations begun from the forces of the step before,
            backward differences of second order. What a step does not resolve is damped. No step
-           gains energy while the ground holds the mechanism and no drive acts: where the
-           differences would, the velocity is reduced.
+           gains energy while the ground holds the mechanism: where the differences would, the
+           velocity is reduced.
 
 Impulses are found at once (Eq 30), or, as published, by sweeps over single constraints (Eqs 24 to 26).
 Misprints of the paper are corrected: Eqs 22 and 23 begin from the state before, Eq 26 has the
@@ -20,16 +20,14 @@ transposed Jacobian, Eq 30 its minus sign.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System, compile_scene
+from spline_model.compile import compile_scene
 from spline_model.content import STEPS_PER_PERIOD
-from spline_model.effects import DrivenDisplacement, DrivenRotation
-from spline_model.effects.elastic import ANTICLASTIC
+from spline_model.dynamics import Asked, moved
 from spline_model.errors import (
     InvalidParameter,
     present,
@@ -38,16 +36,27 @@ from spline_model.errors import (
     require_finite,
     require_positive,
 )
-from spline_model.impulses.arrays import Problem, Space
-from spline_model.impulses.stepper import REASONS, Outcome, State, Stepper
+from spline_model.impulses.arrays import COUNTS, ENERGY, LOST, Moving, Problem, Space, loads_of
+from spline_model.impulses.steps import printed_advance, stable_advance
+from spline_model.impulses.system import strain_energy
 from spline_model.mechanism import Mechanism, require_mechanism
 from spline_model.modes import linear_modes
 from spline_model.motion.arrays import zeros
-from spline_model.motion.moves import Steps, carry
-from spline_model.motion.records import Trajectory
-from spline_model.motion.start import Motion, set_in_motion
+from spline_model.motion.moves import Moves
+from spline_model.motion.records import (
+    DISSIPATED,
+    ENERGIES,
+    KINETIC,
+    STRAIN,
+    WEIGHT,
+    WORK,
+    Trajectory,
+)
+from spline_model.motion.start import Start
 from spline_model.newton import Laps
-from spline_model.statics import static_state
+from spline_model.scene import Scene
+from spline_model.statics import settle, static_state
+from spline_model.strip.compiled import copy, kernel
 
 Array = NDArray[np.float64]
 
@@ -57,164 +66,120 @@ TOLERANCE = 1e-9
 """Residual of a stable step, and gap that sweeps close, in EI/L^2, EI/L, L and rad."""
 STABILITY_LIMIT = 2.0
 """omega h up to which symplectic Euler does not amplify an oscillation."""
+COUNTERS = ("steps", "solves", "sweeps", "halved_steps", "limited_steps")
+REASONS = {
+    "published": "the step is above the stability limit",
+    "stable": "no part of the step can be solved, or a strip folds; take a shorter one",
+}
+"""Why a motion of a form stops."""
 
 
-class ImpulseSolver:
-    """Steps of one scene; ``impulse_solver`` makes one.
+@kernel()
+def _store(moving, problem, space, record):
+    """Fill a record (W,) of the present state."""
+    size, count = moving.z.size, moving.v.size
+    copy(moving.z, record[:size])
+    copy(moving.v, record[size : size + count])
+    record[size + count] = strain_energy(moving.z, moving.v, problem, space)
+    record[size + count + 1] = moving.status[LOST]
 
-    Holds work space, so that no two threads may use it at once. What it returns shares no memory
-    with it: the same state and arguments give the same bits.
+
+@kernel()
+def _advance(moving, h, begin, end, every, stable, problem, space, records):
+    """Take the steps ``begin`` ... ``end`` - 1 of length h [s].
+
+    Returns the number of the first step that was not taken; ``moving`` stands at its begin. records: filled
+    at the ends of steps whose number ``every`` divides.
     """
+    for k in range(begin, end):
+        if stable:
+            done = stable_advance(moving, h, problem, space)
+        else:
+            done = printed_advance(moving, h, problem, space)
+        if not done:
+            return k
+        if (k + 1) % every == 0:
+            _store(moving, problem, space, records[(k + 1) // every - begin // every - 1])
+    return end
+
+
+class Stepper(Moves):
+    """A motion from a start by impulses, which see to the energy themselves.
+
+    A record is unknowns (N,), velocities (Q,), strain energy and energy dissipated [J]. form, sweeps,
+    tolerance: as of ``solve_impulses``.
+    """
+
+    most_gain = math.inf
+    smallest = 1.0
 
     def __init__(
-        self,
-        mechanism: Mechanism,
-        system: System,
-        *,
-        form: str,
-        sweeps: int | None,
-        tolerance: float,
+        self, start: Start, *, form: str = "stable", sweeps: int | None = None, tolerance: float = TOLERANCE
     ) -> None:
-        form = present(form)
-        require_choice("form", form, tuple(REASONS))
-        require_positive("tolerance", tolerance, "1")
-        if sweeps is not None:
-            require_count("sweeps", sweeps, 1)
-            if form == "stable":
-                raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
-        mechanism.design.require_uncut("sequential impulses")
-        self.motion, soft = set_in_motion(system), form == "stable"
-        held = "another one for sequential impulses"
-        if ANTICLASTIC in mechanism.design.curling:
-            raise InvalidParameter("effects", ANTICLASTIC, held)
-        self.mechanism, self.system, self.form = mechanism, system, form
-        self.problem = Problem.of(self.motion, soft=soft, sweeps=sweeps, tolerance=tolerance)
-        sizes = {"N": len(self.problem.unit), "Q": len(self.problem.mass), "R": len(self.problem.rows)}
-        self.space = zeros(Space, sizes | {"M": len(self.problem.rigidity)})
+        self.motion, self._form, motion = start.motion, form, start.motion
+        self.name = f"sequential impulses, {form}"
+        self.settings = {} if sweeps is None else {"sweeps": sweeps}
+        problem = Problem.of(motion, soft=form == "stable", sweeps=sweeps, tolerance=tolerance)
+        sizes = {"N": len(problem.unit), "Q": len(problem.mass), "R": len(problem.rows)}
+        self._given = problem, zeros(Space, sizes | {"M": len(problem.rigidity)})
+        self.counters = np.zeros(6, dtype=np.int64)
+        z, v = start.z.copy(), start.v.copy()
+        q, status = z[: v.size].copy(), np.zeros(3)
+        earlier = np.array((q, v))
+        self.state = Moving(z, v, earlier=earlier, begun=q, status=status, counters=self.counters)
+        status[ENERGY] = 0.5 * v @ problem.mass @ v + strain_energy(z, v, *self._given)
+        self.width = len(z) + len(v) + 2
 
-    def start(self, rotation: float | None = None, body: str | None = None) -> State:
-        """The static state at the rotation [rad] of a body, or undriven: where the paper's releases start.
+    def switch(self, time: float, span: float) -> None:
+        """The run starts again: no step before it counts."""
+        self.state.status[COUNTS] = 0.0
 
-        Raises ConvergenceError if statics does not reach it.
-        """
-        if rotation is not None:
-            require_finite("rotation", rotation, "rad")
-        return self.start_at(static_state(self.mechanism.at_start(), rotation, body=body))
+    def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
+        """Take the steps ``begin`` ... ``end`` - 1; the number of the first that cannot be, or end."""
+        stable = self._form == "stable"
+        return int(_advance(self.state, step, begin, end, every, stable, *self._given, records))
 
-    def start_at(self, z: Array, v: Array | None = None) -> State:
-        """Return a state at the unknowns z (N or more,) [m, rad, N], at rest or with velocity v (Q,).
+    def record(self) -> Array:
+        """The present state's record (W,)."""
+        record = np.empty(self.width)
+        _store(self.state, *self._given, record)
+        return record
 
-        z may be another system's of the same strips and bodies, such as of statics with other drives:
-        its additional unknowns are ignored. The constraints should hold in both.
-        """
-        layout = self.system.layout
-        count = layout.coordinate_count
-        given = np.asarray(z, dtype=float)
-        speed = np.zeros(count) if v is None else np.array(v, dtype=float)
-        _require_numbers("z", given, count, math.inf, "m, rad, N")
-        _require_numbers("v", speed, count, count, "m/s, rad/s")
-        unknowns = np.zeros(layout.size)
-        same = min(len(given), layout.size)
-        unknowns[:same] = given[:same]
-        unknowns[self.motion.drives.row] = 0.0
-        earlier = np.array((unknowns[:count], speed))
-        return State(z=unknowns, v=speed, earlier=earlier, known=0, time=0.0, held=False)
+    def unknowns(self, records: Array) -> tuple[Array, Array]:
+        """Unknowns (R, N) and velocities (R, Q) of records."""
+        size = self.motion.system.layout.size
+        return records[:, :size], records[:, size:-2]
 
-    def step(self, state: State, h: float, count: int = 1, pose: Array | None = None) -> Outcome:
-        """Take ``count`` steps of length h [s].
+    def shown(self, records: Array) -> tuple[Array, Array]:
+        """Poses (R, 3 B) of the bodies [m, rad] and rows (R, 5) of energies [J] of records."""
+        (z, v), system = self.unknowns(records), self.motion.system
+        q, rows = z[:, : v.shape[1]], np.zeros((len(z), ENERGIES))
+        rows[:, KINETIC] = 0.5 * ((v @ system.mass) * v).sum(axis=1)
+        rows[:, WEIGHT] = -q @ system.weight if system.weight.size else 0.0
+        rows[:, WORK] = (q - self.state.begun) @ loads_of(self.motion)
+        rows[:, STRAIN], rows[:, DISSIPATED] = records[:, -2], records[:, -1]
+        return z[:, system.layout.poses], rows
 
-        pose (3,): x, y [m] and rotation [rad] of the solver's body at the end of them, on a straight
-        way from where it is; the body is caught if it was free, and free again without one.
-        """
-        require_positive("h", h, "s")
-        require_count("count", count, 1)
-        held = pose is not None
-        if held != state.held:
-            state = replace(state, known=0)
-        stepper = self.stepper(state)
-        if pose is not None:
-            way = self._driven(state, np.asarray(pose, dtype=float), h * count)
-            stepper.drive(way, np.ones_like(self.problem.active))
-        taken = stepper.steps(state.time, h, 0, count, count + 1, np.zeros((0, stepper.width)))
-        return stepper.outcome(taken, count, state.time + taken * h, held)
+    def counted(self, steps: int) -> dict[str, int]:
+        """What was counted, by name."""
+        return dict(zip(COUNTERS, self.counters[: len(COUNTERS)].tolist(), strict=True))
 
-    def look(self, state: State) -> Outcome:
-        """Return the outcome of no steps: what a state is."""
-        return self.stepper(state).outcome(0, 0, state.time, state.held)
-
-    def stepper(self, state: State) -> Stepper:
-        """Return steps from a state on, in the solver's work space."""
-        return Stepper(self.motion, self.problem, self.space, self.form, state)
-
-    def _driven(self, state: State, pose: Array, duration: float) -> Motion:
-        """The motion with its drives on the way from the state to the pose."""
-        drives = self.motion.drives
-        _require_numbers("pose", pose, drives.row.size, drives.row.size, "m, rad")
-        here = state.z[drives.coordinate]
-        way = drives._replace(
-            origin=here,
-            target=pose - here,
-            first=np.zeros(pose.size, dtype=np.int64),
-            pairs=np.full(pose.size, 2, dtype=np.int64),
-            times=np.array([state.time, state.time + duration]),
-            factors=np.array([0.0, 1.0]),
-        )
-        return replace(self.motion, drives=way)
+    def reason(self) -> str:
+        """Why the last step was given up, and what helps."""
+        return REASONS[self._form]
 
 
-def impulse_solver(
-    pivot: Mechanism,
-    *,
-    body: str | None = None,
-    form: str = "stable",
-    sweeps: int | None = None,
-    tolerance: float = TOLERANCE,
-) -> ImpulseSolver:
-    """Return a solver for single steps, in which one body can be given a pose.
-
-    Parameters
-    ----------
-    pivot : Mechanism
-    body : str, default None
-        Body that can be given a pose; None is the only one.
-    form : str
-        "published" or "stable" (default); see ``spline_model.sequential_impulse``.
-    sweeps : int, default None
-        Largest number of sweeps over single constraints for one linear system of the published form; None
-        solves it directly. Sweeps converge slowly where strips cannot stretch.
-    tolerance : float, EI/L^2, EI/L, m over L, rad, default 1e-9
-        Residual of a stable step, and gap that ends the sweeps.
-
-    Returns
-    -------
-    ImpulseSolver
-        It has its own work space: one thread at a time may use it.
-
-    Raises
-    ------
-    InvalidParameter
-        A value outside its range, or an effect that impulses do not support.
-
-    References
-    ----------
-    Valentini and Pezzuti (2013), section 4.
-
-    Examples
-    --------
-    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
-
-    >>> impulse_solver(pivot).form
-    'stable'
-    """
-    require_mechanism(pivot)
-    mechanism = pivot.in_motion()
-    mechanism.released()
-    scene = mechanism.scene
-    if mechanism.design.bodies:
-        name = mechanism.design.body_named(body)
-        drives = DrivenDisplacement(body=name, displacement=(0.0, 0.0)), DrivenRotation(body=name, angle=0.0)
-        scene = mechanism.scene.with_effects(*drives)
-    return ImpulseSolver(mechanism, compile_scene(scene), form=form, sweeps=sweeps, tolerance=tolerance)
+def _unresolved(scene: Scene, start: Start, step: float) -> str:
+    """How far a step [s] under-resolves the swing at rest, or an empty string."""
+    system = start.motion.system
+    squares = linear_modes(system, system.rest, start.motion.system.mass)[0]
+    period = 2 * math.pi / math.sqrt(squares[0]) if squares[0] > 0 else math.inf
+    if step * STEPS_PER_PERIOD <= period:
+        return ""
+    return (
+        f"the step of {step:g} s is {step / period:.3g} of the swing's period at rest: "
+        f"take {period / STEPS_PER_PERIOD:.2g} s or less for its phase and amplitude"
+    )
 
 
 def stability_limit(pivot: Mechanism, rotation: float | None = None) -> float:
@@ -234,27 +199,30 @@ def solve_impulses(
     *,
     start: float | None = None,
     body: str | None = None,
-    drive: DrivenRotation | None = None,
     duration: float = 0.05,
     step: float = STEP,
     form: str = "stable",
     sweeps: int | None = None,
-    tolerance: float = TOLERANCE,
     records: int | None = None,
 ) -> Trajectory:
     """Return the motion by sequential impulses from the static state at a rotation, at rest.
+
+    Loads are constant, and supports stand still.
 
     Parameters
     ----------
     pivot : Mechanism
     start : float, rad, default None
         Rotation at the start.
-    body, drive, duration, records
+    body, duration, records
         As in ``spline_model.dynamics.solve_motion``; the duration in s.
     step : float, s, default 0.01
         Shortened so that a whole number of steps fits between the records.
-    form, sweeps, tolerance
-        As in `impulse_solver`.
+    form : str
+        "published" or "stable" (default); see ``spline_model.sequential_impulse``.
+    sweeps : int, default None
+        Largest number of sweeps over single constraints for one linear system of the published form; None
+        solves it directly. Sweeps converge slowly where strips cannot stretch.
 
     Returns
     -------
@@ -264,14 +232,13 @@ def solve_impulses(
     Raises
     ------
     InvalidParameter
-        A value outside its range.
+        A value outside its range, or an effect that impulses do not support.
     ConvergenceError
         Statics does not reach `start`.
 
     Notes
     -----
-    A body that a drive re-clamps loses the velocity that the drive does not have. This energy counts as
-    dissipated; the numerical damping of the stable form does not.
+    The numerical damping of the stable form does not count as dissipated.
 
     References
     ----------
@@ -285,52 +252,19 @@ def solve_impulses(
     [0.0, 0.01, 0.02]
     """
     require_mechanism(pivot)
-    mechanism = pivot.in_motion()
+    form = present(form)
+    require_choice("form", form, tuple(REASONS))
     for name, value in (("duration", duration), ("step", step)):
         require_positive(name, value, "s")
     if start is not None:
         require_finite("start", start, "rad")
-    laps, body = Laps(), mechanism.design.body_named(body)
-    released = mechanism.released()
-    system = compile_scene(released if drive is None else released.with_effects(drive))
-    solver = ImpulseSolver(mechanism, system, form=form, sweeps=sweeps, tolerance=tolerance)
-    steps = Steps.of(duration, step, records, 2 * system.layout.size)
-    laps.lap("compile")
-    stepper = solver.stepper(solver.start(start, body))
-    laps.lap("start")
-    run = carry(stepper, steps)
-    laps.lap("solve")
-    settings = {"integrator": f"sequential impulses, {solver.form}", "step_s": steps.step}
-    settings |= {} if sweeps is None else {"sweeps": sweeps}
-    return Trajectory.of(
-        system,
-        run,
-        effects=mechanism.effects,
-        body=body,
-        settings=settings,
-        unresolved=partial(_resolution, solver, steps.step),
-        still=lambda: False,
-        laps=laps,
-    )
-
-
-def _resolution(solver: ImpulseSolver, h: float) -> str:
-    """How far a step under-resolves the swing at rest, or an empty string."""
-    squares = linear_modes(solver.system, solver.system.rest, solver.motion.mass)[0]
-    period = 2 * math.pi / math.sqrt(squares[0]) if squares[0] > 0 else math.inf
-    if h * STEPS_PER_PERIOD <= period:
-        return ""
-    return (
-        f"the step of {h:g} s is {h / period:.3g} of the swing's period at rest: "
-        f"take {period / STEPS_PER_PERIOD:.2g} s or less for its phase and amplitude"
-    )
-
-
-def _require_numbers(name: str, values: Array, least: int, most: float, unit: str) -> None:
-    """Refuse anything but a vector of so many finite numbers."""
-    if values.ndim != 1 or not least <= len(values) <= most:
-        expected = f"{least}" if most == least else f"{least} or more"
-        raise InvalidParameter(f"length of {name}", values.size, expected)
-    if not np.isfinite(values).all():
-        bad = float(values[~np.isfinite(values)][0])
-        raise InvalidParameter(name, bad, f"finite numbers [{unit}]")
+    if sweeps is not None:
+        require_count("sweeps", sweeps, 1)
+        if form == "stable":
+            raise InvalidParameter("sweeps", sweeps, "none of the stable form, which is solved at once")
+    mechanism, laps = pivot.in_motion(), Laps()
+    body = mechanism.design.body_named(body)
+    scheme = partial(Stepper, form=form, sweeps=sweeps)
+    path = settle(mechanism.at_start(), start, body=body, starts=True)
+    asked = Asked(body, None, duration, step, records, scheme, _unresolved)
+    return moved(mechanism, path, asked, laps)

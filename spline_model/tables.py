@@ -20,7 +20,6 @@ from spline_model.effects import (
 from spline_model.effects.base import Constraint
 from spline_model.effects.boundary import STEADY, History, Sized
 from spline_model.frames import NO_FRAMES, Frames
-from spline_model.quadrature import PointTable
 from spline_model.scene import Scene
 
 Array = NDArray[np.float64]
@@ -148,16 +147,6 @@ def frames_of(scene: Scene) -> Frames:
         places.append((scene.layout.bodies[frame.name], carrier, 2 if frame.turns else 3))
         levers.append(frame.centre if on is None else frame.centre - on.centre)
     return Frames(np.array(places, dtype=np.int64), np.array(levers)) if places else NO_FRAMES
-
-
-class Tables(NamedTuple):
-    """The tables of a scene; weight (Q,) or (0,) [N, N m]."""
-
-    points: PointTable
-    clamps: ClampTable
-    drives: DriveTable
-    loads: LoadTable
-    weight: Array
 
 
 def _table_of_loads(scene: Scene, growing: Sequence[Sized]) -> LoadTable:

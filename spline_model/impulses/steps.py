@@ -3,7 +3,7 @@
 As printed (Eqs 21 to 30, misprints corrected), explicit forces and impulses at velocity level:
 
     M (v~ - v0) / h = f - dV/dq(q0) - D v0              (21, 22)
-    v1 = v~ + M^-1 psi_q(q0)^T P,    psi_q v1 + psi_t = 0   (24 to 30)
+    v1 = v~ + M^-1 psi_q(q0)^T P,    psi_q v1 = 0   (24 to 30)
     q1 = q0 + h v1                                      (23)
 
 Symplectic Euler: first order, stable while omega h < 2 for every frequency of the constrained
@@ -23,12 +23,12 @@ of soft constraints, so that no stiffness EA stands in the update.
 
 from __future__ import annotations
 
-from spline_model.impulses.arrays import COUNTS, ENERGY, HALVED, LIMITED, RESIDUAL, SOLVES, STEPS, SWEEPS
+from spline_model.impulses.arrays import COUNTS, ENERGY, HALVED, LIMITED, LOST, SOLVES, STEPS, SWEEPS
 from spline_model.impulses.system import (
     apply_impulses,
     axial_strains,
     damped,
-    external_work,
+    fallen,
     fill,
     fill_drag,
     free_update,
@@ -37,7 +37,6 @@ from spline_model.impulses.system import (
     row_times,
     strain_energy,
 )
-from spline_model.motion.start import factor_of
 from spline_model.strip.compiled import copy, once
 
 MOST_ENERGY = 100.0
@@ -63,17 +62,18 @@ LEAST_PART = 2.0**-6
 
 
 @once()
-def printed_advance(moving, time, h, problem, space):
+def printed_advance(moving, h, problem, space):
     """Advance by one step; False, with the state as it was, if it is unstable.
 
     ``moving.z`` is left with the axial forces of q0 and the constraint forces P / h.
     """
-    z, v, x, status, work = moving.z, moving.v, space.x, moving.status, abs(moving.totals[0])
+    z, v, x, status = moving.z, moving.v, space.x, moving.status
+    most = status[ENERGY] + abs(fallen(z, moving.begun, problem)) + FROM_REST * problem.energy
     copy(v, moving.earlier[1])
     for i in range(v.size):
         moving.earlier[0, i] = z[i]
     _explicit_axial_forces(z, v, problem, space)
-    fill(z, problem, time, space)
+    fill(z, problem, space)
     fill_drag(z, problem, space)
     for i in range(v.size):
         push = space.gradient[i]
@@ -87,28 +87,20 @@ def printed_advance(moving, time, h, problem, space):
         x[i] += v[i]
     for r in range(space.mu.size):
         space.gap[r] = space.mu[r] = 0.0
-    for d in range(problem.active.size):  # psi_t: the mean rate of the active drives over the step
-        if problem.active[d] == 1:
-            change = factor_of(d, time + h, problem.drives) - factor_of(d, time, problem.drives)
-            space.gap[problem.driven[d]] = change * problem.drives.target[d] / h
-    done, gap = apply_impulses(problem, space, x, problem.tolerance / h)
-    copy(z, space.z)
-    moving.totals[1] += damped(z, v, h, problem, space)
+    moving.counters[SWEEPS] += apply_impulses(problem, space, x, problem.tolerance / h)
+    status[LOST] += damped(z, v, h, problem, space)
     for i in range(v.size):
         v[i] = x[i]
         z[i] += h * v[i]
     for r in range(space.mu.size):
         z[problem.rows[r, 0]] = space.mu[r] / h
-    moving.totals[0] += external_work(space.z, z, problem, time)
     moving.counters[STEPS] += 1
     moving.counters[SOLVES] += 1
-    moving.counters[SWEEPS] += done
-    if not kinetic(v, problem.mass) <= MOST_ENERGY * (status[ENERGY] + work + FROM_REST * problem.energy):
+    if not kinetic(v, problem.mass) <= MOST_ENERGY * most:
         for i in range(z.size):
             z[i] = moving.earlier[0, i] if i < v.size else 0.0
         copy(moving.earlier[1], v)
         return False
-    status[RESIDUAL] = max(status[RESIDUAL], gap * h)
     return True
 
 
@@ -127,18 +119,15 @@ def _explicit_axial_forces(z, v, problem, space):
 
 
 @once()
-def stable_advance(moving, time, duration, problem, space):
+def stable_advance(moving, duration, problem, space):
     """Advance by one step, or by halves of implicit Euler where that fails; False if none is solved."""
-    status = moving.status
-    driven, done, step = False, 0.0, duration
-    for d in range(problem.active.size):
-        driven |= problem.active[d] == 1
+    status, done, step = moving.status, 0.0, duration
     while duration - done > 1e-9 * duration:
         step = min(step, duration - done)
         rule = EULER
         if step == duration:
-            rule = BACKWARD if status[COUNTS] == 1.0 else (EULER if driven else START)
-        if _try_step(moving, time + done, step, rule, driven, problem, space):
+            rule = BACKWARD if status[COUNTS] == 1.0 else START
+        if _try_step(moving, step, rule, problem, space):
             done += step
             step *= 2.0
             continue
@@ -152,38 +141,33 @@ def stable_advance(moving, time, duration, problem, space):
 
 
 @once()
-def _try_step(moving, time, h, rule, driven, problem, space):
+def _try_step(moving, h, rule, problem, space):
     """Take one step by a rule; False, with the state as it was, if it is not solved or gains energy."""
     z, v, status = moving.z, moving.v, moving.status
     span, lag = predict(moving, h, rule, problem.turns, space)
     fill_drag(z, problem, space)
-    residual, slowest = solve_step(span, lag, time + h, problem, space, moving.counters)
+    residual, slowest = solve_step(span, lag, problem, space, moving.counters)
     if not residual <= 1e3 * problem.tolerance or not slowest > SLOWEST:
         return False
-    work = external_work(z, space.z, problem, time + h)
     moves, stored = kinetic(space.v, problem.mass), strain_energy(space.z, v, problem, space)
-    for i in range(v.size):
-        stored -= problem.weight[i] * space.z[i]
-    if problem.grounded == 1 and not driven:
+    stored -= fallen(space.z, moving.begun, problem)
+    gains = moves + stored > status[ENERGY] + SLACK * problem.energy
+    if problem.grounded == 1 and gains:
         # velocities scaled by one factor fulfil constraints at rest as they did before
-        allowed = status[ENERGY] + work
-        if moves + stored > allowed + SLACK * problem.energy:
-            if stored > allowed:
-                return False
-            share = ((allowed - stored) / moves) ** 0.5
-            for i in range(v.size):
-                space.v[i] *= share
-            moving.counters[LIMITED] += 1
-            moves = allowed - stored
+        if stored > status[ENERGY]:
+            return False
+        share = ((status[ENERGY] - stored) / moves) ** 0.5
+        for i in range(v.size):
+            space.v[i] *= share
+        moving.counters[LIMITED] += 1
+        moves = status[ENERGY] - stored
     status[ENERGY] = moves + stored
-    moving.totals[0] += work
-    moving.totals[1] += damped(space.z, space.v, h, problem, space)
+    status[LOST] += damped(space.z, space.v, h, problem, space)
     for i in range(v.size):
         moving.earlier[0, i], moving.earlier[1, i] = z[i], v[i]
     copy(space.v, v)
     copy(space.z, z)
     status[COUNTS] = 1.0
-    status[RESIDUAL] = max(status[RESIDUAL], residual)
     moving.counters[STEPS] += 1
     return True
 
@@ -215,7 +199,7 @@ def predict(moving, h, rule, turns, space):
 
 
 @once()
-def solve_step(span, lag, time, problem, space, counters):
+def solve_step(span, lag, problem, space, counters):
     """Solve the step in space.z (N,) and space.v (Q,) from the guess there: residual and least v / J0.
 
     span s and lag r [s]; space.base and space.drift hold q~ and v~, space.drag D. The residual
@@ -228,7 +212,7 @@ def solve_step(span, lag, time, problem, space, counters):
     for _ in range(ITERATIONS):
         for i in range(v.size):
             z[i] = space.base[i] + span * v[i]
-        slowest = fill(z, problem, time, space)
+        slowest = fill(z, problem, space)
         _relax(v, span, problem, gradient, matrix)
         _add_inertia(v, span, lag, problem.mass, space)
         norm = 0.0
@@ -245,9 +229,8 @@ def solve_step(span, lag, time, problem, space, counters):
         for r in range(rows.shape[0]):
             space.gap[r] = gradient[rows[r, 0]]
             space.mu[r] = 0.0
-        done, _ = apply_impulses(problem, space, x, tolerance)
+        counters[SWEEPS] += apply_impulses(problem, space, x, tolerance)
         counters[SOLVES] += 1
-        counters[SWEEPS] += done
         share = 1.0
         for k in range(turns.size):
             if abs(x[turns[k]]) * share > MOST_TURN:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 
 from spline_model.bordered import assemble, bend, derivatives, stretch
-from spline_model.motion.step import driven_to, load_at
 from spline_model.quadrature import (
     FIRST,
     MEASURE,
@@ -36,28 +35,21 @@ TINY = 1e-300
 
 
 @called()
-def fill(z, problem, time, space):
-    """Fill the gradient (N,) and the matrix (N, N) of V - lambda psi - f q at z (N,) and ``time``.
+def fill(z, problem, space):
+    """Fill the gradient (N,) and the matrix (N, N) of V - lambda psi - f q at z (N,).
 
-    Drives that do not hold have lambda = 0. In the rows of the multipliers the gradient is - psi, and the
-    Hessian - psi_q. Returns the least v / J0.
+    In the rows of the multipliers the gradient is - psi, and the Hessian - psi_q. Returns the least v / J0.
     """
     gradient, matrix = space.gradient, space.matrix
     _, _, slowest = assemble(z, problem.points, problem.clamps, gradient, matrix, space.work)
-    for i in range(problem.weight.size):
-        gradient[i] -= problem.weight[i]
-    for d in range(problem.active.size):
-        i, row = problem.drives.coordinate[d], problem.drives.row[d]
-        if problem.active[d] == 0:
-            gradient[row] = -z[row]
-            matrix[row, row] = -1.0
-            continue
-        gradient[row] = driven_to(d, time, problem) - z[i]
+    for i in range(problem.force.size):
+        gradient[i] -= problem.force[i]
+    for d in range(problem.held_at.size):
+        i, row = problem.held_at[d], problem.held_row[d]
+        gradient[row] = problem.held_to[d] - z[i]
         gradient[i] -= z[row]
         matrix[row, i] = -1.0
         matrix[i, row] = -1.0
-    for f in range(problem.loads.value.size):
-        gradient[problem.loads.coordinate[f]] -= load_at(f, time, problem)
     return slowest
 
 
@@ -110,6 +102,15 @@ def kinetic(v, mass):
     return energy
 
 
+@called()
+def fallen(z, begun, problem):
+    """Return the work [J] of weight and loads from the coordinates ``begun`` (Q,) to z (N,)."""
+    work = 0.0
+    for i in range(begun.size):
+        work += problem.force[i] * (z[i] - begun[i])
+    return work
+
+
 @kernel()
 def fill_drag(z, problem, space):
     """Fill the drag (Q, Q): the coordinates' own, and the strips' Kelvin-Voigt damping at z.
@@ -145,20 +146,6 @@ def _add_square(matrix, first, width, d1, d2, weight, g):
         mine = weight * (d1[a // 2] * g[a % 2] + d2[a // 2] * g[2 + a % 2])
         for b in range(2 * width):
             matrix[first + a, first + b] += mine * (d1[b // 2] * g[b % 2] + d2[b // 2] * g[2 + b % 2])
-
-
-@called()
-def external_work(z0, z1, problem, time):
-    """Return the work [J] from z0 to z1 of the loads at ``time`` and of the drives' multipliers in z1."""
-    work = 0.0
-    for d in range(problem.active.size):
-        if problem.active[d] == 1:
-            i = problem.drives.coordinate[d]
-            work += z1[problem.drives.row[d]] * (z1[i] - z0[i])
-    for f in range(problem.loads.value.size):
-        i = problem.loads.coordinate[f]
-        work += load_at(f, time, problem) * (z1[i] - z0[i])
-    return work
 
 
 @called()
@@ -263,14 +250,14 @@ def row_times(problem, matrix, r, x):
 
 @called()
 def apply_impulses(problem, space, x, tolerance):
-    """Sweep over the blocks until no gap exceeds the tolerance; returns sweeps and the largest gap.
+    """Sweep over the blocks until no gap exceeds the tolerance; returns the number of sweeps.
 
     ``space.gap`` (R,) is c; x (Q,) and ``space.mu`` (R,) are updated in place. A gap is seen just before its
     block closes it, dimensionless. One block needs one sweep.
     """
     rows, groups, matrix = problem.rows, problem.groups, space.matrix
     mu, change = space.mu, space.change
-    count, largest = problem.first.size - 1, 0.0
+    count = problem.first.size - 1
     for sweep in range(problem.sweeps):
         largest = 0.0
         for b in range(count):
@@ -290,5 +277,5 @@ def apply_impulses(problem, space, x, tolerance):
                         for i in range(groups[g, 0], groups[g, 0] + groups[g, 1]):
                             x[i] -= matrix[i, rows[r, 0]] * change[r]
         if count == 1 or largest <= tolerance:
-            return sweep + 1, largest
-    return problem.sweeps, largest
+            return sweep + 1
+    return problem.sweeps

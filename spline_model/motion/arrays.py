@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 
 
-RECORDED = 5
+RECORDED = 3
 """Leading arrays of ``State`` that stand in a record."""
 
 
@@ -62,14 +62,17 @@ class Masses(NamedTuple):
         own = layout.poses.stop - begin
         inertia, drag = np.zeros((2, poses))
         places = [layout.strip(name) for name in layout.strips]
-        order, damped = model.shape.order, motion.drag if motion.drag.size else np.zeros_like(motion.mass)
-        for acts, whole in ((inertia, motion.mass), (drag, damped)):
+        order, damped = (
+            model.shape.order,
+            motion.system.drag if motion.system.drag.size else np.zeros_like(motion.system.mass),
+        )
+        for acts, whole in ((inertia, motion.system.mass), (drag, damped)):
             acts[:own] = np.diag(whole)[layout.poses] * np.tile(unit, own // 3)
         across = in_units(model.system, damped[layout.poses, layout.poses])
         across = across - np.diag(np.diag(across))
         points, damping = (
             np.array([whole[at, at][::2, ::2][np.ix_(order, order)] for at in places]) * (length**2 / energy)
-            for whole in (motion.mass, damped)
+            for whole in (motion.system.mass, damped)
         )
         basis = model.shape.tables[FIRST : SECOND + 1]
         pairs = [np.einsum("gi,gj->gij", one, other) for one in basis for other in basis]
@@ -101,17 +104,14 @@ class Masses(NamedTuple):
 class State(NamedTuple):
     """Where the mechanism is, and how it came there; S strips, Q coordinates of bodies, Y of all.
 
-    record holds y, rate, velocity, clamped and reaction: the bodies' poses, own coordinates and axial forces
-    of the strips; velocity of the bodies and of the control points; force and moment of each clamp on its
-    strip; of drives. acceleration, push: of control points and bodies; curve: C', C'' and |C'|; map: of
-    the ends; totals: work of loads and drives and energy dissipated.
+    record holds y, rate and velocity: the bodies' poses, own coordinates and axial forces of the strips;
+    velocity of the bodies and of the control points. acceleration, push: of control points and bodies; curve:
+    C', C'' and |C'|; map: of the ends; totals: work of loads and drives and energy dissipated.
     """
 
     y: Annotated[Array, "Y"]
     rate: Annotated[Array, "Q"]
     velocity: Annotated[Array, "S 2n"]
-    clamped: Annotated[Array, "S 2 3"]
-    reaction: Annotated[Array, "D"]
     acceleration: Annotated[Array, "S 2n"]
     push: Annotated[Array, "Q"]
     curve: Annotated[Array, "S 5 G"]
@@ -128,7 +128,7 @@ class State(NamedTuple):
         return state._replace(record=record, **{name: each[0] for name, each in parts.items()})
 
     def parted(self, records: Array) -> list[Array]:
-        """Return views of y, rate, velocity, clamped and reaction of records (R, W), in SI units (R, ...)."""
+        """Return views of y, rate and velocity of records (R, W), in SI units (R, ...)."""
         ends = np.cumsum([each.size for each in self[:RECORDED]])
         parts = zip(np.split(records, ends[:-1], axis=1), self, strict=False)
         return [each.reshape(len(records), *like.shape) for each, like in parts]

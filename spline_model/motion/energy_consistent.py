@@ -21,12 +21,12 @@ from numpy.typing import NDArray
 
 from spline_model.effects.boundary import FOLLOWER
 from spline_model.motion.arrays import Masses, Scratch, State, sizes_of, zeros
-from spline_model.motion.bodies import cayley, turned
+from spline_model.motion.bodies import turned
 from spline_model.motion.moves import MOST_HALVED, MOST_HALVED_A_STEP, Moves
 from spline_model.motion.records import ENERGIES
 from spline_model.motion.start import Array, Start
 from spline_model.motion.step import FOLDS, HALVED, REFUSED, STEPS, WHOLE, load_at, newton
-from spline_model.motion.strip import SHARE, SLOPE, keep_curve, lost_between, quadratic
+from spline_model.motion.strip import keep_curve, lost_between, quadratic
 from spline_model.reduced.arrays import AXIAL, BENDING, DEAD, SPARE
 from spline_model.reduced.model import from_unknowns, require_reduced
 from spline_model.reduced.states import unknowns_of
@@ -60,21 +60,8 @@ def forward(y, arrays, masses):
 
 
 @part()
-def _hold(s, state, strips, work):
-    """What the clamps do to a strip, from the forces of the step just solved."""
-    own, force, mean = work.line.size - 6, work.force[s], work.mean[s]
-    for e in range(2):
-        inner, outer, stick, clamped = own - 2 + 2 * e, own + 4 - 2 * e, 2 * e, state.clamped[s, e]
-        moving = (strips.tips[s] if e else strips.roots[s]) >= 0
-        for k in range(2):
-            clamped[k] = force[outer + k] + force[inner + k]
-        across = mean[stick] * force[inner + 1] - mean[stick + 1] * force[inner]
-        clamped[2] = mean[SHARE + e] * across / (mean[SLOPE + e] if moving else 1.0)
-
-
-@part()
 def _count_work(time, h, active, state, masses, work):
-    """What loads and drives did in the solved step, and what the drives' reactions were."""
+    """What loads and drives did in the solved step."""
     dy, totals = work.dy, state.totals
     for f in range(masses.load_at.size):
         i = masses.load_at[f]
@@ -86,11 +73,8 @@ def _count_work(time, h, active, state, masses, work):
         moved = 2.0 * math.atan(0.5 * dy[i]) if i % 3 == 2 else dy[i]
         totals[0] += load_at(f, time + 0.5 * h, masses) * moved
     for d in range(masses.drive_at.size):
-        state.reaction[d] = 0.0
         if active[d] == 1:
-            i = masses.drive_at[d]
-            totals[0] += work.residual[i] * dy[i]
-            state.reaction[d] = work.residual[i] / (cayley(dy[i])[0] if i % 3 == 2 else 1.0)
+            totals[0] += work.residual[masses.drive_at[d]] * dy[masses.drive_at[d]]
 
 
 @part()
@@ -119,7 +103,6 @@ def _accept(time, h, active, state, arrays, masses, work):
         for i in range(at, at + modes):
             work.y[i] = dy[i]
         keep_curve(s, strips, local, state)
-        _hold(s, state, strips, work)
     copy(work.y, state.y)
 
 
@@ -221,19 +204,21 @@ class Stepper(Moves):
     changes its velocity at once: energy that it loses counts as dissipated, energy that it gains as work.
     """
 
+    name = "energy"
+
     def __init__(self, start: Start) -> None:
-        self.motion, self.first = start.motion, start.z
+        self.motion = start.motion
         self.model = model = require_reduced(self.motion.system)
         self._arrays, self._masses = model.arrays(), Masses.of(self.motion, model)
         self.counters = np.zeros(6, dtype=np.int64)
         self.active = np.zeros(self.motion.drives.row.size, dtype=np.int64)
         sizes = sizes_of(model, self._masses)
-        self._state, self._work = State.of(sizes), zeros(Scratch, sizes)
-        self._state.y[:] = from_unknowns(model, start.z)
-        self._state.rate[:], self._state.velocity[:] = self._rates(start.v)
-        self._state.push[:], self._state.acceleration[:] = self._rates(start.acceleration)
-        self.width = self._state.record.size + ENERGIES
-        look(self._state, self._arrays)
+        self.state, self._work = State.of(sizes), zeros(Scratch, sizes)
+        self.state.y[:] = from_unknowns(model, start.z)
+        self.state.rate[:], self.state.velocity[:] = self._rates(start.v)
+        self.state.push[:], self.state.acceleration[:] = self._rates(start.acceleration)
+        self.width = self.state.record.size + ENERGIES
+        look(self.state, self._arrays)
 
     def _rates(self, given: Array) -> tuple[Array, Array]:
         """Rates of the bodies (Q,) and control points (S, 2 n) from those (Q,) of the scene."""
@@ -246,23 +231,24 @@ class Stepper(Moves):
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """The number of the first step that fails."""
         asked = time, step, begin, end, every, self.active
-        given = self._state, self._arrays, self._masses, TOLERANCE, self._work, self.counters
+        given = self.state, self._arrays, self._masses, TOLERANCE, self._work, self.counters
         return int(_run(*asked, *given, records))
 
     def record(self) -> Array:
         """Return the present state's record (W,): lengths over L, energies over EI/L [1]."""
         record = np.zeros(self.width)
-        store(self._state, self._arrays, self._masses, record)
+        store(self.state, self._arrays, self._masses, record)
         return record
 
     def unknowns(self, records: Array) -> tuple[Array, Array]:
         """Return unknowns (R, N) [m, rad, N] and velocities (R, Q) [m/s, rad/s] of records (R, W).
 
-        Axial forces and multipliers are the means of the steps that end there.
+        Axial forces are the means of the steps that end there. Multipliers are zero: clamps are solved.
         """
         model, layout = self.model, self.model.system.layout
-        y, rate, velocity, clamped, reaction = self._state.parted(records[:, :-ENERGIES])
-        z = unknowns_of(model, np.ascontiguousarray(y), reaction, clamped)
+        y, rate, velocity = self.state.parted(records[:, :-ENERGIES])
+        z = unknowns_of(model, np.ascontiguousarray(y), np.zeros((len(y), len(self.active))))
+        z[:, layout.multiplier_start :] = 0.0
         v = np.zeros((len(records), layout.coordinate_count))
         poses = 3 * len(layout.bodies)
         v[:, layout.poses] = rate[:, :poses] * np.tile(model.system.scales.pose, poses // 3)
@@ -278,7 +264,7 @@ class Stepper(Moves):
         slowest = np.nan_to_num(self._arrays.local.lanes[:, SPEED_AT] / model.strips.speed).min(axis=1)
         ends = self._work.y[len(model.bodies.rest) :].reshape(len(slowest), -1)[:, own - 2 : own]
         slowest = np.minimum(slowest, np.nan_to_num(ends).min(axis=1))
-        return why(self.counters, model.system.scene, model.strips, self._state.y, int(np.argmin(slowest)))
+        return why(self.counters, model.system.scene, model.strips, self.state.y, int(np.argmin(slowest)))
 
     def switch(self, time: float, span: float) -> None:
         """Let drives begin, change or end at ``time``; they then hold for at least ``span`` [s]."""
@@ -289,19 +275,10 @@ class Stepper(Moves):
         self.motion = self.motion.from_here(z, self.active, before, time)
         self._masses = Masses.of(self.motion, self.model)
         v, lost = self.motion.catch(z, v, self.active, time, span)
-        self._state.rate[:], self._state.velocity[:] = self._rates(v)
+        self.state.rate[:], self.state.velocity[:] = self._rates(v)
         lost /= self.model.energy
         # energy is lost where a drive catches a body, not where it changes its own rate; gained it is by work
         if lost > 0.0 and (self.active > before).any():
-            self._state.totals[1] += lost
+            self.state.totals[1] += lost
         else:
-            self._state.totals[0] -= lost
-
-    def kept(self) -> list[Array]:
-        """Return copies of the state's arrays, in their units and shapes, for ``take_back``."""
-        return [array.copy() for array in self._state]
-
-    def take_back(self, kept: list[Array]) -> None:
-        """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
-        for array, value in zip(self._state, kept, strict=True):
-            array[:] = value
+            self.state.totals[0] -= lost

@@ -18,7 +18,6 @@ not kept, so that it would be of first order. One evaluation, second order, stab
 from __future__ import annotations
 
 import math
-import sys
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -30,6 +29,7 @@ from spline_model.motion import energy_consistent
 from spline_model.motion.acceleration import accelerate
 from spline_model.motion.arrays import Masses, Places, State, sizes_of, zeros
 from spline_model.motion.energy_consistent import forward, store
+from spline_model.motion.moves import STEP
 from spline_model.motion.start import Motion, Start
 from spline_model.reduced.model import Reduced
 from spline_model.strip.compiled import kernel, part
@@ -202,19 +202,24 @@ class Stepper(energy_consistent.Stepper):
     stages: evaluations of the accelerations in a step.
     """
 
+    name = NAME
     most_gain = LARGEST_GAIN
-    watched = sys.maxsize
     smallest = 1.0
 
     def __init__(self, start: Start) -> None:
         require_explicit(start.motion)
         super().__init__(start)
-        model, masses, state = self.model, self._masses, self._state
+        model, masses, state = self.model, self._masses, self.state
         grid = _Grid.of(model, masses)
         self.stages = 1 if grid.outer else 2
         w, room = _rates_of(model, masses, state), _Room.of(model, masses, grid)
         self.record()  # fills what is given along the strips
+        self._start = start
         self._given = w, np.zeros_like(w), grid, self._arrays, masses, room, state
+
+    def default_step(self) -> float:
+        """Return the default, or a stable step where that is shorter [s]."""
+        return min(STEP, PART * critical_step(self.motion, self._start.z))
 
     def steps(self, time: float, step: float, begin: int, end: int, every: int, records: Array) -> int:
         """Take the steps from the first on; at any time, as nothing that acts has a history."""
@@ -243,16 +248,18 @@ def critical_step(motion: Motion, z: Array) -> float:
 def highest_frequency(motion: Motion, z: Array) -> float:
     """Return the highest circular frequency at a state and at rest [rad/s]."""
     system = motion.system
-    return math.sqrt(max(linear_modes(system, state, motion.mass)[0][-1] for state in (z, system.rest)))
+    return math.sqrt(
+        max(linear_modes(system, state, motion.system.mass)[0][-1] for state in (z, system.rest))
+    )
 
 
 def require_explicit(motion: Motion) -> None:
     """Refuse a scene whose accelerations do not follow from its state alone."""
-    if motion.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
+    if motion.system.drag.size or motion.damped or motion.drives.row.size or motion.loads.coordinate.size:
         expected = "energy (the default) for damping, loads, drives and supports"
         raise InvalidParameter("integrator", NAME, expected)
     layout = motion.system.layout
-    blocks = [motion.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
+    blocks = [motion.system.mass[at, at][::2, ::2] for at in map(layout.strip, layout.strips)]
     if not all(np.linalg.eigvalsh(block)[0] > 0.0 for block in blocks):
         raise InvalidParameter("integrator", NAME, "energy for strips without mass")
 

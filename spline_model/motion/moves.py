@@ -6,16 +6,30 @@ import math
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.errors import InvalidParameter, require_count
-from spline_model.motion.records import ENERGIES, MOST_GAIN, Records, Whole, first_gain
+from spline_model.motion.records import (
+    DISSIPATED,
+    ENERGIES,
+    KINETIC,
+    MOST_GAIN,
+    STRAIN,
+    WEIGHT,
+    WORK,
+    Trajectory,
+    first_gain,
+)
 from spline_model.motion.start import SAME, Array, Motion
 from spline_model.motion.step import FACTORISATIONS, HALVED, NEWTON, STEPS, WHOLE
+from spline_model.newton import Laps
+from spline_model.solution import Status
 
+STEP = 5e-5
+"""Default step [s]: some 240 steps a swing of Table 1."""
 SMALLEST_STEP = 2.0**-14
 """Least fraction of a step before the run is given up."""
 MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
@@ -23,8 +37,6 @@ MOST_HALVED, MOST_HALVED_A_STEP = 500, 150
 swing of Table 1 at steps of its own period takes 120 a step; without a bound a step may take minutes."""
 MOST_MEMORY = 2e9
 """Bytes that the records of one run may take."""
-WATCHED = 4096
-"""Steps after which the energy is looked at, at the latest."""
 
 
 class Steps(NamedTuple):
@@ -72,23 +84,32 @@ class Steps(NamedTuple):
 class Moves:
     """A scene in motion, advanced in steps that are halved at need.
 
-    most_gain: of energy; watched: steps after which the energy is looked at, at the latest; smallest: part of
-    a step that is taken at least where it fails, 1 if none is; first: unknowns (N,) of the first record, None
-    where that says as much; width: numbers of a record, of which the first are the poses in L and the last
-    the energies in EI/L.
+    name: of the scheme, settings: others that a trajectory has; state: arrays that a step changes.
+    most_gain: of energy; smallest: part of a step that is taken at least where it fails, 1 if none is;
+    width: numbers of a record, of which the first are the poses in L and the last the energies in EI/L.
     """
 
     most_gain = MOST_GAIN
-    watched = WATCHED
     smallest = SMALLEST_STEP
-    first: Array | None = None
+    name: str
+    settings: dict[str, Any] = {}  # noqa: RUF012 - nobody changes it
+    state: Any
     motion: Motion
     counters: NDArray[np.int64]
     width: int
 
-    def instants(self, run: Steps) -> list[float]:
-        """Return the instants inside a run at which drives begin, change or end [s]."""
-        return self.motion.event_times(run.steps * run.step, run.step)
+    def default_step(self) -> float:
+        """Return the step [s] where none is given."""
+        return STEP
+
+    def kept(self) -> list[Array]:
+        """Return copies of the state's arrays, in their units and shapes, for ``take_back``."""
+        return [array.copy() for array in self.state]
+
+    def take_back(self, kept: list[Array]) -> None:
+        """Return to a state that was kept: arrays in the order, units and shapes of ``kept``."""
+        for array, value in zip(self.state, kept, strict=True):
+            array[:] = value
 
     def advance(self, time: float, duration: float) -> bool:
         """Advance from ``time`` [s] by ``duration`` [s], in halves at need; return whether it was done."""
@@ -186,39 +207,47 @@ class Moves:
         raise NotImplementedError
 
 
-def carry(stepper: Moves, run: Steps) -> Records:
-    """Return the records of a run; one whose balance of energies gains too much ends with the last good
-    record."""
+def carry(stepper: Moves, run: Steps, *, laps: Laps, settings: dict[str, Any], **known: Any) -> Trajectory:
+    """Return the trajectory of a run; one whose balance of energies gains too much ends with the last good
+    record.
+
+    A run that says why it stopped has not converged. laps: a stopwatch; known: other fields.
+    """
     records = np.empty((run.records, stepper.width))
     kept, message = _fill(stepper, run, records)
+    laps.lap("solve")
     poses, rows = stepper.shown(records[:kept])
-    return Records(
-        spacing=run.spacing,
-        poses=poses,
-        rows=rows,
-        whole=Whole(stepper.motion, partial(_read, stepper, records[:kept])),
+    system = stepper.motion.system
+    points = max((strip.basis.control_points for strip in system.scene.strips), default=0)
+    segments = max((len(pieces) for pieces in system.scene.whole.values()), default=1)
+    return Trajectory(
+        status=Status.NOT_CONVERGED if message else Status.CONVERGED,
         message=message,
+        time=np.arange(0.0, kept) * run.spacing,
+        bodies={b.name: poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.own_bodies)},
+        kinetic_energy=rows[:, KINETIC],
+        strain_energy=rows[:, STRAIN],
+        gravity_energy=rows[:, WEIGHT] + float(system.weight @ system.rest[: system.weight.size]),
+        work=rows[:, WORK],
+        dissipated=rows[:, DISSIPATED],
+        motion=stepper.motion,
+        make=partial(stepper.unknowns, records[:kept]),
         counters=stepper.counted((kept - 1) * run.every),
+        settings={"segments": segments, "control_points": points} | settings,
+        seconds=laps.lap("recover"),
+        **known,
     )
-
-
-def _read(stepper: Moves, records: Array) -> tuple[Array, Array]:
-    """Unknowns (R, N) and velocities (R, Q) of all records of a run."""
-    states, rates = stepper.unknowns(records)
-    if stepper.first is not None:
-        states[0] = stepper.first
-    return states, rates
 
 
 def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
     """Fill the records (R, W) of a run; returns how many are good, and why it stopped, if it did."""
     step, every, duration, kept = run.step, run.every, run.steps * run.step, 0
     energy = stepper.motion.system.scales.energy
-    for begin, end in pairwise((0.0, *stepper.instants(run), duration)):
+    for begin, end in pairwise((0.0, *stepper.motion.event_times(duration, step), duration)):
         stepper.switch(begin, min(end - begin, step))
         if begin == 0.0:  # with the drives that hold from the start on
             records[0], kept = stepper.record(), 1
-        for time, to, number, last in _pieces(begin, end, run, stepper.watched):
+        for time, to, number, last in _pieces(begin, end, run):
             if last > number:
                 places = slice(number // every + 1, last // every + 1)
                 done = stepper.take(0.0, step, number, last, every, records[places])
@@ -233,18 +262,16 @@ def _fill(stepper: Moves, run: Steps, records: Array) -> tuple[int, str]:
     return kept, ""
 
 
-def _pieces(begin: float, end: float, run: Steps, most: int) -> Iterator[tuple[float, float, int, int]]:
+def _pieces(begin: float, end: float, run: Steps) -> Iterator[tuple[float, float, int, int]]:
     """The way from one instant to another [s]: from, to, and the first and last step's end of whole steps.
 
-    These are as many as are run before the energy is looked at, at most; of a part of a step, which ends in
-    the last one or before it, both are the same.
+    Of a part of a step, which ends in the last one or before it, both are the same.
     """
-    time, step, watched = begin, run.step, max(1, most // run.every) * run.every
+    time, step = begin, run.step
     close = SAME * step
     while end - time > close:
         number, last = (math.floor((instant + close) / step) for instant in (time, end))
         if last > number and abs(time - number * step) <= close:
-            last = min(last, number + watched - number % run.every)
             to = last * step
         else:
             number = last = number + 1

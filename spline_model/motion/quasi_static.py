@@ -16,7 +16,7 @@ from spline_model.motion.energy_consistent import forward, standing, why
 from spline_model.motion.massless import evaluate, solve
 from spline_model.motion.moves import Moves
 from spline_model.motion.records import ENERGIES
-from spline_model.motion.start import Array, Start
+from spline_model.motion.start import Array, Motion, Start
 from spline_model.motion.step import FACTORISATIONS, FOLDS, REFUSED, SNAPS, STEPS, load_at
 from spline_model.reduced.arrays import NEGATIVE
 from spline_model.reduced.assembly import assemble, factorise
@@ -36,35 +36,6 @@ LEAST = 1e-9
 """Compliance in L^2/EI that stands for none where the stiffness of strips is asked for."""
 SOFT = 0.5
 """Least stiffness of a strip over that at rest below which it is what stops a motion."""
-
-
-def stepper(start: Start) -> Moves:
-    """Return the stepper of the bodies, from their part of the velocity.
-
-    Raises
-    ------
-    InvalidParameter
-        Effects that need the inertia of the strips.
-    """
-    motion = start.motion
-    if motion.damped:
-        raise InvalidParameter(
-            "effects", "strip_damping", "strip_inertia with it: massless strips have no rate"
-        )
-    if any(any(spring.damping) and spring.other for spring in motion.system.scene.of(Spring)):
-        raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
-    motion.system.require_dead("effects", "strip_inertia")
-    if motion.drives.row.size:
-        raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
-    own = len(motion.system.scene.own_bodies)
-    if (motion.loads.coordinate >= motion.system.layout.poses.start + 3 * own).any():
-        expected = "strip_inertia for it: with massless strips loads act at centres of bodies"
-        raise InvalidParameter("effects", "a load at a tip or point", expected)
-    model, y = start.known.last or (reduced(motion.system), None)
-    if model is None:
-        raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia")
-    y = from_unknowns(model, start.known.array[-1]) if y is None else y
-    return _Stepper(model.let_go(motion.system), y, start)
 
 
 def softness(model: Reduced, y: Array, strip: int) -> float:
@@ -180,11 +151,35 @@ def _run(time, step, begin, end, every, poses, masses, arrays, tolerance, counte
     return end
 
 
-class _Stepper(Moves):
-    """Bodies on massless strips that the scheme advances."""
+def _require_known(motion: Motion) -> None:
+    """Refuse effects that need the inertia of the strips."""
+    system = motion.system
+    if motion.damped:
+        expected = "strip_inertia with it: massless strips have no rate"
+        raise InvalidParameter("effects", "strip_damping", expected)
+    if any(any(spring.damping) and spring.other for spring in system.scene.of(Spring)):
+        raise InvalidParameter("effects", "a damper between bodies", "strip_inertia for one in a motion")
+    system.require_dead("effects", "strip_inertia")
+    if motion.drives.row.size:
+        raise InvalidParameter("effects", "a drive", "strip_inertia for a driven motion")
+    if (motion.loads.coordinate >= system.layout.poses.start + 3 * len(system.scene.own_bodies)).any():
+        expected = "strip_inertia for it: with massless strips loads act at centres of bodies"
+        raise InvalidParameter("effects", "a load at a tip or point", expected)
 
-    def __init__(self, model: Reduced, y: Array, start: Start) -> None:
-        self.motion, self._model = start.motion, model
+
+class Stepper(Moves):
+    """Bodies on massless strips that the scheme advances, from their part of the velocity."""
+
+    name = NAME
+
+    def __init__(self, start: Start) -> None:
+        self.motion, system = start.motion, start.motion.system
+        _require_known(self.motion)
+        model, y = start.known.last or (reduced(system), None)
+        if model is None:
+            raise InvalidParameter("strips", "massless ones of this kind", "strip_inertia")
+        y = from_unknowns(model, start.known.array[-1]) if y is None else y
+        self._model = model = model.let_go(system)
         self._masses = Masses.of(self.motion, model)
         rate, moved = np.zeros((len(model.bodies.rest) // 3, 3)), model.system.layout.poses
         rate[: len(model.system.scene.bodies)] = start.v[moved].reshape(-1, 3) / model.system.scales.pose

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -11,9 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from spline_model.compile import System
 from spline_model.motion.start import Motion
-from spline_model.newton import Laps
 from spline_model.read_only import kept
 from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
 
@@ -30,73 +28,9 @@ QUIET = 1e-6
 """Energies below this, in EI/L, are not told from this much: their gain is round-off."""
 
 
-@dataclass(frozen=True, eq=False)
-class Whole:
-    """All that R records say, made when it is first asked for.
-
-    make: unknowns z (R, N) and velocities v (R, Q); every: which of them are kept.
-    """
-
-    motion: Motion
-    make: Callable[[], Sequence[Array]]
-    every: int = 1
-
-    def thinned(self, every: int) -> Whole:
-        """Return every so many of the records, from the first on."""
-        return Whole(self.motion, self.make, every * self.every)
-
-    @kept
-    def both(self) -> tuple[Array, Array]:
-        """Return unknowns z (R, N) [m, rad, N] and velocities v (R, Q) [m/s, rad/s]."""
-        z, v = self.make()
-        return z[:: self.every], v[:: self.every]
-
-    def free_ends(self, every: int) -> Array:
-        """Return the places (R, E, 2) [m] of the E free strip ends, at every so many records."""
-        system = self.motion.system
-        free = system.scene.free_ends
-        ends = np.array([system.layout.strip(name).stop for name in free], dtype=int)
-        return self.both[0][::every, ends[:, None] + np.array([-2, -1])] if free else np.zeros((1, 0, 2))
-
-    @kept
-    def gaps(self) -> Array:
-        """Return the largest constraint residual [m] at each record, (R,)."""
-        z, _ = self.both
-        largest = np.zeros(len(z))
-        for c in range(len(self.motion.system.tables.clamps.place)):
-            largest = np.maximum(largest, np.abs(_clamp_gaps(self.motion, c, z)).max(axis=0))
-        return largest
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Records:
-    """R records of a run, ``spacing`` [s] apart, the start first.
-
-    poses (R, 3 B) of the bodies [m, rad]; rows (R, 5) as named above; message: empty, or why the run stopped.
-    """
-
-    spacing: float
-    poses: Array
-    rows: Array
-    whole: Whole
-    message: str
-    counters: dict[str, int]
-
-
-def rows_of(motion: Motion, z: Array, v: Array, energies: Array) -> Array:
-    """Return rows (R, 5) of states z (R, N), velocities v (R, Q), and strain energy, work and losses (R, 3)
-    [J]."""
-    rows, weight = np.zeros((len(z), ENERGIES)), motion.system.weight
-    rows[:, KINETIC] = 0.5 * ((v @ motion.mass) * v).sum(axis=1)
-    rows[:, [STRAIN, WORK, DISSIPATED]] = energies
-    if weight.size:
-        rows[:, WEIGHT] = -z[:, : weight.size] @ weight
-    return rows
-
-
 def _clamp_gaps(motion: Motion, c: int, z: Array) -> Array:
     """Gaps of a clamp's end and of its direction over the end's chord at rest (3, R) [m]."""
-    clamps = motion.system.tables.clamps
+    clamps = motion.system.clamps
     (end, inner, body, _), (sign, bx, by, direction) = clamps.place[c], clamps.numbers[c]
     pose = z[:, body : body + 3].T if body >= 0 else np.zeros((3, len(z)))
     p, d = z[:, end : end + 2].T, sign * (z[:, inner : inner + 2] - z[:, end : end + 2]).T
@@ -148,8 +82,10 @@ class Trajectory(Tabulated):
     gravity_energy, work, dissipated : (T,) J
         Energy of the weight relative to rest; work of loads and drives, and dissipated energy, since the
         start.
-    whole : Whole
-        Computes states, velocities and constraint residuals at their first access.
+    motion : Motion
+        The system in motion.
+    make : callable
+        Returns states and velocities, at their first access.
     unresolved : callable
         Returns a message on the frequencies that the step does not resolve.
     still : callable
@@ -164,11 +100,11 @@ class Trajectory(Tabulated):
         Steps, halved steps, Newton iterations and more.
     seconds : mapping of str to float, s
         By part (``newton.Laps``); "start" is the static state that is released.
-    estimate : MotionEstimate or None
-        Of the error, if an accuracy was given.
     rotation_error, displacement_error : float, rad and m
         Estimated errors of the rotations of all bodies, and of the places of all bodies and free ends, by
         companions with finer steps and more control points; nan without companions.
+    estimate : MotionEstimate or None
+        Of a motion to a wanted accuracy.
     """
 
     status: Status
@@ -181,33 +117,41 @@ class Trajectory(Tabulated):
     gravity_energy: Array
     work: Array
     dissipated: Array
-    whole: Whole
+    motion: Motion
+    make: Callable[[], tuple[Array, Array]]
     unresolved: Callable[[], str]
     still: Callable[[], bool]
     effects: tuple[str, ...]
     counters: dict[str, int]
     settings: dict[str, Any]
     seconds: dict[str, float]
-    estimate: MotionEstimate | None = None
     rotation_error: float = math.nan
     displacement_error: float = math.nan
     checked: str = ""
     way: str = ""
+    estimate: MotionEstimate | None = None
+
+    @kept
+    def _moved(self) -> tuple[Array, Array]:
+        return self.make()
 
     @property
     def states(self) -> Array:
         """Unknowns (T, N) of the system in motion [m, rad, N]."""
-        return self.whole.both[0]
+        return self._moved[0]
 
     @property
     def velocities(self) -> Array:
         """Velocities (T, Q) of the coordinates in motion [m/s, rad/s]."""
-        return self.whole.both[1]
+        return self._moved[1]
 
-    @property
+    @kept
     def constraint_residual(self) -> Array:
         """Largest constraint residual (T,) [m]."""
-        return self.whole.gaps
+        largest = np.zeros(len(self.time))
+        for c in range(len(self.motion.system.clamps.place)):
+            largest = np.maximum(largest, np.abs(_clamp_gaps(self.motion, c, self.states)).max(axis=0))
+        return largest
 
     @cached_property
     def resolution(self) -> str:
@@ -247,8 +191,11 @@ class Trajectory(Tabulated):
         poses = np.array([place[::every] for place in self.bodies.values()]).reshape(
             len(self.bodies), len(self.time[::every]), 3
         )
-        ends = self.whole.free_ends(every)
-        places = np.moveaxis(poses[..., :2], 0, 1)
+        places, layout = np.moveaxis(poses[..., :2], 0, 1), self.motion.system.layout
+        stops = [layout.strip(name).stop for name in self.motion.system.scene.free_ends]
+        ends = np.zeros((1, 0, 2))
+        if stops:
+            ends = self.states[::every, np.array(stops)[:, None] + np.array([-2, -1])]
         ends = np.broadcast_to(ends, (len(places), *ends.shape[1:]))
         return poses[..., 2].T, np.concatenate((places, ends), axis=1)
 
@@ -270,35 +217,3 @@ class Trajectory(Tabulated):
             **body_columns(self.bodies),
             **{f"{name}_J": getattr(self, name) for name in energies},
         }
-
-    @classmethod
-    def of(
-        cls,
-        system: System,
-        run: Records,
-        *,
-        settings: dict[str, Any],
-        laps: Laps,
-        **known: Any,
-    ) -> Trajectory:
-        """The trajectory of a run; a run that says why it stopped has not converged. known: other fields."""
-        rows = run.rows
-        points = max((strip.basis.control_points for strip in system.scene.strips), default=0)
-        segments = max((len(pieces) for pieces in system.scene.whole.values()), default=1)
-        rest = float(system.weight @ system.rest[: system.weight.size])
-        return cls(
-            status=Status.NOT_CONVERGED if run.message else Status.CONVERGED,
-            message=run.message,
-            time=np.arange(0.0, len(rows)) * run.spacing,
-            bodies={b.name: run.poses[:, 3 * i : 3 * i + 3] for i, b in enumerate(system.scene.own_bodies)},
-            kinetic_energy=rows[:, KINETIC],
-            strain_energy=rows[:, STRAIN],
-            gravity_energy=rows[:, WEIGHT] + rest,
-            work=rows[:, WORK],
-            dissipated=rows[:, DISSIPATED],
-            whole=run.whole,
-            counters=run.counters,
-            settings={"segments": segments, "control_points": points} | settings,
-            seconds=laps.lap("recover"),
-            **known,
-        )

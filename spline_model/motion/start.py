@@ -45,16 +45,6 @@ class Motion:
     loads: LoadTable
 
     @property
-    def mass(self) -> Array:
-        """Mass matrix (Q, Q) [kg, kg m^2]."""
-        return self.system.mass
-
-    @property
-    def drag(self) -> Array:
-        """Of the force - D v, (Q, Q) or (0, 0) [N s/m, N m s]."""
-        return self.system.drag
-
-    @property
     def rigidity(self) -> Array:
         """Inverse of the axial modes' compliance, (M, M) [N/m]; zero where a strip is inextensible."""
         rigidity: Array = self.system.once("rigidity", axial_rigidity)
@@ -76,7 +66,7 @@ class Motion:
     @property
     def massless(self) -> bool:
         """Whether no strip has inertia, so that only the bodies' coordinates are dynamic."""
-        return not self.mass[: self.system.layout.poses.start].any()
+        return not self.system.mass[: self.system.layout.poses.start].any()
 
     @property
     def turns(self) -> Places:
@@ -131,7 +121,7 @@ class Motion:
             return v, 0.0
         size, count = z.size, v.size
         gradient, hessian = np.empty(size), np.empty((size, size))
-        points, clamps = self.system.tables.points, self.system.tables.clamps
+        points, clamps = self.system.points, self.system.clamps
         assemble(z, points, clamps, gradient, hessian, np.empty((5, 4)))
         frames, arms = self.system.frames, np.zeros(size)
         carry(z, frames, arms)
@@ -146,7 +136,7 @@ class Motion:
             rate[len(rows) - len(held) + i] = change / span * drives.target[d]
         caught = v + self._constrained(jacobian, np.zeros(count), rate - jacobian @ v)[0]
         spread(caught, frames, arms)
-        return caught, 0.5 * float(v @ self.mass @ v - caught @ self.mass @ caught)
+        return caught, 0.5 * float(v @ self.system.mass @ v - caught @ self.system.mass @ caught)
 
     def accelerated(self, z: Array, v: Array) -> tuple[Array, Array]:
         """Consistent acceleration (Q,) and unknowns (N,) at a state, z (Q or more,), with velocity v (Q,).
@@ -179,11 +169,11 @@ class Motion:
 
         A coordinate without mass goes where constraints take it, and is left at rest where they do not.
         """
-        count, rows = len(self.mass), len(jacobian)
+        count, rows = len(self.system.mass), len(jacobian)
         unit = self.system.scales.unit[:count] / self.system.scales.length
         sizes = np.linalg.norm(jacobian * unit, axis=1)
-        scale = np.concatenate((unit, np.diag(self.mass).max() / np.maximum(sizes, 1e-300)))
-        matrix = np.block([[self.mass, jacobian.T], [jacobian, np.zeros((rows, rows))]])
+        scale = np.concatenate((unit, np.diag(self.system.mass).max() / np.maximum(sizes, 1e-300)))
+        matrix = np.block([[self.system.mass, jacobian.T], [jacobian, np.zeros((rows, rows))]])
         right = np.concatenate((force, change)) * scale
         solved = scale * np.linalg.lstsq(matrix * scale[:, None] * scale, right, rcond=1e-14)[0]
         return solved[:count], solved[count:]

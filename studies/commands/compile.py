@@ -96,15 +96,15 @@ def _from_rest(problem: Problem, settings: Settings) -> None:
 
     from spline_model.compile import compile_scene
     from spline_model.motion.energy_consistent import Stepper
-    from spline_model.motion.moves import Steps, carry
     from spline_model.motion.start import Start, set_in_motion
     from spline_model.solution import Later
     from studies.answers.models import put
 
     pivot = put(problem, settings, moving=True).modelled.in_motion()
     motion = set_in_motion(compile_scene(pivot.released()))
-    start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.mass)))
-    carry(Stepper(start), Steps(1e-8, 4, 1))
+    start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.system.mass)))
+    stepper = Stepper(start)
+    stepper.take(0.0, 1e-8, 0, 4, 1, np.empty((4, stepper.width)))
 
 
 #: Around the choices of each place: `$1` is the program and `$3` the word before the cursor.

@@ -7,9 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from spline_model import sequential_impulse
+from spline_model.compile import compile_scene
 from spline_model.held import HeldPivot, HeldState
 from spline_model.mechanism import Mechanism
-from spline_model.sequential_impulse import impulse_solver
+from spline_model.motion.records import KINETIC, STRAIN
+from spline_model.motion.start import Start, set_in_motion
+from spline_model.solution import Later
 from studies.kinds import Array
 
 #: Most steps of the centre in the balance, the longest over the strips' length, how often one is halved, and
@@ -35,23 +39,25 @@ class Motion:
     """The motion of a released design from unknowns z (N or more,) [SI] and velocities v (Q,) [SI] on."""
 
     def __init__(self, design: Mechanism, z: Array, v: Array) -> None:
-        self._solver = solver = impulse_solver(design, form="stable", body=design.design.bodies[0].name)
-        self._out = solver.look(solver.start_at(z, v))
+        system = compile_scene(design.released())
+        start = Start(set_in_motion(system), Later(z[None, : system.layout.size].copy), v)
+        self._stepper, self._iterations = sequential_impulse.Stepper(start), 0
 
     def advance(self, steps: int, step: float) -> float:
         """Take `steps` steps of `step` seconds; returns the time done [s], 0 where the solver fails, the last
         good state being kept."""
-        out = self._solver.step(self._out.state, step, steps)
-        if not out.complete:
+        stepper, counted = self._stepper, sequential_impulse.COUNTERS.index("sweeps")
+        before, kept = int(stepper.counters[counted]), stepper.kept()
+        if stepper.take(0.0, step, 0, steps, steps + 1, np.zeros((0, stepper.width))) < steps:
+            stepper.take_back(kept)
             return 0.0
-        self._out = out
+        self._iterations = int(stepper.counters[counted]) - before
         return steps * step
 
     def state(self) -> _Moving:
         """Return the present state."""
-        out = self._out
-        now, sweeps = out.state, out.counters["sweeps"]
-        return _Moving(now.z, now.v, out.kinetic_energy, out.strain_energy, sweeps)
+        (z,), (v,), (row,) = self._stepper.look()
+        return _Moving(z, v, float(row[KINETIC]), float(row[STRAIN]), self._iterations)
 
 
 @dataclass(frozen=True, eq=False)

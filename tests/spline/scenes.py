@@ -11,6 +11,11 @@ from spline_model import (
     cross_axis_pivot,
     motion_penalty_stiffness,
 )
+from spline_model.compile import compile_scene
+from spline_model.motion.start import Start, set_in_motion
+from spline_model.sequential_impulse import Stepper
+from spline_model.solution import Later
+from spline_model.statics import static_state
 from tests.table_one import SIDES, SIX, TABLE_ONE
 
 QUARTER = math.pi / 2
@@ -32,6 +37,14 @@ def pivot(design=TABLE_ONE, **settings):
     n = settings.setdefault("control_points", 6)
     settings.setdefault("penalty_stiffness", motion_penalty_stiffness(n))
     return cross_axis_pivot(**design, **settings)
+
+
+def stepper(mechanism, start=None, v=None, **form):
+    """Sequential impulses from the static state at a rotation, or from rest, with a velocity (Q,)."""
+    system = compile_scene(mechanism.released())
+    z = system.rest if start is None else static_state(mechanism, start)[: system.layout.size]
+    speed = np.zeros(system.layout.coordinate_count) if v is None else v
+    return Stepper(Start(set_in_motion(system), Later(z[None].copy), speed), **form)
 
 
 def total(trajectory):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import spline_model
-from spline_model import cross_axis_pivot, impulse_solver
+from spline_model import cross_axis_pivot, solve_impulses
 from studies.__main__ import command_of, main
 from studies.cases.problem import FOLDER
 from studies.commands.arguments import ROTATION
@@ -194,6 +194,7 @@ def test_former_keywords_of_python_are_accepted():
         old = cross_axis_pivot(**TABLE_ONE, control_points=5, measure="printed", stretch="consistent")
     assert old.design.discretisation.measure == "published"
     with pytest.warns(FutureWarning, match="published"):
-        assert impulse_solver(new, form="printed").form == "published"
+        run = solve_impulses(new, form="printed", duration=1e-6, step=1e-6)
+    assert run.settings["integrator"] == "sequential impulses, published"
     with pytest.warns(FutureWarning, match="motion_penalty_stiffness"):
         assert spline_model.swinging_slide_stiffness is spline_model.motion_penalty_stiffness

@@ -155,7 +155,7 @@ def _of(package):
     yield lambda each: package.solve_motion(each, start=0.1, duration=1e-4)
     yield lambda each: package.natural_frequencies(each)
     if package is spline_model:
-        yield lambda each: package.impulse_solver(each)
+        yield lambda each: package.solve_impulses(each)
     yield lambda each: package.strip_fields(each, np.zeros((1, 1)))
 
 
