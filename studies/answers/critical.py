@@ -273,7 +273,7 @@ def _of(question: _Question, settings: Settings) -> CriticalLoad:
 def _softened(question: _Question, found: Sequence[CriticalLoad]) -> CriticalLoad:
     """Return the last answer of a design without a critical load with the forces at which it turns and
     yields."""
-    body = question.design.body
+    body = str(question.design.body)
     shares: dict[str, Callable[[Response], Any]] = {
         "soft": lambda answer: np.abs(answer.bodies[body][:, 2]) / SOFT,
         "yields": lambda answer: answer.yield_share,
