@@ -20,7 +20,7 @@ COMMANDS: dict[str, str] = {
     "converge": "refine both models on a design until an accuracy is reached",
     "audit": "report the influence of each effect, and the effects that are sufficient",
     "advise": "find the cheapest setting of each model for an error",
-    "size": "size a pivot for a range, stiffness and stress by exact gradients",
+    "size": "size a design for a range, stiffness and stress by exact gradients",
     "judge": "compare results of another code with a reference solution",
     "sweep": "solve thousands of designs into one table, here or on a cluster",
     "case": "print a commented case file to begin a design with",

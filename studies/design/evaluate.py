@@ -161,14 +161,17 @@ def _joined(sides: Sequence[Array]) -> Array:
 class Accurate:
     """A design's answers with as many control points as the accuracy of its quantities takes.
 
-    Attributes:
-        quantities: by name; errors: of them, estimated and relative [1], NaN where nothing estimates them.
+    errors: of the quantities that are told, estimated and relative [1], NaN where nothing estimates them.
     """
 
     answers: Answers
-    quantities: Mapping[str, float]
     errors: Mapping[str, float]
     control_points: int
+
+    @property
+    def quantities(self) -> dict[str, float]:
+        """The quantities that are told, by name."""
+        return {name: self.answers.quantities[name] for name in self.errors}
 
 
 def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
@@ -188,8 +191,7 @@ def accurate(solve: Callable[[int], Answers], names: Sequence[str]) -> Accurate:
             apart = {name: _apart(name, mine, fine) for name in names}
             if max(apart.values()) < least:
                 least, found, errors, chosen = max(apart.values()), mine, apart, points
-    quantities = {name: found.quantities[name] for name in names}
-    return Accurate(answers=found, quantities=quantities, errors=errors, control_points=chosen)
+    return Accurate(answers=found, errors=errors, control_points=chosen)
 
 
 def _apart(name: str, coarse: Answers, fine: Answers) -> float:

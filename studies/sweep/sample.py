@@ -17,7 +17,7 @@ METHODS = ("grid", "list", "sobol")
 #: Most points, whose varied values are all in memory.
 MOST = 10_000_000
 POINTS = whole(1, MOST)
-FIELDS = ("from", "to", "points", "scale", "values")
+FIELDS = ("from", "to", "points", "scale")
 SCALES = ("linear", "log")
 #: Keys of [sample].
 KEYS = tuple(
@@ -113,24 +113,19 @@ def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: st
     require_known(where, "vary", key, known)
     label = f"vary.{key}"
     if isinstance(given, list):
-        given = {"values": given}
+        return _listed(where, label, known[key], given)
     if not isinstance(given, dict) or not given:
         raise CaseError(f"{where}: {label}: got {shown(given)}, expected a list or {{ from, to }}")
     document.refuse_unknown(where, label, given, FIELDS)
-    if "values" in given:
-        if len(given) > 1:
-            others = ", ".join(name for name in given if name != "values")
-            raise CaseError(f"{where}: {label}: got values beside {others}, expected one of the two")
-        return _listed(where, label, known[key], given["values"])
     if method == "list":
         raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
     return _range(where, key, given, known[key], grid=method == "grid")
 
 
-def _listed(where: str, label: str, rule: Any, values: Any) -> Column:
+def _listed(where: str, label: str, rule: Any, values: list[Any]) -> Column:
     """Return listed values, each admitted by the rule; pairs as tuples."""
-    if not isinstance(values, list) or not values:
-        raise CaseError(f"{where}: {label}.values: got {shown(values)}, expected a list of values")
+    if not values:
+        raise CaseError(f"{where}: {label}: got [], expected a list of values")
     for value in values:
         document.admitted(where, label, rule, value)
     whole = rule.kind != "number" and all(isinstance(value, int) for value in values)

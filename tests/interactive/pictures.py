@@ -43,6 +43,8 @@ def main(folder: Path) -> None:
             _open(browser, hosted.address)
             for name, value in TYPED:
                 typed(browser, name, value)
+            browser.wait("studio.state.critical !== null")  # a row of the numbers, above the next part
+            time.sleep(1.0)
             browser.ask(NUMBERED % list(PARTS))
             _take(browser, folder / "interactive_hand.png")
         with Browser(width=390, height=844) as browser:

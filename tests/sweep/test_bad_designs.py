@@ -49,7 +49,10 @@ BAD = [
     ),
     ({"vary": 'vary.body.centre_offset_m.x = { from = 0, to = 1, scale = "log" }'}, "expected it above 0"),
     ({"vary": "vary.strip.crossing_ratio = []"}, "got [], expected a list of values"),
-    ({"vary": "vary.strip.crossing_ratio = { values = [0.5], to = 1 }"}, "got values beside to"),
+    (
+        {"vary": "vary.strip.crossing_ratio = { values = [0.5] }"},
+        "crossing_ratio.values: got no key of the case",
+    ),
     (
         {"vary": 'vary.effects.driven_displacement.displacement_m = [["free", 0.1], [0.1, 0.1]]'},
         "got values of different types, expected numbers, texts or pairs of numbers alone",
