@@ -202,7 +202,13 @@ DAMPED = more(strip_damping={"relaxation_time": 1e-6})
 UNREACHED = {"control_points": 8, "penalty_stiffness": 10.0}
 LONG = {"duration": 1e6, "step": 1e-6}
 WITHIN = "duration: got 1000000.0, expected records within 2 GB"
+MOMENT = more(applied_moment={"moment": 1.0})
+TO_AND_FRO = {"rotation": [0.2, -0.1], "order": "together"}
 ASKED = [
+    (
+        lambda: solve_statics(pivot(**MOMENT), **TO_AND_FRO),
+        "rotation: got [-0.1, 0.2], expected turns to one",
+    ),
     (lambda: many(order="first"), "one of loads first, together"),
     (lambda: solve_many([TABLE_ONE, SIX | {"length": -1.0}], rotation=1.0), "design 1: length: got -1.0"),
     (lambda: solve_many([TABLE_ONE] * 3, rotation=[1.0, 0.5]), "rotation"),
