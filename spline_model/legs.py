@@ -14,6 +14,7 @@ from spline_model.compile import System, compile_scene
 from spline_model.effects import Driven
 from spline_model.effects.base import Load
 from spline_model.effects.boundary import Sized
+from spline_model.errors import InvalidParameter
 from spline_model.path import Progress, follow
 from spline_model.scene import Scene
 from spline_model.solution import BY_STATE, Later, Path, Status, joined
@@ -27,14 +28,12 @@ LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 class Leg(NamedTuple):
     """A part of a path: a system that is followed through load factors.
 
-    steady: loads that act in full all along it, whatever its own load factor; returns: whether its last state
-    is a rest that nobody asked for.
+    steady: loads that act in full all along it, whatever its own load factor.
     """
 
     system: System
     factors: list[float]
     steady: LoadTable | None = None
-    returns: bool = False
 
 
 def has_loads(scene: Scene) -> bool:
@@ -62,9 +61,12 @@ def turning(
     """Return the legs of a body that is turned through R rotations [rad] under the loads of its scene.
 
     driven: the system that is driven to a rotation; increments: those of the loads where they come on first.
-    Loads that grow together with the rotation go with its size: where the body turns the other way, that leg
-    is of the scene driven the other way, which begins where the other one has come back to rest. Without any
-    rotation loads grow from 0 to 1.
+    Without any rotation loads grow from 0 to 1.
+
+    Raises
+    ------
+    InvalidParameter
+        Rotations to both sides, while loads or displacements grow with their size.
     """
     largest = max(rotations, key=abs)
     if largest == 0.0:
@@ -73,25 +75,12 @@ def turning(
     if order == LOADS_FIRST and has_loads(whole.scene):
         first = growing(driven(0.0), increments)
         return [first, Leg(compile_scene(steady(whole.scene)), factors, steady=first.system.loads)]
-    if not whole.acting.value.any() and sum(map(bool, whole.drives.target.tolist())) < 2:
-        return [Leg(whole, factors)]
-    return list(_sides(whole, driven(-largest), np.array(factors)))
-
-
-def _sides(system: System, other: System, factors: Array) -> list[Leg]:
-    """Legs on both sides of rest, the ``other`` one driven the other way; zero is on the side before it."""
-    signs = np.sign(factors)
-    for i in range(1, len(signs)):
-        signs[i] = signs[i] or signs[i - 1]
-    signs[signs == 0.0] = signs[signs != 0.0][0]
-    cuts, legs = np.flatnonzero(np.diff(signs)) + 1, []
-    for k, part in enumerate(np.split(factors, cuts)):
-        sign = signs[np.append(0, cuts)[k]]
-        returns = bool(k < len(cuts) and part[-1] != 0.0)
-        legs.append(
-            Leg(system if sign > 0.0 else other, (sign * part).tolist() + [0.0] * returns, None, returns)
-        )
-    return legs
+    grows = whole.acting.value.any() or np.count_nonzero(whole.drives.target) > 1
+    if grows and min(factors) < 0.0:
+        told = [round(end, 6) for end in (min(rotations), max(rotations))]
+        expected = "turns to one side of rest [rad], with which loads and displacements grow"
+        raise InvalidParameter("rotation", told, expected)
+    return [Leg(whole, factors)]
 
 
 def follow_legs(
@@ -99,8 +88,7 @@ def follow_legs(
 ) -> Path:
     """Return the path through all legs, each from where the one before ends; branch and method as in
     ``follow``."""
-    path, back, done = None, False, 0
-    total = sum(len(leg.factors) - leg.returns for leg in legs)
+    path, done, total = None, 0, sum(len(leg.factors) for leg in legs)
     for leg in legs:
         told = None if progress is None else partial(_tell, progress, done, total)
         start = None if path is None else path.states[-1]
@@ -109,10 +97,10 @@ def follow_legs(
             branch = "primary"  # the branch was left, or there was none to follow
         if leg.steady is not None:
             part = _loaded(part, leg.steady)
-        path = part if path is None else _joined(path, part, back)
+        path = part if path is None else _joined(path, part)
         if path.status is not Status.CONVERGED:
             break
-        done, back = done + len(leg.factors) - leg.returns, leg.returns
+        done += len(leg.factors)
     assert path is not None, "there is a leg"
     return path
 
@@ -129,12 +117,11 @@ def _loaded(path: Path, loads: LoadTable) -> Path:
     return replace(path, load_factor=np.ones(len(path.work)), work=path.work + moved, critical_points=points)
 
 
-def _joined(before: Path, after: Path, back: bool) -> Path:
-    """Two parts of a path, the second begun where the first ends; back: at a rest that nobody asked for."""
-    kept = len(before.work) - back
-    both = before.rows(slice(kept)), after.rows(slice(1, None))
+def _joined(before: Path, after: Path) -> Path:
+    """Two parts of a path, the second begun where the first ends."""
+    both = before.rows(slice(None)), after.rows(slice(1, None))
     parts: dict[str, Any] = {name: np.concatenate([rows[name] for rows in both]) for name in BY_STATE}
-    parts["work"][kept:] += before.work[-1]
+    parts["work"][len(before.work) :] += before.work[-1]
     parts["unknowns"] = Later(partial(joined, tuple(rows["unknowns"] for rows in both)))
     return replace(
         after,

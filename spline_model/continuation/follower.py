@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.continuation.followed import Point
-from spline_model.continuation.points import BIFURCATION, corrected, directed, done_by_load_factor, reached
+from spline_model.continuation.points import BIFURCATION, corrected, directed, reached
 from spline_model.continuation.watch import Watch, place
 from spline_model.newton import Newton, correct, solve
 from spline_model.solution import CriticalPoint
@@ -92,13 +92,11 @@ class Follower:
         if reason:
             return found, reason
         step = self._parameter(point) - self.at
-        end, reason = self.watch.go(self.here, point, step)
+        end, done, reason = self.watch.go(self.here, point, step)
         if not reason:
-            if end is point:
-                self.done_here += done_by_load_factor(self.here, point, step)
-            else:  # across a kink, the potential gained
-                self.done_here += end.potential - self.here.potential
+            if end is not point:
                 self.known.clear()
+            self.done_here += done
             self.at, self.here = self._parameter(end), end
             self.known.append((self.at, end))
         return found, reason

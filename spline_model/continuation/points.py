@@ -159,37 +159,25 @@ def _sign(work: Followed) -> int:
     return int(negative) ^ (len(matrix) - work.count) % 2
 
 
-def jumped(before: Point, after: Point, step: float, unit: float) -> str:
-    """Return why ``after`` is not reached from ``before`` along a path; an empty string if it may be.
+def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float, str]:
+    """Return int P_lambda d(lambda) between two states [J], and why they are not on one path; empty if they
+    may be.
 
-    step: length of the step in the path's parameter; unit: EI/L [J]. int P_lambda d(lambda) is integrated
-    with both factors as cubic Hermite polynomials of the parameter, from the end values and slopes: exact to
-    the fourth power of the step.
+    step: length of the step in the path's parameter; unit: EI/L [J]. The integral is of both factors as cubic
+    Hermite polynomials of the parameter, from the end values and slopes: exact to the fourth power of the
+    step.
     """
-    if np.isnan(after.potential):
-        return ""
-    parts = _parts(before, after, step)
-    done = float(WEIGHTS @ parts)
-    gained = after.potential - before.potential
-    scale = max(abs(gained), float(WEIGHTS @ np.abs(parts)))
-    floor = ROUND_OFF * (unit + sum(map(abs, after.energies)))
-    if abs(gained - done) > WORK_MISMATCH * scale + floor:
-        return "the state lies on another branch (energy gained and work done differ)"
-    return ""
-
-
-def done_by_load_factor(before: Point, after: Point, step: float) -> float:
-    """Return int P_lambda d(lambda) between two states of one path [J]."""
-    return float(WEIGHTS @ _parts(before, after, step))
-
-
-def _parts(before: Point, after: Point, step: float) -> Array:
-    """The integrand at the nodes of the unit interval."""
     a, b, t = before, after, NODES
     conjugate = hermite(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate, t)
     slope = 6 * t * (1 - t) * (b.load_factor - a.load_factor)
     slope += step * (a.slope * (1 - t) * (1 - 3 * t) - b.slope * t * (2 - 3 * t))
-    return np.asarray(conjugate * slope)
+    parts = conjugate * slope
+    done, gained = float(WEIGHTS @ parts), after.potential - before.potential
+    scale = max(abs(gained), float(WEIGHTS @ np.abs(parts)))
+    floor = ROUND_OFF * (unit + sum(map(abs, after.energies)))
+    if abs(gained - done) > WORK_MISMATCH * scale + floor:  # never where there is no potential, nan
+        return done, "the state lies on another branch (energy gained and work done differ)"
+    return done, ""
 
 
 def hermite(
@@ -219,23 +207,19 @@ class Bracket:
     after: Point
     step: float
 
-    def plane(self) -> tuple[Array, float]:
-        """Return normal (N,) and load-factor part [1] of the planes across the path.
-
-        They are normal to the chord, or to the load factor.
-        """
-        if self.before.slope == self.after.slope == 1.0:
-            return np.zeros_like(self.before.z), 1.0
-        normal = (self.after.z - self.before.z) / self.work.unit
-        normal[self.work.count :] = 0.0
-        return normal, self.after.load_factor - self.before.load_factor
-
     def at(self, t: float) -> Point | None:
-        """Return the state of the path at t in 0 to 1 [1], or None if Newton does not find it."""
+        """Return the state of the path at t in 0 to 1 [1], or None if Newton does not find it.
+
+        It is sought on a plane across the path: normal to the chord, or to the load factor.
+        """
         a, b, step = self.before, self.after, self.step
         z = hermite(a.z, b.z, step * a.rate, step * b.rate, t)
         factor = hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
-        return corrected(self.work, z, float(factor), *self.plane())
+        normal, along = np.zeros_like(z), 1.0
+        if not a.slope == b.slope == 1.0:
+            normal, along = (b.z - a.z) / self.work.unit, b.load_factor - a.load_factor
+            normal[self.work.count :] = 0.0
+        return corrected(self.work, z, float(factor), normal, along)
 
 
 def corrected(work: Followed, z: Array, load_factor: float, normal: Array, along: float) -> Point | None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from spline_model.checks import left_the_branch
 from spline_model.compile import System
 from spline_model.continuation.followed import Followed, Point
-from spline_model.continuation.points import BIFURCATION, LIMIT, Crossing, between, directed, jumped, reached
+from spline_model.continuation.points import BIFURCATION, LIMIT, Crossing, between, booked, directed, reached
 from spline_model.effects import AppliedForce, AppliedMoment, Driven, DrivenRotation
 from spline_model.effects.base import Load
 from spline_model.newton import correct
@@ -55,24 +55,26 @@ class Watch:
         reason = self.work.refuse(z) or left_the_branch(unit, here.z, predicted, z)
         return reason or self.work.unresolved(z, load_factor)
 
-    def go(self, here: Point, point: Point, step: float) -> tuple[Point, str]:
-        """Return where a step [1] from here to a sound point ends, and why it is no step.
+    def go(self, here: Point, point: Point, step: float) -> tuple[Point, float, str]:
+        """Return where a step [1] from here to a sound point ends, int P_lambda d(lambda) on the way [J], and
+        why it is no step.
 
         It ends there or on another branch. The reason is empty for a sound step.
         """
-        reason = jumped(here, point, step, self.work.energy)
+        done, reason = booked(here, point, step, self.work.energy)
         if reason:
-            return here, reason
+            return here, 0.0, reason
         found = between(self.work, here, point, step)
         if found is None:
-            return here, NO_CROSSING
+            return here, 0.0, NO_CROSSING
         crossing = next((c for c in found if c.told.kind == BIFURCATION), None) if self.leaves else None
         if crossing is not None:
             found = found[: found.index(crossing) + 1]
             point, reason = self._leave(crossing, here, step)
+            done = point.potential - here.potential  # across a kink, what is gained
         if not reason:
             self.critical += [crossing.told for crossing in found]
-        return point, reason
+        return point, done, reason
 
     def _leave(self, crossing: Crossing, here: Point, step: float) -> tuple[Point, str]:
         """A point on the branch that crosses, going away from there."""

@@ -1,5 +1,11 @@
 """Effects: the named frozen values a scene is made of."""
 
+from spline_model.effects.base import BodyDamper as BodyDamper
+from spline_model.effects.base import BodyInertia as BodyInertia
+from spline_model.effects.base import SectionRotaryInertia as SectionRotaryInertia
+from spline_model.effects.base import StripDamping as StripDamping
+from spline_model.effects.base import StripDrag as StripDrag
+from spline_model.effects.base import StripInertia as StripInertia
 from spline_model.effects.boundary import ALWAYS as ALWAYS
 from spline_model.effects.boundary import GROUND as GROUND
 from spline_model.effects.boundary import AppliedForce as AppliedForce
@@ -16,9 +22,3 @@ from spline_model.effects.elastic import Bending as Bending
 from spline_model.effects.elastic import MixedStretching as MixedStretching
 from spline_model.effects.elastic import StrainEnergy as StrainEnergy
 from spline_model.effects.elastic import Stretching as Stretching
-from spline_model.effects.moving import BodyDamper as BodyDamper
-from spline_model.effects.moving import BodyInertia as BodyInertia
-from spline_model.effects.moving import SectionRotaryInertia as SectionRotaryInertia
-from spline_model.effects.moving import StripDamping as StripDamping
-from spline_model.effects.moving import StripDrag as StripDrag
-from spline_model.effects.moving import StripInertia as StripInertia

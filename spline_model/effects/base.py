@@ -1,4 +1,4 @@
-"""The kinds of effect a scene is made of.
+"""The kinds of effect a scene is made of, and those that act in a motion alone: inertia and dissipation.
 
     M a + dV/dq + f_d(q, v) - f(q, t) - G(q, t)^T lambda = 0,      psi(q, t) = 0
 
@@ -9,7 +9,10 @@ class; a class that no effect names has a table of length zero.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar
+
+from spline_model.errors import require_not_negative
 
 
 class Potential:
@@ -35,3 +38,100 @@ class Constraint:
     """
 
     rows: ClassVar[int]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StripInertia(Inertia):
+    """Translational inertia of one strip.
+
+        T = 1/2 int mu |dC/dt|^2 ds0                                               [J]
+
+    over the reference length, where the mass is (Eq 18 with ds read as ds0): the mass
+    matrix is constant in the control points. A strip without it is massless: it follows
+    its bodies quasi-statically.
+
+    Parameters: strip, linear_density mu >= 0 [kg/m].
+    Neglected: rotary inertia of the section.
+    """
+
+    strip: str
+    linear_density: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SectionRotaryInertia(Inertia):
+    """Rotary inertia of the sections of one strip.
+
+        T = 1/2 int rho I |d(C')/dt|^2 / J0^2 ds0                                  [J]
+
+    The section's director is the tangent C' / J0 turned by a right angle, not normalised:
+    its mass matrix stays constant. It is the inertia rho I (d theta/dt)^2 of a strip that
+    does not stretch; otherwise it differs by the order of the axial strain and its rate.
+
+    Parameters: strip, rotary_density rho I >= 0 [kg m].
+    """
+
+    strip: str
+    rotary_density: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyInertia(Inertia):
+    """Inertia of one body about its centre, T = 1/2 m |v|^2 + 1/2 J omega^2 (Eq 17)  [J].
+
+    Parameters: body, mass >= 0 [kg], moment_of_inertia J >= 0 [kg m^2].
+    """
+
+    body: str
+    mass: float
+    moment_of_inertia: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StripDamping(Dissipation):
+    """Kelvin-Voigt damping in proportion to the stiffness of one strip.
+
+    Every strain has the stress E (eps + relaxation_time d(eps)/dt): frame indifferent, so
+    that a rigid motion is not damped. A mode of circular frequency omega has the damping
+    ratio relaxation_time omega / 2.
+
+    Parameters: strip, relaxation_time beta >= 0 [s].
+    """
+
+    strip: str
+    relaxation_time: float
+
+    def __post_init__(self) -> None:
+        require_not_negative("relaxation_time", self.relaxation_time, "s")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StripDrag(Dissipation):
+    """Drag in proportion to the mass of one strip: force per length - rate mu dC/dt.
+
+    A mode has the damping ratio rate / (2 omega); a rigid motion is damped as well.
+    Parameters: strip, linear_density mu [kg/m], rate alpha >= 0 [1/s].
+    """
+
+    strip: str
+    linear_density: float
+    rate: float
+
+    def __post_init__(self) -> None:
+        require_not_negative("rate", self.rate, "1/s")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyDamper(Dissipation):
+    """Viscous damper between a body and the ground: force - c v, moment - c_theta omega.
+
+    Parameters: body, translation c >= 0 [N s/m], rotation c_theta >= 0 [N m s].
+    """
+
+    body: str
+    translation: float
+    rotation: float
+
+    def __post_init__(self) -> None:
+        require_not_negative("translation", self.translation, "N s/m")
+        require_not_negative("rotation", self.rotation, "N m s")

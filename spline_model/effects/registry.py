@@ -13,7 +13,7 @@ from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 from spline_model.basis import AxialModes, SlideModes
-from spline_model.effects import boundary, elastic, moving, outside
+from spline_model.effects import base, boundary, elastic, outside
 from spline_model.effects.elastic import Taper
 from spline_model.errors import InvalidParameter, is_finite
 from spline_model.scene import Body, Effect
@@ -134,13 +134,13 @@ def _mixed(design: Design, strip: StripDesign, compliance: float) -> Iterator[Ef
 def _strip_inertia(design: Design) -> Iterator[Effect]:
     """Translational inertia of every strip; without it strips are massless."""
     for strip, _, _ in design.pieces:
-        yield moving.StripInertia(strip=strip.name, linear_density=strip.linear_density)
+        yield base.StripInertia(strip=strip.name, linear_density=strip.linear_density)
 
 
 def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
     """Rotary inertia of every strip's sections."""
     for strip, _, _ in design.pieces:
-        yield moving.SectionRotaryInertia(
+        yield base.SectionRotaryInertia(
             strip=strip.name, rotary_density=strip.density * strip.second_moment_of_area
         )
 
@@ -148,7 +148,7 @@ def _section_rotary_inertia(design: Design) -> Iterator[Effect]:
 def _body_inertia(design: Design) -> Iterator[Effect]:
     """Inertia of every body."""
     for body in design.bodies:
-        yield moving.BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
+        yield base.BodyInertia(body=body.name, mass=body.mass, moment_of_inertia=body.moment_of_inertia)
 
 
 def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Effect]:
@@ -164,19 +164,19 @@ def _gravity(design: Design, acceleration: Vector = (0.0, -9.81)) -> Iterator[Ef
 def _strip_damping(design: Design, relaxation_time: float) -> Iterator[Effect]:
     """Kelvin-Voigt damping of every strip; relaxation_time [s]."""
     for strip, _, _ in design.pieces:
-        yield moving.StripDamping(strip=strip.name, relaxation_time=relaxation_time)
+        yield base.StripDamping(strip=strip.name, relaxation_time=relaxation_time)
 
 
 def _strip_drag(design: Design, rate: float) -> Iterator[Effect]:
     """Mass-proportional drag on every strip; rate [1/s]."""
     for strip, _, _ in design.pieces:
-        yield moving.StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
+        yield base.StripDrag(strip=strip.name, linear_density=strip.linear_density, rate=rate)
 
 
 def _body_damping(design: Design, translation: float = 0.0, rotation: float = 0.0) -> Iterator[Effect]:
     """Damper between every body and the ground; translation [N s/m], rotation [N m s]."""
     for body in design.bodies:
-        yield moving.BodyDamper(body=body.name, translation=translation, rotation=rotation)
+        yield base.BodyDamper(body=body.name, translation=translation, rotation=rotation)
 
 
 def root_length(root: float | str = "monolithic") -> float:

@@ -96,7 +96,7 @@ def work_of(width, slope0, slope1, bend0, bend1):
 
 @part()
 def is_work(gained, work, width, slope0, slope1, stored):
-    """Whether a gain of potential is the work done, for what is ``stored``: ``points.jumped``."""
+    """Whether a gain of potential is the work done, for what is ``stored``: ``points.booked``."""
     scale = max(abs(gained), 0.5 * abs(width) * (abs(slope0) + abs(slope1)))
     return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
 

@@ -174,6 +174,8 @@ TIMED = more(applied_force={"force": (1.0, 0.0), "history": ((0.0, 1.0), (1.0, 0
 UNREACHED = {"control_points": 8, "penalty_stiffness": 10.0}
 LONG = {"duration": 1e6, "step": 1e-6}
 WITHIN = "duration: got 1000000.0, expected records within 2 GB"
+MOMENT = more(applied_moment={"moment": 1.0})
+TO_AND_FRO = {"rotation": [0.2, -0.1], "order": "together"}
 ASKED = [
     *((partial(pivot, **given), said) for given, said in PIVOTS),
     *SIDED,
@@ -181,6 +183,10 @@ ASKED = [
     (lambda: sensitivities(followed(), solve_statics(followed(), rotation=0.1)), f"asked: {LIKE}"),
     (lambda: natural_frequencies(followed()), f"effects: {LIKE}"),
     (lambda: solve_motion(followed(), integrator="leapfrog"), "expected energy (the default) for damping"),
+    (
+        lambda: solve_statics(pivot(**MOMENT), **TO_AND_FRO),
+        "rotation: got [-0.1, 0.2], expected turns to one",
+    ),
     (lambda: many(order="first"), "one of loads first, together"),
     (lambda: solve_many([TABLE_ONE, SIX | {"length": -1.0}], rotation=1.0), "design 1: length: got -1.0"),
     (lambda: solve_many([TABLE_ONE] * 3, rotation=[1.0, 0.5]), "rotation"),
