@@ -96,7 +96,7 @@ def _moments(scene: Scene, strips: list[Strip], curve: Array, speed: Array, stat
     """Bending moments (P, S, G) by the law, of curves and derivatives (3, P, 2, S + 1, G), rest last."""
     (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)
     turning = (x1 * y2 - y1 * x2) / speed**2
-    moment = np.zeros_like(turning[:, :-1])
+    moment: Array = np.zeros_like(turning[:, :-1])
     bends = {bending.strip: bending for bending in scene.of(Bending)}
     for g, strip in enumerate(strips):
         if bending := bends.get(strip.name):
