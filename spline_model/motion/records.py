@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.motion.start import Motion
 from spline_model.newton import Laps
-from spline_model.read_only import kept
-from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
+from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns, kept
 
 Array = NDArray[np.float64]
 
