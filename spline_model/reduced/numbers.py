@@ -114,7 +114,7 @@ class Ends(NamedTuple):
     def of(cls, scene: Scene) -> Self:
         """Those of a scene."""
         free, at = len(scene.bodies), {body.name: i for i, body in enumerate(scene.bodies)}
-        held = {(clamp.strip, clamp.end): clamp.to for clamp in scene.of(Clamp)}
+        held: dict[tuple[str, str], str] = {(c.strip, c.end): c.to for c in scene.of(Clamp)}
         found: dict[str, list[int]] = {"start": [], "end": []}
         for strip in scene.strips:
             for end, carriers in found.items():
