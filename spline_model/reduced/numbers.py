@@ -38,8 +38,7 @@ from spline_model.strip.element import (
     Shape,
 )
 
-Array = NDArray[Any]
-"""Real, or complex with a step."""
+Array = NDArray[Any]  # real, or complex with a step
 
 DIGITS = 12
 """Of b/L and t/L over those of the scene: what differs less has the same profile."""
