@@ -165,7 +165,7 @@ class Many:
         bend = 0.5 * (self.depth[rows] * length)[:, None] / given.rigidity
         fibre = np.stack((1.0 / (area * modulus * length[:, None]), bend), axis=-1)
         return designs, Stations(
-            along=along_of(at.system, at.shape, model.shape, numbers, *units)[0],
+            along=along_of(at.system, at.shape, model.shape, numbers.over(length), *units)[0],
             fibre=fibre * designs.energy[:, None, None],
             strips=at.strips,
             shape=at.shape,

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from spline_model.compile import System
 from spline_model.continuation.followed import balance
 from spline_model.effects import GROUND, Bending, Clamp, MixedStretching, Stretching, StripGravity
-from spline_model.read_only import read_only
 from spline_model.scene import Scene, Strip
+from spline_model.solution import read_only
 
 Array = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ def _moments(scene: Scene, strips: list[Strip], curve: Array, speed: Array, stat
     """Bending moments (P, S, G) by the law, of curves and derivatives (3, P, 2, S + 1, G), rest last."""
     (x1, y1), (x2, y2) = curve[1].swapaxes(0, 1), curve[2].swapaxes(0, 1)
     turning = (x1 * y2 - y1 * x2) / speed**2
-    moment = np.zeros_like(turning[:, :-1])
+    moment: Array = np.zeros_like(turning[:, :-1])
     bends = {bending.strip: bending for bending in scene.of(Bending)}
     for g, strip in enumerate(strips):
         if bending := bends.get(strip.name):
@@ -108,11 +108,15 @@ def _moments(scene: Scene, strips: list[Strip], curve: Array, speed: Array, stat
 
 
 def _pulls(system: System, states: Array, strips: list[Strip], stations: Array) -> Array:
-    """Force of what is beyond a station on what is before (2, P, S, G), by clamp of the root and weight."""
-    pull = np.empty((2, len(stations), len(states), len(strips)))
+    """Force of what is beyond a station on what is before (2, P, S, G), by clamp of the root and weight.
+
+    It is one for all stations where nothing has a weight, P = 1.
+    """
+    weights = system.scene.of(StripGravity)
+    pull = np.empty((2, len(stations) if weights else 1, len(states), len(strips)))
     for g, strip in enumerate(strips):
         pull[..., g] = -clamp_reactions(system, states, strip.name, "start")[:, :2].T[:, None]
-        for weight in system.scene.of(StripGravity):
+        for weight in weights:
             if weight.strip == strip.name:
                 mass = weight.linear_density * strip.length_to(stations, strip.taper)
                 pull[..., g] -= np.multiply.outer(weight.acceleration, mass)[..., None]

@@ -114,7 +114,9 @@ def sensitivities(
         row = system.drives.row[model.bodies.driven]
         torque = replace(torque, derivative=states.derivative[:, row])
     at = model.at_stations(np.asarray(stations, dtype=float))
-    designs = designs._replace(along=along_of(system, at.shape, model.shape, numbers, *units)[0])
+    designs = designs._replace(
+        along=along_of(system, at.shape, model.shape, numbers.over(units[0]), *units)[0]
+    )
     at_stations = (at.of_design(designs, p) for p in range(len(models)))
     stress = [_fibre_stress(*each) for each in zip(at_stations, given.section, y, strict=True)]
     return Sensitivities(

@@ -6,18 +6,17 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from functools import cached_property, partial, wraps
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
-from spline_model.read_only import kept, read_only
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 ERRORS = (
     "trajectory",
@@ -36,6 +35,26 @@ TORQUE_SHARE = 4.5
 UNCERTAIN = 0.03
 """Estimated error of the torque from which an answer says that it is not resolved: at the ends of what
 designs may be the factor above is exceeded, and no error of 0.05 may pass without a message."""
+
+
+def read_only(given: T) -> T:
+    """Return the same array, or the same container of arrays, after its arrays were set to read only."""
+    if isinstance(given, np.ndarray):
+        given.flags.writeable = False
+    elif isinstance(given, dict | tuple):
+        for each in given.values() if isinstance(given, dict) else given:
+            read_only(each)
+    return given
+
+
+def kept(make: Callable[[Any], T]) -> cached_property[T]:
+    """Return a property that is computed at its first access; its arrays are read only."""
+
+    @wraps(make)
+    def made(own: Any) -> T:
+        return read_only(make(own))
+
+    return cached_property(made)
 
 
 class Status(Enum):

@@ -14,7 +14,6 @@ from spline_model.compile import System
 from spline_model.effects.registry import MOTION_ONLY
 from spline_model.errors import ConvergenceError, InvalidParameter
 from spline_model.newton import Laps
-from spline_model.read_only import kept
 from spline_model.reduced.model import Reduced, from_unknowns, reduced, require_reduced
 from spline_model.reduced.states import body_tangents
 from spline_model.scene import AXES
@@ -27,6 +26,7 @@ from spline_model.solution import (  # noqa: F401 - types of fields that are inh
     Status,
     Tabulated,
     body_columns,
+    kept,
     resolution,
 )
 

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spline_model.motion.start import Motion
-from spline_model.read_only import kept
-from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns
+from spline_model.solution import MotionEstimate, Status, Tabulated, body_columns, kept
 
 Array = NDArray[np.float64]
 

@@ -134,8 +134,9 @@ class Reduced:
     def at_stations(self, stations: Array) -> Reduced:
         """Return the same with stations u (P,) [1] for Gauss points, where sections are recovered."""
         shape = shape_at(self.system.scene.strips[0].basis, stations, np.zeros(len(stations)))
-        own = Numbers.of(self.system.scene), np.array([self.length]), np.array([self.energy])
-        along, rest, _ = along_of(self.system, shape, self.shape, *own)
+        length, energy = np.array([self.length]), np.array([self.energy])
+        own = Numbers.of(self.system.scene).over(length)
+        along, rest, _ = along_of(self.system, shape, self.shape, own, length, energy)
         return replace(self, shape=shape, strips=self.strips._replace(along=along[0]), rest=rest[0])
 
 
@@ -176,7 +177,7 @@ def _reduced(system: System) -> Reduced | None:
     strips = Strips(
         along=own.along[0],
         compliance=c,
-        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)),
+        gain=np.where(small, GAIN, 1.0 / np.where(small, 1.0, c)) if small.any() else 1.0 / c,
         numbers=own.numbers[0],
         roots=ends.roots,
         tips=ends.tips,

@@ -38,8 +38,7 @@ from spline_model.strip.element import (
     Shape,
 )
 
-Array = NDArray[Any]
-"""Real, or complex with a step."""
+Array = NDArray[Any]  # real, or complex with a step
 
 DIGITS = 12
 """Of b/L and t/L over those of the scene: what differs less has the same profile."""
@@ -73,6 +72,11 @@ class Numbers(NamedTuple):
             centres=np.array([[body.centre for body in scene.bodies]], dtype=float).reshape(1, -1, 2),
             **dict.fromkeys(("longer", "width", "thickness", "area", "bending", "axial"), same),
         )
+
+    def over(self, length: Array) -> Self:
+        """Return the same with points and centres over the length (D,) of each design [1]."""
+        wide = length[:, None, None]
+        return self._replace(points=self.points / wide[..., None], centres=self.centres / wide)
 
 
 class Designs(NamedTuple):
@@ -109,15 +113,14 @@ class Ends(NamedTuple):
     def of(cls, scene: Scene) -> Self:
         """Those of a scene."""
         free, at = len(scene.bodies), {body.name: i for i, body in enumerate(scene.bodies)}
-        held = {(clamp.strip, clamp.end): clamp.to for clamp in scene.of(Clamp)}
-        found: list[list[int]] = []
+        held: dict[tuple[str, str], str] = {(c.strip, c.end): c.to for c in scene.of(Clamp)}
+        found: dict[str, list[int]] = {"start": [], "end": []}
         for strip in scene.strips:
-            found.append([])
-            for end in ("start", "end"):
+            for end, carriers in found.items():
                 to = held.get((strip.name, end))
-                found[-1].append(free if to is None else at.get(to, GROUNDED))
+                carriers.append(free if to is None else at.get(to, GROUNDED))
                 free += to is None
-        return cls(*np.array(found, dtype=np.int64).reshape(-1, 2).T.copy())
+        return cls(*(np.array(carriers, dtype=np.int64) for carriers in found.values()))
 
 
 def in_order(points: Array, shape: Shape) -> Array:
@@ -146,6 +149,7 @@ def arrays_of(
     system: System, shape: Shape, ends: Ends, given: Numbers, length: Array, energy: Array
 ) -> Designs:
     """Return the arrays of D designs of a system's scene, over lengths (D,) [m] and energies (D,) [J]."""
+    given = given.over(length)
     along, rest, to_modes = along_of(system, shape, shape, given, length, energy)
     return Designs(
         length=length,
@@ -153,13 +157,13 @@ def arrays_of(
         along=along,
         rest=rest,
         to_modes=to_modes,
-        numbers=_numbers(system, shape, ends, given, length, energy),
+        numbers=_numbers(system, shape, ends, given, energy / length),
         compliance=_compliances(system.scene, given) * (energy / length)[:, None, None],
-        start=_starts(system.scene, ends, given, length, to_modes.shape[-1]),
+        start=_starts(system.scene, ends, given, to_modes.shape[-1]),
         force=_forces(system, ends, length, energy),
         target=system.drives.target / np.where(system.drives.turns == 1, 1.0, length[:, None]),
         springs=_springs(system, length, energy),
-        levers=_levers(system, given) / length[:, None, None],
+        levers=_levers(system, given),
     )
 
 
@@ -180,18 +184,20 @@ def _mixed_of(scene: Scene) -> list[list[MixedStretching]]:
 def along_of(
     system: System, shape: Shape, gauss: Shape, given: Numbers, length: Array, energy: Array
 ) -> tuple[Array, Array, Array]:
-    """Return what changes along the strips (D, S, P, 11 + K) at the points of a shape, curvature at rest (D,
-    S, P), and ``to_modes`` (D, S, K, K), which are orthonormal at the points of ``gauss``."""
+    """Return what changes along the strips (D, S, P, 11 + K), curvature at rest (D, S, P) and ``to_modes``.
+
+    given: over their lengths; shape: at whose points; gauss: at whose points ``to_modes`` (D, S, K, K) makes
+    modes orthonormal.
+    """
     scene, degree = system.scene, system.scene.strips[0].basis.degree
     bends, parts, u = _bends_of(scene), _mixed_of(scene), shape.rule[WHERE]
-    points = in_order(given.points, shape)[:, :, None] / length[:, None, None, None, None]
+    points = in_order(given.points, shape)[:, :, None]
     speed, rest = _speeds(points, shape)
     at_gauss = speed if shape is gauss else _speeds(points, gauss)[0]
     to_modes = _orthonormal_modes(parts, scene.strips[0].basis, at_gauss)
     along = np.zeros((*speed.shape, MODES + to_modes.shape[-1]), dtype=speed.dtype)
     along[..., SPEED], along[..., CURVATURE] = speed, rest
     stiffer = given.bending / (energy * length)[:, None]
-    varied = any((part != 1.0).any() for part in (given.longer, given.width, given.thickness))
     for s, bend in enumerate(bends):
         row = along[:, s]
         row[..., CURVATURE] += bend.natural_curvature * length[:, None]
@@ -203,9 +209,14 @@ def along_of(
         if parts[s]:
             modes = _values(tuple(e.modes for e in parts[s]), u.tobytes())
             row[..., MODES:] = modes @ to_modes[:, s]
-        if varied and (any(bend.roots) or (bend.curl and bend.curl.clamped)):
+        if (any(bend.roots) or (bend.curl and bend.curl.clamped)) and _are_other(given):
             _add_profiles(bend, row, given, s, degree, u, stiffer[:, s])
     return along, rest, to_modes
+
+
+def _are_other(given: Numbers) -> bool:
+    """Whether any design has another b/L or t/L than the scene."""
+    return any((part != 1.0).any() for part in (given.longer, given.width, given.thickness))
 
 
 def _add_profiles(
@@ -239,10 +250,9 @@ def _compliances(scene: Scene, given: Numbers) -> Array:
     return np.asarray(soft * np.where(slides, slid[..., None], stretched[..., None]))
 
 
-def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, length: Array, energy: Array) -> Array:
+def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, force: Array) -> Array:
     """The numbers of ``Strips`` of each design (D, S, 16 + 2 n)."""
-    scene, points = system.scene, given.points / length[:, None, None, None]
-    force = energy / length
+    scene, points = system.scene, given.points
     numbers = np.zeros((*points.shape[:2], ON_POINTS + 2 * len(shape.order)), dtype=points.dtype)
     mixed = {e.strip: e for e in reversed(scene.of(MixedStretching))}
     consistent = {e.strip: e for e in scene.of(Stretching)}
@@ -260,7 +270,7 @@ def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, length: A
             if body >= len(scene.bodies):
                 numbers[:, s, place : place + 2] = 0.0
             elif body >= 0:
-                numbers[:, s, place : place + 2] -= given.centres[:, body] / length[:, None]
+                numbers[:, s, place : place + 2] -= given.centres[:, body]
         numbers[..., place + 2] = _angle(chord[..., 0], chord[..., 1])
         numbers[..., REACH + end] = np.sqrt(np.sum(chord**2, axis=-1))
     if system.weight.size:
@@ -274,25 +284,25 @@ def _numbers(system: System, shape: Shape, ends: Ends, given: Numbers, length: A
 
 def _angle(x: Array, y: Array) -> Array:
     """Direction [rad] of vectors, exact to first order in what is along the imaginary axis."""
-    angle = np.arctan2(y.real, x.real)
+    angle: Array = np.arctan2(y.real, x.real)
     if not np.iscomplexobj(x):
         return angle
     cos, sin = np.cos(angle), np.sin(angle)
     return np.asarray(angle + (y * cos - x * sin) / (x * cos + y * sin))
 
 
-def _starts(scene: Scene, ends: Ends, given: Numbers, length: Array, modes: int) -> Array:
+def _starts(scene: Scene, ends: Ends, given: Numbers, modes: int) -> Array:
     """States at rest (D, Y): poses, free ends among them, and of each strip points, reaches and forces."""
-    count, wide = len(length), length[:, None, None]
+    count = len(given.points)
     bodies, strips = range(len(scene.bodies)), range(len(scene.strips))
     turn, reach, forces = np.zeros((count, 1)), np.ones((count, 2)), np.zeros((count, modes))
-    parts = [part for b in bodies for part in (given.centres[:, b] / length[:, None], turn)]
+    parts = [part for b in bodies for part in (given.centres[:, b], turn)]
     for s in strips:
         for at, carriers in ((0, ends.roots), (-1, ends.tips)):
             if carriers[s] >= len(bodies):
-                parts += [given.points[:, s, at] / length[:, None], turn]
+                parts += [given.points[:, s, at], turn]
     for s in strips:
-        parts += [(given.points[:, s, 2:-2] / wide).reshape(count, -1), reach, forces]
+        parts += [given.points[:, s, 2:-2].reshape(count, -1), reach, forces]
     return np.concatenate(parts, axis=1)
 
 
@@ -324,7 +334,7 @@ def _springs(system: System, length: Array, energy: Array) -> Array:
 
 
 def _levers(system: System, given: Numbers) -> Array:
-    """Levers of frames (D, C, 2) [m] from the centres of the bodies that carry them."""
+    """Levers of frames (D, C, 2) from the centres of the bodies that carry them."""
     begin, frames = system.layout.poses.start, system.frames.place.tolist()
     levers = np.zeros((len(given.points), len(frames), 2), dtype=given.points.dtype)
     for f, (at, by, _) in enumerate(frames):
