@@ -104,7 +104,12 @@ SHOWN = {
         "allowable, in MPa (default: the yield strength, or the case's own)",
         positive,
     ),
-    Argument("--aspect R", "largest width of a pivot's strips over their length", positive, default=1.0),
+    Argument(
+        "--aspect R",
+        "largest width of a pivot's strips, relative to the length, default 1",
+        positive,
+        default=1.0,
+    ),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
     take.OUT_FILE.but("write the optimum there as a case file (default: none)"),
     take.JSON,
