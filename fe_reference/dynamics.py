@@ -133,6 +133,11 @@ class Run(Checked):
             if self.explicit:
                 implicit = max(self.duration * STEPS_PER_PERIOD * first_frequency(model), 1.0)
                 way = f"--integrator generalised-alpha takes about {implicit:.2g}"
+                if implicit > self.most_steps:
+                    way = (
+                        "remove strip_inertia, if strips are light, and take --integrator generalised-alpha "
+                        f"with a --step (its own are about {implicit:.2g})"
+                    )
             raise InvalidParameter(
                 "duration",
                 self.duration,

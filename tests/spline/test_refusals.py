@@ -214,7 +214,7 @@ ASKED = [
     (lambda: release(step=1.0), "step: got 1.0, expected at most the duration"),
     (lambda: release(**LONG), WITHIN),
     (lambda: release(records=0), "records: got 0, expected an integer >= 1"),
-    (lambda: release(given=UNREACHED, start=math.radians(230)), "is at no state with 11"),
+    (lambda: release(given=UNREACHED, start=math.radians(230)), "not resolved with 8 control points"),
     (lambda: release(given=SPATIAL, start=0.1), "measure: got 'spatial', expected material, or ... leapfrog"),
     (lambda: release("leapfrog", DAMPED, start=0.1), "integrator: got 'leapfrog', expected energy"),
     (lambda: release(accuracy=1e-2, step=1e-5), "accuracy: got 0.01, expected no step"),
