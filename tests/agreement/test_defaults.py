@@ -233,7 +233,7 @@ MOVED = 2.0 * ACCURACY
 FOLLOWED, INSTANTS, ENDS = 0.5, 30, 0.2
 FEW_MOVE, MANY_MOVE = (1, 3), 30
 #: Elements of the meshes whose limit is taken.
-MESHES = (10, 20, 40, 80)
+MESHES = (8, 16, 32, 64)
 
 
 def moving(seed: int) -> tuple[Design, float]:
