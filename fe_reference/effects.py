@@ -130,7 +130,7 @@ class DrivenDisplacement(Prescribed):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrescribedRotation(Prescribed):
+class _PrescribedRotation(Prescribed):
     """Rotation that a body is led to, besides the body whose rotation is driven.
 
     Attributes:
@@ -278,7 +278,7 @@ KNOWN: Mapping[str, type[Effect]] = {
     "applied_moment": AppliedMoment,
     "tip_force": TipForce,
     "driven_displacement": DrivenDisplacement,
-    "driven_rotation": PrescribedRotation,
+    "driven_rotation": _PrescribedRotation,
     "support": Support,
     "spring": Spring,
     "pre_strain": PreStrain,

@@ -160,7 +160,7 @@ def section(curl: Array, rigidity: float, left: Array, reach: float, curvature: 
 
 
 @inlined(fastmath={"contract"})
-def bent_element(curl: Array, row: Array, rate: float, first: float, second: float) -> Bent:
+def _bent_element(curl: Array, row: Array, rate: float, first: float, second: float) -> Bent:
     """Return energy [J], end moments [N m] and their slopes 11, 12, 22 [N m] of an element with two points.
 
     Args:
@@ -203,10 +203,10 @@ def _corotational(
         bending = 0.5 * (moment_1 * first + moment_2 * second)
         k_11, k_12, k_22 = 4.0 * stiff, 2.0 * stiff, 4.0 * stiff
     elif asked == FORCES:  # without the slopes
-        bending, moment_1, moment_2, _, _, _ = bent_element(curl, row, rate, first, second)
+        bending, moment_1, moment_2, _, _, _ = _bent_element(curl, row, rate, first, second)
         k_11, k_12, k_22 = 0.0, 0.0, 0.0
     else:
-        bending, moment_1, moment_2, k_11, k_12, k_22 = bent_element(curl, row, rate, first, second)
+        bending, moment_1, moment_2, k_11, k_12, k_22 = _bent_element(curl, row, rate, first, second)
     bending += natural * (0.5 * bend * row[2] - apart)
     # (l^2 - l0^2) / (l + l0) from the displacements: no cancellation of two nearly equal lengths
     strain = ((row[0] + x) * step_x + (row[1] + y) * step_y) / (length + row[2]) / row[2]

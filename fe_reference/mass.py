@@ -61,7 +61,7 @@ class RigidBodies:
     def diagonal(self, structure: Structure) -> Array:
         """Return the lumped masses (size,) [kg, kg m^2] of a structure reduced about these centres."""
         carried = np.stack([self.mass, self.mass, self.moment_of_inertia], axis=1)
-        return structure.gathered(np.vstack([lumped_nodes(structure), carried, np.zeros(3)]))
+        return structure.gathered(np.vstack([_lumped_nodes(structure), carried, np.zeros(3)]))
 
 
 def lumped_elements(structure: Structure) -> Array:
@@ -81,7 +81,7 @@ def _rotary(structure: Structure) -> Array:
     return named * structure.elements.rotary_density
 
 
-def lumped_nodes(structure: Structure) -> Array:
+def _lumped_nodes(structure: Structure) -> Array:
     """Return the lumped masses of all nodes (nodes, 3) [kg, kg, kg m^2]."""
     dofs, size = structure.basis.element_dofs, structure.basis.N
     masses: Array = np.bincount(dofs.ravel(), lumped_elements(structure).ravel(), size).astype(np.float64)
@@ -100,7 +100,7 @@ def _rigid_bodies(structure: Structure) -> RigidBodies:
     """Return the bodies of the model together with the lumped masses of the attached nodes."""
     (attached, carried, offsets, rigid), own = structure.carried, _own_inertia(structure)
     nodes, centres, carried = (
-        lumped_nodes(structure)[attached],
+        _lumped_nodes(structure)[attached],
         structure.model.centres,
         carried - structure.nodes,
     )

@@ -72,7 +72,7 @@ class Structure:
 
     def __init__(self, model: Model, points: ArrayLike | None = None) -> None:
         self.model = model
-        self.basis = strip_basis(model)
+        self.basis = _strip_basis(model)
         self.elements = Elements.of(model)
         self.shear = model.element == "reissner"
         self.points: Array = model.centres if points is None else np.reshape(np.asarray(points), (-1, 2))
@@ -108,7 +108,7 @@ class Structure:
         stiffness [N m].
         """
         grid, ends = np.arange(self.nodes).reshape(self.strips, -1), self.model.ends
-        stiffness, at_ends = root_stiffness(self.model), grid[:, [0, -1]]
+        stiffness, at_ends = _root_stiffness(self.model), grid[:, [0, -1]]
         end, strip = np.nonzero(ends.T >= 0)
         node, carrier = at_ends[strip, end], ends[strip, end]
         offsets = self.model.rest.reshape(-1, 2)[node] - self.points[carrier]
@@ -377,7 +377,7 @@ def _tapers(model: Model) -> tuple[Array, ...]:
     return soft, flexible, soft, 0.5 * area @ weight, 0.5 * moment @ weight
 
 
-def strip_basis(model: Model) -> Basis:
+def _strip_basis(model: Model) -> Basis:
     """Return the scikit-fem basis of (u_x, u_y, phi) on all strips; nodes are numbered strip by strip."""
     nodes = np.arange(model.arcs.size).reshape(model.arcs.shape)
     mesh = MeshLine(model.arcs.reshape(1, -1), np.array([nodes[:, :-1].ravel(), nodes[:, 1:].ravel()]))
@@ -401,7 +401,7 @@ def _plate(model: Model, k: int) -> Array:
     return rows
 
 
-def root_stiffness(model: Model) -> Array:
+def _root_stiffness(model: Model) -> Array:
     """Return the stiffness of the roots of the strips (G, 2) [N m]: of hinges 0, inf where none gives way."""
     rows, effect = np.full((len(model.strips), 2), np.inf), model.effects.find(RootCompliance)
     for strip, ends, row in zip(model.strips, model.ends, rows, strict=True):

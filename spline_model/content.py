@@ -88,7 +88,7 @@ class Content:
         return f"mode {self.number} ({self.kind}, {self.frequency:.3g} Hz, {self.share:.1g} of the energy)"
 
 
-def energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
+def _energy_content(motion: Motion, z: Array, v: Array, acceleration: Array) -> list[Content]:
     """Return the energy of every mode at the state (z, v) with its acceleration, lowest mode first.
 
     About the state a mode of unit modal mass moves as y'' + w^2 y = c with c = phi^T M a and y' = phi^T M v:
@@ -145,7 +145,7 @@ def unresolved(scene: Scene, start: Start, step: float) -> str:
     system = motion.system
     lowest = linear_modes(system, system.rest, motion.system.mass)[0][0]
     swing = math.sqrt(max(lowest, 0.0)) / (2 * math.pi)
-    return _resolution(energy_content(motion, start.z, start.v, start.acceleration), swing, step)
+    return _resolution(_energy_content(motion, start.z, start.v, start.acceleration), swing, step)
 
 
 def starts_still(start: Start, design: Design) -> bool:

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 LOADS_FIRST, TOGETHER = ORDERS = ("loads first", "together")
 
 
-class Leg(NamedTuple):
+class _Leg(NamedTuple):
     """A part of a path: a system that is followed through load factors.
 
     steady: loads that act in full all along it, whatever its own load factor.
@@ -50,14 +50,14 @@ def steady(scene: Scene) -> Scene:
     return replace(scene, effects=tuple(effects))
 
 
-def growing(system: System, increments: int, end: float = 1.0) -> Leg:
+def growing(system: System, increments: int, end: float = 1.0) -> _Leg:
     """Return the leg on which all loads and drives of a system grow from 0 to the load factor ``end`` [1]."""
-    return Leg(system, np.linspace(0.0, end, increments + 1)[1:].tolist())
+    return _Leg(system, np.linspace(0.0, end, increments + 1)[1:].tolist())
 
 
 def turning(
     driven: Callable[[float], System], rotations: Sequence[float], increments: int, order: str
-) -> list[Leg]:
+) -> list[_Leg]:
     """Return the legs of a body that is turned through R rotations [rad] under the loads of its scene.
 
     driven: the system that is driven to a rotation; increments: those of the loads where they come on first.
@@ -74,17 +74,17 @@ def turning(
     whole, factors = driven(largest), [rotation / largest for rotation in rotations]
     if order == LOADS_FIRST and has_loads(whole.scene):
         first = growing(driven(0.0), increments)
-        return [first, Leg(compile_scene(steady(whole.scene)), factors, steady=first.system.loads)]
+        return [first, _Leg(compile_scene(steady(whole.scene)), factors, steady=first.system.loads)]
     grows = whole.acting.value.any() or np.count_nonzero(whole.drives.target) > 1
     if grows and min(factors) < 0.0:
         told = [round(end, 6) for end in (min(rotations), max(rotations))]
         expected = "turns to one side of rest [rad], with which loads and displacements grow"
         raise InvalidParameter("rotation", told, expected)
-    return [Leg(whole, factors)]
+    return [_Leg(whole, factors)]
 
 
 def follow_legs(
-    legs: Sequence[Leg], branch: str = "primary", method: str = "condensed", progress: Progress | None = None
+    legs: Sequence[_Leg], branch: str = "primary", method: str = "condensed", progress: Progress | None = None
 ) -> Path:
     """Return the path through all legs, each from where the one before ends; branch and method as in
     ``follow``."""

@@ -81,7 +81,7 @@ def follow_arc(
     """
     require_choice("branch", branch, BRANCHES)
     watch = Watch(followed(system, method), leaves=branch == "follow", by_load=False)
-    point, norms, message = first_point(watch)
+    point, norms, message = _first_point(watch)
     if message:
         rows = _first_rows(watch.work, point, message)
         return _path(watch, rows, message, [norms])
@@ -128,7 +128,7 @@ class _Track:
             elif (y := work.grown()) is not None:
                 self._run(work, y)
         if self.states == 0:
-            point, norms, message = first_point(self.watch, start)
+            point, norms, message = _first_point(self.watch, start)
             self.follower = Follower(self.watch, point, norms)
             self._keep(_first_rows(self.work, point, message), 0.0)
             if work is not None and not message:
@@ -247,7 +247,7 @@ def equilibrium(work: Followed, unknowns: Array) -> Newton:
     return newton
 
 
-def first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...], str]:
+def _first_point(watch: Watch, start: Array | None = None) -> tuple[Point, tuple[float, ...], str]:
     """Return the first point of a path, its residual norms [1], and a reason if weight cannot act in full.
 
     start: unknowns (N,) [m, rad, N]; None is rest. Weight and pre-strain grow from nothing, and the path is

@@ -42,7 +42,7 @@ def solved(matrix: Array, right_side: Array) -> Array:
 
 
 @dataclass(kw_only=True)
-class Counters:
+class _Counters:
     """Work that was done; the same on every machine."""
 
     increments: int = 0
@@ -90,7 +90,7 @@ class Followed:
     system: System
     gradient: Array
     hessian: Array
-    counters: Counters = field(default_factory=Counters)
+    counters: _Counters = field(default_factory=_Counters)
     grows: bool = False
 
     @classmethod

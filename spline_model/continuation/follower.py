@@ -66,7 +66,7 @@ class Follower:
 
     def _predict(self, aim: float) -> tuple[Array, float]:
         """The state where the parameter is ``aim``, by the last states and rates, and its load factor."""
-        return hermite_extrapolation([(at, p.z, p.rate) for at, p in self._near(aim)], aim), aim
+        return _hermite_extrapolation([(at, p.z, p.rate) for at, p in self._near(aim)], aim), aim
 
     def _near(self, aim: float) -> list[tuple[float, Point]]:
         """The states to extrapolate; further than twice their distance, the tangent only."""
@@ -153,7 +153,7 @@ class Follower:
         return f"stopped between {place(self.work, aim, last=self.here.load_factor)}: {reason}"
 
 
-def hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
+def _hermite_extrapolation(known: Sequence[tuple[float, Array, Array]], at: float) -> Array:
     """Return the polynomial (N,) through (place, value, slope) triples, evaluated at a place; any units.
 
     Newton's divided differences with every node doubled: degree 2 k - 1 for k triples. Three of them halve
@@ -217,7 +217,7 @@ class ArcFollower(Follower):
         """The state where the arc length is ``aim``, or at the end of the path where that is beyond it."""
         z, here = super()._predict(aim)[0], self.here
         factors = [(at, np.array(p.load_factor), np.array(p.slope)) for at, p in self._near(aim)]
-        load_factor = float(hermite_extrapolation(factors, aim))
+        load_factor = float(_hermite_extrapolation(factors, aim))
         if (self.end - here.load_factor) * (self.end - load_factor) <= 0.0:
             share = (self.end - here.load_factor) / (load_factor - here.load_factor)
             return here.z + share * (z - here.z), self.end

@@ -168,7 +168,7 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
     step.
     """
     a, b, t = before, after, NODES
-    conjugate = hermite(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate, t)
+    conjugate = _hermite(a.conjugate, b.conjugate, step * a.conjugate_rate, step * b.conjugate_rate, t)
     slope = 6 * t * (1 - t) * (b.load_factor - a.load_factor)
     slope += step * (a.slope * (1 - t) * (1 - 3 * t) - b.slope * t * (2 - 3 * t))
     parts = conjugate * slope
@@ -180,7 +180,7 @@ def booked(before: Point, after: Point, step: float, unit: float) -> tuple[float
     return done, ""
 
 
-def hermite(
+def _hermite(
     a: Array | float, b: Array | float, slope_a: Array | float, slope_b: Array | float, t: Array | float
 ) -> Array:
     """Return Hermite's cubic (...) between two values (...) with slopes on the unit interval, in their
@@ -199,7 +199,7 @@ class Crossing:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Bracket:
+class _Bracket:
     """The piece of a path between two states, as a function of t in [0, 1]."""
 
     work: Followed
@@ -213,8 +213,8 @@ class Bracket:
         It is sought on a plane across the path: normal to the chord, or to the load factor.
         """
         a, b, step = self.before, self.after, self.step
-        z = hermite(a.z, b.z, step * a.rate, step * b.rate, t)
-        factor = hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
+        z = _hermite(a.z, b.z, step * a.rate, step * b.rate, t)
+        factor = _hermite(a.load_factor, b.load_factor, step * a.slope, step * b.slope, t)
         normal, along = np.zeros_like(z), 1.0
         if not a.slope == b.slope == 1.0:
             normal, along = (b.z - a.z) / self.work.unit, b.load_factor - a.load_factor
@@ -243,7 +243,7 @@ def between(work: Followed, before: Point, after: Point, step: float) -> tuple[C
     """
     if NOT_TRACKED in (before.inertia, after.inertia):
         return ()
-    bracket = Bracket(work=work, before=before, after=after, step=step)
+    bracket = _Bracket(work=work, before=before, after=after, step=step)
     numbers = range(*sorted((before.inertia, after.inertia)))
     found = [_of_tangent(bracket, number) for number in numbers]
     if before.stiffness * after.stiffness < 0.0 and before.slope * after.slope > 0.0:
@@ -255,7 +255,7 @@ def between(work: Followed, before: Point, after: Point, step: float) -> tuple[C
     return tuple(sorted((c for c in found if c), key=lambda c: abs(c.told.load_factor - before.load_factor)))
 
 
-def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
+def _of_tangent(bracket: _Bracket, number: int) -> Crossing | None:
     """The state at which one eigenvalue of the reduced tangent vanishes."""
     work = bracket.work
     point = _where_zero(bracket, lambda _: _eigenpair(work, number)[0])
@@ -269,7 +269,7 @@ def _of_tangent(bracket: Bracket, number: int) -> Crossing | None:
     return _crossing(work, kind, point, _eigenpair(work, number)[1], bracket.after.inertia)
 
 
-def _of_torque(bracket: Bracket) -> Crossing | None:
+def _of_torque(bracket: _Bracket) -> Crossing | None:
     """The state at which the stiffness of the driven rotation vanishes, at fixed loads."""
     point, work = _where_zero(bracket, lambda point: point.stiffness), bracket.work
     if point is None or point.turn is None:
@@ -303,7 +303,7 @@ def _sense(system: System, moved: Array) -> float:
     return float(np.sign(bodies[np.flatnonzero(size >= 0.5 * size.max())[0]]))
 
 
-def _where_zero(bracket: Bracket, value: Callable[[Point], float]) -> Point | None:
+def _where_zero(bracket: _Bracket, value: Callable[[Point], float]) -> Point | None:
     """The state where a value goes through zero: inverse quadratic interpolation, or bisection where the last
     three values are not those of a smooth monotonic function, as at a kink of the softest eigenvalue
     (Chandrupatla, Advances in Engineering Software 28 (1997) 145-149).

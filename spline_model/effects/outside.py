@@ -69,14 +69,14 @@ def tip_force(
     whole = next((s for s in design.strips if s.name == strip and s.tip is None), None)
     if whole is None:
         raise InvalidParameter("strip", strip, "a strip with a free end")
-    frame = Body(name=tip_of(strip), centre=np.asarray(whole.end, dtype=float), joint=True)
+    frame = Body(name=_tip_of(strip), centre=np.asarray(whole.end, dtype=float), joint=True)
     yield frame
     yield boundary.AppliedForce(body=frame.name, force=force, history=history, follower=follower)
     if moment != 0.0:
         yield boundary.AppliedMoment(body=frame.name, moment=moment, history=history)
 
 
-def tip_of(strip: str) -> str:
+def _tip_of(strip: str) -> str:
     """Return the name of the frame at the free end of a strip."""
     return f"tip of {strip}"
 

@@ -192,13 +192,13 @@ def _decay(s: Array, reach: complex) -> Array:
 
 
 @lru_cache(maxsize=256)
-def profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
+def _profile_of(ratio: complex, poisson_ratio: float) -> _Profile:
     """Return the profile of a strip of width over length ``ratio`` [1]; it is computed once.
 
     Newton's method in log A and log l; of a complex ratio in the real part, and their rates for the rest.
     """
     if abs(ratio) < NARROWEST:
-        own, share = profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
+        own, share = _profile_of(NARROWEST, poisson_ratio), ratio / NARROWEST
         size, reach = 1.0 + (own.size - 1.0) * share, own.reach * share
         return _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio)
     aim = 1.0 / np.array(plate_factors(ratio, poisson_ratio))
@@ -226,14 +226,14 @@ def _rates(logs: Array, ratio: float, poisson_ratio: float) -> Array:
 
 def _compliances(logs: Array, ratio: float, poisson_ratio: float) -> Array:
     """1 / f_b and 1 / f_s of a profile."""
-    s, weight = graded(ratio, (0.0, 1.0), 16)
+    s, weight = _graded(ratio, (0.0, 1.0), 16)
     size, reach = np.exp(logs)
     c = _Profile(size=size, reach=reach, poisson_ratio=poisson_ratio).compliance(s)
     return np.array([weight @ c, 12.0 * weight @ (c * (s - 0.5) ** 2)])
 
 
 @lru_cache(maxsize=256)
-def graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
+def _graded(ratio: float, reach: tuple[float, float], points: int) -> tuple[Array, Array]:
     """Return points (points,) and weights (points,) on a reach of [0, 1], graded towards its ends.
 
     They resolve layers of about 0.1 of the width; ratio: width over length [1].
@@ -324,7 +324,7 @@ def _projected(
     ratio: complex, poisson_ratio: float, most: int, reach: tuple[float, float], filled: float = 1.0
 ) -> Array:
     """int EI / R P_k over a piece (most + 1,), of Legendre's polynomials; filled: part f of the width."""
-    profile, (left, right) = profile_of(filled * ratio, poisson_ratio), reach
-    s, weight = graded(filled * ratio.real, reach, 16 + most)
+    profile, (left, right) = _profile_of(filled * ratio, poisson_ratio), reach
+    s, weight = _graded(filled * ratio.real, reach, 16 + most)
     shares = weight * profile.compliance(s, filled) / (right - left)
     return np.asarray(shares @ legendre.legvander(2.0 * (s - left) / (right - left) - 1.0, most))

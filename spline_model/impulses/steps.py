@@ -146,7 +146,7 @@ def _try_step(moving, h, rule, problem, space):
     z, v, status = moving.z, moving.v, moving.status
     span, lag = predict(moving, h, rule, problem.turns, space)
     fill_drag(z, problem, space)
-    residual, slowest = solve_step(span, lag, problem, space, moving.counters)
+    residual, slowest = _solve_step(span, lag, problem, space, moving.counters)
     if not residual <= 1e3 * problem.tolerance or not slowest > SLOWEST:
         return False
     moves, stored = kinetic(space.v, problem.mass), strain_energy(space.z, v, problem, space)
@@ -199,7 +199,7 @@ def predict(moving, h, rule, turns, space):
 
 
 @once()
-def solve_step(span, lag, problem, space, counters):
+def _solve_step(span, lag, problem, space, counters):
     """Solve the step in space.z (N,) and space.v (Q,) from the guess there: residual and least v / J0.
 
     span s and lag r [s]; space.base and space.drift hold q~ and v~, space.drag D. The residual

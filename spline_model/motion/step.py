@@ -53,7 +53,7 @@ def load_at(f, time, acts):
 
 
 @part()
-def driven_to(d, time, acts):
+def _driven_to(d, time, acts):
     """Where a drive holds its coordinate at an instant [s]."""
     return acts.drives.origin[d] + factor_of(d, time, acts.drives) * acts.drives.target[d]
 
@@ -164,7 +164,7 @@ def solve_rows(count, matrix, x):
 
 
 @called()
-def improve(strips, masses, local, work):
+def _improve(strips, masses, local, work):
     """Newton's correction of dy from the assembled step; its size but for axial forces, or -1 if singular."""
     poses, modes = masses.inertia.size, strips.compliance.shape[1]
     own, outer, dy, free, x = work.line.size - 6, masses.outer, work.dy, work.free, work.x
@@ -213,7 +213,7 @@ def improve(strips, masses, local, work):
 
 
 @part()
-def guess_step(h, state, strips, masses, work):
+def _guess_step(h, state, strips, masses, work):
     """Initial dy from velocities and accelerations over a time h; none, but for the axial forces, over 0."""
     poses, modes, dy = masses.inertia.size, strips.compliance.shape[1], work.dy
     own = work.line.size - 6
@@ -256,11 +256,11 @@ def newton(time, h, active, state, arrays, masses, tolerance, work, counters):
     """
     prepare(time, h, state, arrays.strips, masses, work)
     for ahead in (h, 0.0):
-        guess_step(ahead, state, arrays.strips, masses, work)
+        _guess_step(ahead, state, arrays.strips, masses, work)
         for d in range(masses.drive_at.size):
             if active[d] == 1:
                 i = masses.drive_at[d]
-                dy = driven_to(d, time + h, masses) - state.y[i]
+                dy = _driven_to(d, time + h, masses) - state.y[i]
                 work.dy[i] = 2.0 * math.tan(0.5 * dy) if i % 3 == 2 else dy
         if _corrected(h, state, arrays, masses, tolerance, work, counters):
             return True
@@ -285,7 +285,7 @@ def _corrected(h, state, arrays, masses, tolerance, work, counters):
                 largest = max(largest, abs(work.dy[i]))
             return largest <= 2.0
         before, last = norm, size
-        size = improve(arrays.strips, masses, arrays.local, work)
+        size = _improve(arrays.strips, masses, arrays.local, work)
         if size < 0.0:
             return False
         counters[NEWTON] += 1

@@ -69,7 +69,7 @@ def scatter(first, size, tip, root, outer, g, h, force, tangent):
 
 
 @part()
-def element_of(s, at, y, strips, shape, local, out):
+def _element_of(s, at, y, strips, shape, local, out):
     """Evaluate strip s, whose w and a begin at y[at], in its element coordinates; returns their number."""
     n, modes, inner = shape.order.size, strips.compliance.shape[1], strips.coupled - strips.outer
     own, moving = 2 * n - 6, n if strips.roots[s] >= 0 else n - 1
@@ -158,7 +158,7 @@ def assemble(y, load, arrays):
     begin(y, load, bodies, space)
     for s in range(strips.roots.size):
         at = poses + s * (own + strips.compliance.shape[1])
-        size = element_of(s, at, y, strips, shape, local, space.out)
+        size = _element_of(s, at, y, strips, shape, local, space.out)
         norm = max(norm, residual_of(s, own, last, strips, local, space))
         negative = condensed(s, own, size, strips, local)
         if negative == SINGULAR:

@@ -89,13 +89,13 @@ def _accepted(y, known, arrays):
 
 
 @part()
-def work_of(width, slope0, slope1, bend0, bend1):
+def _work_of(width, slope0, slope1, bend0, bend1):
     """Return the gain of a potential over a step, from its first and second derivatives at both ends."""
     return 0.5 * width * (slope0 + slope1) + width * width / 12.0 * (bend0 - bend1)
 
 
 @part()
-def is_work(gained, work, width, slope0, slope1, stored):
+def _is_work(gained, work, width, slope0, slope1, stored):
     """Whether a gain of potential is the work done, for what is ``stored``: ``points.booked``."""
     scale = max(abs(gained), 0.5 * abs(width) * (abs(slope0) + abs(slope1)))
     return abs(gained - work) <= WORK_MISMATCH * scale + ROUND_OFF * (1.0 + stored)
@@ -179,8 +179,8 @@ def _is_balanced(here, first, judged, route, preload, arrays):
         return False
     if not first:
         width, stored = here - out[AT], abs(out[BENDING]) + abs(out[AXIAL])
-        work = work_of(width, out[SLOPE], slope, out[BEND], bend)
-        if not is_work(potential - out[ENERGY], work, width, out[SLOPE], slope, stored):
+        work = _work_of(width, out[SLOPE], slope, out[BEND], bend)
+        if not _is_work(potential - out[ENERGY], work, width, out[SLOPE], slope, stored):
             return False
         out[DONE] += work
     out[AT], out[ENERGY], out[SLOPE], out[BEND] = here, potential, slope, bend

@@ -9,7 +9,7 @@ from spline_model.strip.element import GRADIENT, LAST, POINTS, REACH, ROOT, TIP
 
 
 @called()
-def end_frame(body, numbers, end, pose, out):
+def _end_frame(body, numbers, end, pose, out):
     """Point, direction and the body's centre of a clamped end: out (6,) = x, y, cos, sin, X, Y.
 
     end: ROOT or TIP, where the end's frame stands in the strip's numbers.
@@ -96,8 +96,8 @@ def move_points(s, at, rate, strips, local, along):
 def place_points(s, w, pose, strips, local):
     """Control points of strip s from its own coordinates w (W,) and the bodies' poses (3 B,), and its map."""
     root, tip = local.scratch[15], local.scratch[16]
-    end_frame(strips.roots[s], strips.numbers[s], ROOT, pose, root)
-    end_frame(strips.tips[s], strips.numbers[s], TIP, pose, tip)
+    _end_frame(strips.roots[s], strips.numbers[s], ROOT, pose, root)
+    _end_frame(strips.tips[s], strips.numbers[s], TIP, pose, tip)
     place_in_frames(s, w, root, tip, strips, local)
 
 

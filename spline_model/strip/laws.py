@@ -20,7 +20,7 @@ TERMS = 7
 
 
 @called()
-def nearly_flat(y):
+def _nearly_flat(y):
     """Return f, h and h + x h' / 2 of ``curl_law`` by y = x^4 below 1: quotients of power series."""
     n0 = 1.0 + y * (1.0 / 360.0 + y * (1.0 / 1814400.0 + y * (1.0 / 43589145600.0)))
     n1 = 1.0 / 360.0 + y * (1.0 / 907200.0 + y * (1.0 / 14529715200.0))
@@ -49,7 +49,7 @@ def curled(x):
 
 
 @called()
-def curl_parts(f, h, t, drop):
+def _curl_parts(f, h, t, drop):
     """Return the factors of energy, moment and tangent of ``curl_law`` by f, h and h + x h' / 2."""
     p = d = e = rest = 0.0 * (f + drop[0])
     for k in range(len(drop) - 1, -1, -1):
@@ -76,13 +76,13 @@ def curl_law(b, drop, curl):
     Ashwell, J R Aeronaut Soc 54 (1950) 708; Audoly and Neukirch, J Mech Phys Solids 153 (2021).
     """
     y = curl * curl * b * b
-    f, h, t = nearly_flat(y) if y.real < 1.0 else curled(np.sqrt(np.sqrt(y)))
-    return curl_parts(f, h, t, drop)
+    f, h, t = _nearly_flat(y) if y.real < 1.0 else curled(np.sqrt(np.sqrt(y)))
+    return _curl_parts(f, h, t, drop)
 
 
 def curl_factors(b: Any, drop: Any, curl: Any) -> Any:
     """Return ``curl_law`` of arrays, real or complex, with drop (P, K): factors (3, P, ...)."""
-    near, far, parts = (getattr(each, "py_func", each) for each in (nearly_flat, curled, curl_parts))
+    near, far, parts = (getattr(each, "py_func", each) for each in (_nearly_flat, curled, _curl_parts))
     y = np.asarray(curl * curl * b * b)
     small = y.real < 1.0
     own = np.where(small, near(np.where(small, y, 0.0)), far(np.sqrt(np.sqrt(np.where(small, 1.0, y)))))

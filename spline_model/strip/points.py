@@ -119,7 +119,7 @@ def slopes_at(
 
 
 @lane()
-def laws_at(
+def _laws_at(
     measure, count, strain, stretching, weights, x1, y1, x2, y2, g0, g1, g2, g3,
     h00, h01, h11, h02, h03, h12, h13, h22, h23, h33, tx, ty, lengths, moments, pulls,
     speed, curvature, rigidity, by_e, by_m, by_t, force,
@@ -273,7 +273,7 @@ def evaluate_residual(s, a, moving, shape, strips, local, out):
     _given_at(s, a, strips, lanes)
     rows = four(lanes, 0) + four(lanes, 4) + four(lanes, 8) + four(lanes, 12)
     more = four(lanes, 16) + four(lanes, 20) + four(lanes, 24) + (lanes[28], lanes[FORCE_AT])
-    bending, axial = laws_at(
+    bending, axial = _laws_at(
         strips.measure, a.size, numbers[STRAIN], numbers[STRETCHING], shape.rule[WEIGHT], *(rows + more)
     )
     slowest = np.inf

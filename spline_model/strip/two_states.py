@@ -37,7 +37,7 @@ def bending_strain(c, v, speed, curvature):
 
 
 @called()
-def mean_moment(e0, e1, drop, curl):
+def _mean_moment(e0, e1, drop, curl):
     """Return the mean over R of the moment of ``curl_law`` between two strains, and its derivative in the
     second.
 
@@ -86,7 +86,7 @@ def _moment_between(e0, e1, drop, curl, rate):
     """Mean moment over R between two strains, with the viscous one, and its derivative in the second."""
     mean, share = 0.5 * (e0 + e1), 0.5
     if curl > 0.0:
-        mean, share = mean_moment(e0, e1, drop, curl)
+        mean, share = _mean_moment(e0, e1, drop, curl)
     return mean + rate * (e1 - e0), share + rate
 
 

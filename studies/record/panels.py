@@ -87,7 +87,7 @@ STRIP_POINTS = Axis("strip_points", "control points a strip", each=True)
 MESH = Axis("elements", "elements a strip", log=True, each=True)
 
 
-class Mark(Protocol):
+class _Mark(Protocol):
     """What is drawn in a panel."""
 
     def draw(self, panel: Axes, x: Axis, y: Axis) -> None:
@@ -223,7 +223,7 @@ class Panel:
 
     x: Axis
     y: Axis
-    marks: Sequence[Mark]
+    marks: Sequence[_Mark]
     title: str = ""
     equal: bool = False
 

@@ -87,7 +87,7 @@ def _cases() -> Iterator[_BucklingCase]:
     yield _BucklingCase("column: critical load", column.frame(BEYOND), "bifurcation [EI/L^2]", first, euler)
     for degrees in PUBLISHED:
         name, angle = f"column: elastica at {degrees} deg", float(degrees)
-        yield _BucklingCase(name, bent_column(degrees), "tip angle [deg]", turn, angle, angle, True)
+        yield _BucklingCase(name, _bent_column(degrees), "tip angle [deg]", turn, angle, angle, True)
     for part, name in {TOGGLE: "williams_toggle", LEE: "lees_frame"}.items():
         for place, value in enumerate(published(name).values):
             limit = partial(Arc.critical_load, kind=LIMIT, place=place)
@@ -99,20 +99,20 @@ def _cases() -> Iterator[_BucklingCase]:
     points, count = "limit points [1]", lambda arc: float(len(arc.critical))
     yield _BucklingCase(name, shallow.frame(), points, count, published=known)
     name, directions = f"pivot pushed down {1e3 * SHALLOW:g} mm: stable", "unstable directions [1]"
-    yield _BucklingCase(name, pushed_pivot(SHALLOW), directions, lambda arc: float(arc.inertia[-1]))
+    yield _BucklingCase(name, _pushed_pivot(SHALLOW), directions, lambda arc: float(arc.inertia[-1]))
     name = "pivot pushed down: where its strips buckle"
-    yield _BucklingCase(name, pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
+    yield _BucklingCase(name, _pushed_pivot(DEPTHS[0]), "bifurcation [m]", first)
     for depth in DEPTHS:
         name = f"pivot pushed down {1e3 * depth:g} mm: other branch"
-        yield _BucklingCase(name, pushed_pivot(depth), "turn of the body [deg]", turn, follow_branch=True)
+        yield _BucklingCase(name, _pushed_pivot(depth), "turn of the body [deg]", turn, follow_branch=True)
 
 
-def bent_column(degrees: float) -> Frame:
+def _bent_column(degrees: float) -> Frame:
     """Return the column under the load at which the tip of the elastica has turned by `degrees` [deg]."""
     return published("column").frame(EULER * load_ratio(math.radians(degrees)))
 
 
-def pushed_pivot(depth: float) -> Frame:
+def _pushed_pivot(depth: float) -> Frame:
     """Return the pivot of Table 1 with its body's centre displaced down by `depth` [m], free to turn."""
     given = named_case()
     effects = Effects(
@@ -166,7 +166,7 @@ PUSHED = (DEFAULT, TWELVE, FE)
 
 def _branch(depth: float, model: str, branch: str) -> Answer:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
-    frame = pushed_pivot(depth)
+    frame = _pushed_pivot(depth)
     arc = arc_of(frame, ARCS[model], follow_branch=branch == OTHER)
     found = {
         "model": model,

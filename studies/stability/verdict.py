@@ -221,7 +221,7 @@ class Question:
         """Return an answer compared with the reference."""
         answer = self.answer(settings, how)
         if self.motion is None:
-            return Found.of(answer, path_distance(answer, reference))
+            return Found.of(answer, _path_distance(answer, reference))
         if not len(answer.time):  # statics does not reach the start
             return Found.of(answer, 0.0)
         gain = float((answer.balance / answer.balance[0] - 1.0).max())
@@ -266,7 +266,7 @@ def family(questions: Callable[[], Iterable[Question]], **declared: Any) -> Stud
     return study(Part(at=questions, ask=_answers), **declared)
 
 
-def path_distance(path: Response, reference: Response) -> float:
+def _path_distance(path: Response, reference: Response) -> float:
     """Return the largest distance of two paths over the states that both have: of torque or place [1].
 
     Each over its largest value on the reference's path; infinite where the path is not of finite numbers.
