@@ -236,7 +236,11 @@ class ArcFollower(Follower):
         point = directed(self.work, point, normal, along)
         if (self.end - self.here.load_factor) * (self.end - point.load_factor) < 0.0:
             return point, "the step goes beyond the end"
-        if normal @ (point.rate / self.work.unit) + along * point.slope < SHARPEST_TURN:
+        ahead = normal @ ((point.z - self.here.z) / self.work.unit)
+        ahead += along * (point.load_factor - self.here.load_factor)
+        turned = normal @ (point.rate / self.work.unit) + along * point.slope
+        # a prediction that fails may lie behind, and so does the state on its plane
+        if min(turned, ahead / (self._parameter(point) - self.at)) < SHARPEST_TURN:
             return point, "the path turns sharply"
         return point, ""
 

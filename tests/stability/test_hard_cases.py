@@ -12,6 +12,8 @@ from studies.answers.metrics import differences
 from studies.answers.settings import SplineSettings
 from studies.errors import BadInput
 from studies.paper import formulations
+from studies.published.arcs import LIMIT, arc_of
+from studies.published.case import published
 from studies.record.store import Store
 from studies.registry import STUDIES
 from studies.stability import verdict
@@ -155,3 +157,11 @@ def test_columns_are_what_they_say():
     assert verdict.COLUMNS[verdict.DEFAULT] == SplineSettings()
     assert verdict.COLUMNS[verdict.PAPER] == formulations.SETTINGS[formulations.PAPER]
     assert set(verdict.COLUMNS) <= set(verdict.ORDER)
+
+
+@pytest.mark.parametrize("points", [12, 15])
+def test_a_path_in_its_arc_length_does_not_go_back(points):
+    """Requirement: a frame that snaps through has two limit points. With 15 control points a prediction lay
+    behind the first one, so that the path went over it three times."""
+    arc = arc_of(published("williams_toggle").frame(), SplineSettings(control_points=points))
+    assert [point.kind for point in arc.critical] == [LIMIT, LIMIT]
