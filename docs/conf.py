@@ -40,7 +40,7 @@ _OTHERS = (
 nitpick_ignore_regex = [
     ("py:(class|obj)", rf"({_OTHERS})\..*"),
     ("py:class", r"[\d.]+"),
-    ("py:class", r"\w+(\.\w+)*\._\w+"),
+    ("py:class", r"(\w+\.)*_\w+"),
 ]
 nitpick_ignore = [
     ("py:class", name)

@@ -12,7 +12,16 @@ History = tuple[Pair, ...]
 
 
 class InvalidParameter(ValueError):
-    """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]"."""
+    """A parameter outside its domain; the message is one line "name: got X, expected Y [unit]".
+
+    Examples
+    --------
+    >>> try:
+    ...     BodyDesign(name="tip", centre=(0.1, 0.0), mass=-1.0)
+    ... except InvalidParameter as refusal:
+    ...     print(refusal)
+    body_mass: got -1.0, expected a number not below 0 [kg]
+    """
 
     def __init__(self, name: str, got: object, expected: str) -> None:
         super().__init__(name, got, expected)  # of which another process makes it again

@@ -90,6 +90,13 @@ class Model:
         element: "corotational" (Euler-Bernoulli) or "reissner" (with shear).
         elements: number of elements of every strip.
         effects: the named effects.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> pivot.element, pivot.strip_names, pivot.lengths.shape
+    ('corotational', ('strip_1', 'strip_2'), (2,))
     """
 
     strips: tuple[StripDesign, ...]

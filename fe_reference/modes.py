@@ -45,6 +45,14 @@ class Modes:
         body_shapes (C, 3 B): displacement of the centre of mass and rotation of every body, same scale.
         state (size,): reduced coordinates of the static state.
         estimate: of the frequencies' errors, where an accuracy was asked for; the rest is of the finest mesh.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> modes = natural_frequencies(pivot, count=2)
+    >>> bool(0.0 < modes.frequency[0] < modes.frequency[1])
+    True
     """
 
     rotation: float

@@ -240,6 +240,18 @@ class Trajectory(Answer):
             without.
 
     Clamps and attachments are eliminated exactly, not enforced: there are no residuals of constraints.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Fig 6.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> motion = solve_release(pivot, start=0.1, duration=1e-4, samples=5, check=False)
+    >>> motion.bodies["body"].shape, motion.settings["integrator"]
+    ((6, 3), 'central-difference')
     """
 
     status: Status

@@ -79,6 +79,12 @@ class PlateFactors:
         constant: of a moment that is constant along the strip, f_b [1].
         linear: of a moment that is linear with zero mean, f_s [1].
         unknowns: of the finite elements.
+
+    Examples
+    --------
+    >>> factors = plate_factors(0.25, 0.3)
+    >>> print(f"{factors.constant:.3f} {factors.linear:.3f}")
+    1.019 1.044
     """
 
     constant: float

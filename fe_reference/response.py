@@ -180,6 +180,13 @@ class CriticalPoint:
     it; turns (B,) of all bodies [rad]; preload: share of gravity and natural strains that acts there [1];
     text: what happens at which load, "" for the stationary torque of a path without loads, which is not
     unstable.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``, whose path to 0.1 rad has none:
+
+    >>> solve_statics(pivot, rotation=0.1).critical_points
+    ()
     """
 
     kind: str

@@ -24,7 +24,17 @@ if TYPE_CHECKING:
 
 
 class Status(StrEnum):
-    """How a solve ended."""
+    """How a solve ended.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> solve_statics(pivot, rotation=0.1).status.value
+    'converged'
+    >>> Status.CONVERGED.text
+    'converged: the whole path was solved; nothing to do.'
+    """
 
     CONVERGED = "converged"
     NOT_CONVERGED = "not_converged"
@@ -141,6 +151,18 @@ class StaticSolution(Answer):
         seconds: "solve", of following the path alone [s].
         estimate: of the error, where an accuracy was asked for: then all arrays but `states` and `inertia`
             are limits of meshes, at the nodes of the coarsest.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Figs 4 and 5.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, increments=4)
+    >>> path.torque.shape, path.bodies["body"].shape
+    ((5,), (5, 3))
     """
 
     status: Status
@@ -231,6 +253,14 @@ class ErrorEstimate:
         accuracy: what was asked for [1]. meshes: elements of a strip on each of them.
         stopped: elements of a finer mesh that round-off stopped early; 0 for none.
         errors: by quantity, the largest over the states in parts of its largest value [1].
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, accuracy=1e-3)
+    >>> bool(path.estimate.largest <= 1e-3)
+    True
     """
 
     accuracy: float
@@ -275,6 +305,14 @@ class StripFields:
         reactions (S, G, 2, 3): force x, y [N] and moment [N m] on the strip at its root and its tip; at a
             free end the force that acts there.
         rest_bodies (B, 2): centres at rest [m]. bodies (S, B, 3): centre [m] and turn [rad].
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``fe_reference.model.cross_axis_pivot``:
+
+    >>> path = solve_statics(pivot, rotation=0.1, increments=4)
+    >>> strip_fields(pivot, path.states).bending_moment.shape == (5, 2, pivot.elements + 1)
+    True
     """
 
     arc_length: Array

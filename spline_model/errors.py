@@ -25,7 +25,25 @@ def present(name: str) -> str:
 
 
 class InvalidParameter(ValueError):
-    """A parameter outside its range; the message is one line ``name: got X, expected Y``."""
+    """A parameter outside its range; the message is one line ``name: got X, expected Y``.
+
+    Attributes
+    ----------
+    name : str
+        Of the parameter.
+    got : object
+        What was given.
+    expected : str
+        What is, with the unit.
+
+    Examples
+    --------
+    >>> try:
+    ...     BodyDesign(name="tip", centre=(0.1, 0.0), mass=-1.0)
+    ... except InvalidParameter as refusal:
+    ...     print(refusal.name, refusal.got)
+    mass -1.0
+    """
 
     def __init__(self, name: str, got: Any, expected: str) -> None:
         super().__init__(name, got, expected)  # of which another process makes it again
@@ -44,6 +62,28 @@ class ConvergenceError(RuntimeError):
     solution : the converged part of the path as a ``StaticSolution``, last good state included.
     load_factor : fraction of the path that was reached, 0 to 1.
     history : residual norms of the failed attempts, dimensionless.
+
+    Examples
+    --------
+    A strip of 80 mm that a body pushes far beyond its Euler load, of which a part of the path is left:
+
+    >>> far = compliant_mechanism(
+    ...     strips=[
+    ...         StripDesign(
+    ...             name="strip", start=(0.0, 0.0), end=(0.08, 0.0), tip="body", width=0.01, thickness=1e-4,
+    ...             youngs_modulus=206e9, density=7850.0,
+    ...         )
+    ...     ],
+    ...     bodies=[BodyDesign(name="body", centre=(0.08, 0.0))],
+    ...     control_points=4,
+    ...     effects=("bending", "stretching", "applied_force"),
+    ...     parameters={"applied_force": {"force": (-1.0, 0.01)}},
+    ... )
+    >>> try:
+    ...     solve_mechanism(far, increments=3)
+    ... except ConvergenceError as stopped:
+    ...     print(0.0 <= stopped.load_factor < 1.0, len(stopped.solution.load_factor) >= 1)
+    True True
     """
 
     def __init__(

@@ -38,6 +38,13 @@ class Mechanism:
 
     ``compliant_mechanism`` and ``spline_model.pivot.cross_axis_pivot`` return one. All values are in SI
     units.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> isinstance(pivot, Mechanism), pivot.effects
+    (True, ('bending', 'stretching', 'strip_inertia', 'body_inertia'))
     """
 
     design: Design

@@ -20,7 +20,19 @@ STRIPS = ("strip_1", "strip_2")
 
 
 class Pivot(Mechanism):
-    """A cross-axis pivot: a mechanism of two strips and one body; ``cross_axis_pivot`` returns one."""
+    """A cross-axis pivot: a mechanism of two strips and one body; ``cross_axis_pivot`` returns one.
+
+    References
+    ----------
+    Valentini and Pezzuti (2013), Fig 1 and Table 1.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> [strip.name for strip in pivot.design.strips]
+    ['strip_1', 'strip_2']
+    """
 
     @property
     def centre(self) -> NDArray[np.float64]:

@@ -58,7 +58,17 @@ def kept(make: Callable[[Any], T]) -> cached_property[T]:
 
 
 class Status(Enum):
-    """How a solve ended; the text ends with a remedy."""
+    """How a solve ended; the text ends with a remedy.
+
+    Examples
+    --------
+    With ``pivot`` of the example of ``spline_model.pivot.cross_axis_pivot``:
+
+    >>> solve_statics(pivot, rotation=0.1).status
+    <Status.CONVERGED: 'converged'>
+    >>> Status.CONVERGED.text
+    'every increment converged'
+    """
 
     CONVERGED = "converged"
     NOT_CONVERGED = "not_converged"
