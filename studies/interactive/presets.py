@@ -29,6 +29,8 @@ Values = Mapping[str, float | None]
 PENALTY_STIFFNESS = 1000.0
 #: Logarithmic sliders reach from a fifth to five times the value of the design.
 SPAN = 5.0
+#: What a change of units rounds, in parts of a value.
+ROUNDED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class _Parameter:
         if value is None and self.name == "yield_strength":
             return None
         number = isinstance(value, int | float) and not isinstance(value, bool)
-        if number and self.low <= value <= self.high:  # type: ignore[operator]
+        low, high = self.low * (1.0 - ROUNDED), self.high * (1.0 + ROUNDED)
+        if number and low <= value <= high:  # type: ignore[operator]
             return float(value)  # type: ignore[arg-type]
         got = f"{value * self.per_si:g}" if number and math.isfinite(value) else repr(value)  # type: ignore
         low, high = self.low * self.per_si, self.high * self.per_si

@@ -167,13 +167,14 @@ def test_keys_work_wherever_the_focus_is(page, element):
 
 def test_keys_are_letters_in_a_text_field(page):
     """Requirement: in a box for numbers no key does anything else."""
-    typed(page, "strip width in mm", "10")  # nothing of it is selected, which a key would replace
     page.ask("document.querySelector(\"input[aria-label='strip width in mm']\").focus()")
     page.key("r")
     page.key("ArrowUp")
     page.ask("new Promise((done) => setTimeout(done, 200))")
     assert page.ask("studio.state.mode") == "held"
     assert page.ask("studio.state.displacement[2]") == 0
+    typed(page, "strip width in mm", "10")  # an arrow steps the number, which a letter may have emptied
+    page.wait("studio.state.values.width === 0.01")
 
 
 @pytest.mark.parametrize("name", ["silicon_pivot", "large_steel_pivot", "cantilever_with_body"])
