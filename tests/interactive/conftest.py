@@ -37,4 +37,6 @@ def page(hand):
     chosen(hand, "drive", "rotation")
     hand.wait("studio.state.mode === 'held' && studio.state.displacement[2] === 0")
     hand.wait("studio.state.drive === 'rotation' && studio.state.preset === 'polymer'")
+    # the note is of the preset's own values: what a former test changed is back
+    hand.wait("document.getElementById('preset-note').textContent !== ''")
     return hand
