@@ -230,3 +230,15 @@ def test_body_damping_makes_a_swing_die_away_at_its_rate(damper, settings, optio
     gates.check("body_damping_decay", error())
     if settings.model == "spline":
         gates.refuse("body_damping_decay", error)
+
+
+@pytest.mark.slow
+@MODELS
+@pytest.mark.parametrize("effect, history, rotation", QUICK)
+def test_motions_under_loads_keep_their_energy_books(effect, history, rotation, settings):
+    """Requirement: strain, kinetic and gravity energy gained are the work of the loads."""
+    design = replace(asked(effect, history, rotation), increments=10)
+    gates.check("loads_motion_books", max(released(design, settings).energy_error, 1e-16))
+    if effect == "gravity" and settings is ELEMENTS:
+        implicit = partial(released, design, settings, integrator="generalised-alpha")
+        gates.refuse("loads_motion_books", lambda step: implicit(step=step).energy_error)
