@@ -24,6 +24,7 @@ ENERGY_FLOOR = 1e-20
 #: stiffest strip, of stress in E, of displacements in strip lengths.
 UNITS = {
     "_Nm_per_rad": ("N m/rad", 1e-9),
+    "_N_per_m": ("N/m", 1e-9),
     "_Nm": ("N m", 1e-9),
     "_N": ("N", 1e-9),
     "_J": ("J", ENERGY_FLOOR),
@@ -104,6 +105,15 @@ class Scale:
     def named(self, unit: str) -> str:
         """Return the label of an axis in that unit."""
         return f"{self.heading} [{unit}]" if unit else self.heading
+
+    @classmethod
+    def of_key(cls, key: str, highest: int = 6) -> "Scale":
+        """Return the form of the numbers that files have under a key, which ends with its unit, if any."""
+        end = next((end for end in UNITS if key.endswith(end)), "")
+        heading = key.removesuffix(end).replace("_", " ")
+        if not end:
+            return Scale(heading=heading, factor=1.0)
+        return Scale(heading=heading, unit=UNITS[end][0], highest=highest)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,7 @@ from studies.cases.design import Design
 from studies.cases.section import refuse_tapers
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
-from studies.commands.columns import cell
+from studies.commands.columns import numbers, plain, table
 from studies.commands.parser import command
 from studies.cost.tried import PATH_ERRORS, PATH_JUDGED, advise
 from studies.record.progress import Bar
@@ -51,8 +51,8 @@ def main(arguments: argparse.Namespace) -> int:
     except NoReference as error:
         return not_converged(error)
     failure = None if found["meets"].any() else f"no model meets {arguments.accuracy:g} here"
-    table = _readable(problem, found, arguments.accuracy)
-    return deliver(arguments, _document(found, arguments.accuracy), table, failure=failure)
+    lines = _readable(problem, found, arguments.accuracy)
+    return deliver(arguments, _document(found, arguments.accuracy), lines, failure=failure)
 
 
 def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
@@ -65,8 +65,8 @@ def _document(found: pd.DataFrame, error: float) -> dict[str, Any]:
         **{name: name for name in ("whole_s", "solve_s", "message")},
     }
     largest = [_uncertainty(row) for row in found.to_dict("records")]
-    table = found.assign(largest=largest).reindex(columns=list(named)).rename(columns=named)
-    return {"accuracy": error, "models": table.to_dict("records")}
+    models = found.assign(largest=largest).reindex(columns=list(named)).rename(columns=named)
+    return {"accuracy": error, "models": models.to_dict("records")}
 
 
 def _uncertainty(row: Mapping[Any, Any]) -> float:
@@ -82,17 +82,18 @@ def _readable(problem: Design, found: pd.DataFrame, error: float) -> Iterator[st
     unsure = max(_uncertainty(row) for row in rows)
     beside = (f"of the {name} {found[f'uncertainty_{name}'].max():.1e}" for name in BESIDE)
     yield ", ".join((f"error of the references: at most {unsure:.1e}", *beside))
-    head = "".join(f"{name:>12}" for name in PATH_ERRORS)
-    width = max(len(row["setting"]) for row in rows) + 2
-    yield f"{'model':<22}{'setting':<{width}}{head}{'whole call':>13}{'x fastest':>11}{'alone':>13}"
-    for row in rows:
-        errors = "".join(cell(row.get(name, math.nan), 12) for name in PATH_ERRORS)
-        line = f"{row['group']:<22}{row['setting']:<{width}}{errors}"
-        if row["message"]:
-            yield f"{line}  {row['message']}"
-            continue
-        times = f"{1e3 * row['whole_s']:10.3g} ms{row['whole_s'] / rows[0]['whole_s']:11.3g}"
-        line += f"{times}{1e3 * row['solve_s']:10.3g} ms"
-        yield line if row["meets"] else f"{line}  does not meet it: its best"
+    fastest = rows[0]["whole_s"]
+    said = (row["message"] or ("" if row["meets"] else "does not meet it: its best") for row in rows)
+    yield from table(
+        [
+            plain("model", (row["group"] for row in rows), left=True),
+            plain("setting", (row["setting"] for row in rows), left=True),
+            *(numbers(name, (row.get(name, math.nan) for row in rows)) for name in PATH_ERRORS),
+            numbers("whole call [ms]", (1e3 * row["whole_s"] for row in rows), ".3g"),
+            numbers("x fastest", (row["whole_s"] / fastest for row in rows), ".3g"),
+            numbers("alone [ms]", (1e3 * row["solve_s"] for row in rows), ".3g"),
+            plain("", said, left=True),
+        ]
+    )
     if unsure > 0.1 * error:
         yield "a reference's own error is more than a tenth of the wanted one: the verdicts are not certain"

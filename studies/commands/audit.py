@@ -19,18 +19,29 @@ Exit code 0: done; 2: bad input; 3: the full scene has no answer.
 """
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
-from studies.commands.columns import cell
+from studies.commands.columns import numbers, plain, table
 from studies.commands.parser import Argument, command, positive, whole_number
-from studies.effects.audit import Audit, audit
-from studies.effects.scenes import Outcome
+from studies.effects.audit import CHANGED, Audit, audit
+from studies.effects.scenes import CHANGES, SIZES, Outcome
 from studies.errors import Unanswered
 from studies.record.progress import Bar
+
+#: Headings of columns that are not called as in JSON.
+HEADINGS = {
+    "trajectory": "path",
+    "swing_frequency": "swing",
+    "first_mode": "1st mode",
+    "time_ratio": "time",
+    "degrees_of_freedom": "DOF",
+    "highest_frequency_Hz": "highest Hz",
+    "explicit_step_s": "step s",
+}
 
 
 @command(
@@ -71,40 +82,36 @@ def _document(found: Audit) -> dict[str, Any]:
 
 def _readable(found: Audit) -> Iterator[str]:
     """Yield the lines of a table, and the cheapest scene."""
-    run = found.run
+    run, best = found.run, found.cheapest
     yield f"full scene: {', '.join(found.full.variant.effects.names)}"
     yield f"static path and {1e3 * run.duration:.3g} ms of motion in steps of {run.step:.2g} s; changes to it"
-    head = f"{'path':>9}{'torque':>9}{'swing':>10}{'1st mode':>10}{'loss':>10}"
-    yield f"{'scene':<28}{head}{'time':>8}{'unknowns':>9}{'DOF':>5}{'highest Hz':>12}{'step s':>9}"
-    for row in (found.full, *found.rows):
-        yield _line(found, row)
-    best = found.cheapest
+    yield from _scenes(found, (found.full, *found.rows))
     yield ""
-    head = f"{'path':>9}{'stiffness':>11}{'torque':>10}{'stress':>10}{'1st mode':>10}"
-    yield f"{'neglected by planar beams':<28}{head}"
-    for price in found.beyond:
-        cells = f"{cell(price['trajectory'], 9)}{cell(price['stiffness'], 11, sign='+')}"
-        cells += "".join(cell(price[name], 10, sign="+") for name in ("torque", "stress", "first_mode"))
-        answer = f"{price['status'].replace('_', ' ')}: {price['reason']}" if price["reason"] else cells
-        yield f"{'with ' + price['effect'].replace('_', ' '):<28}{answer}"
+    labels = ("with " + price["effect"].replace("_", " ") for price in found.beyond)
+    yield from _table("neglected by planar beams", labels, found.beyond, CHANGED)
     yield ""
     if not best.variant.dropped:
         yield f"no cheaper scene is within {found.tolerance:g}"
         return
     yield f"cheapest within {found.tolerance:g}: {', '.join(best.variant.effects.names)}"
     yield f"that is: {best.variant.label}"
-    yield _line(found, best)
+    yield from _scenes(found, (best,))
     ratio = found.row(best)["time_ratio"]
     yield f"largest change {best.largest:.2g}, {ratio:.2f} times as fast as the full scene"
 
 
-def _line(found: Audit, row: Outcome) -> str:
-    label = f"{row.variant.label if len(row.variant.dropped) < 2 else 'all of these':<28}"
-    if not row.size:
-        return f"{label} {row.status.replace('_', ' ')}: {row.reason}"
-    shown = found.row(row)
-    cells = f"{cell(shown['trajectory'], 9)}{cell(shown['torque'], 9)}"
-    cells += "".join(cell(shown[name], 10, sign="+") for name in ("swing_frequency", "first_mode", "loss"))
-    extent = f"{shown['unknowns']:9d}{shown['degrees_of_freedom']:5d}"
-    speed = f"{shown['highest_frequency_Hz']:12.4g}{shown['explicit_step_s']:9.1e}"
-    return f"{label}{cells}{cell(shown['time_ratio'], 8, '.2g')}{extent}{speed}  {row.reason}".rstrip()
+def _scenes(found: Audit, outcomes: Sequence[Outcome]) -> Iterator[str]:
+    """Yield the lines of a table of scenes, several effects without their names."""
+    labels = (each.variant.label if len(each.variant.dropped) < 2 else "all of these" for each in outcomes)
+    rows = [found.row(each) for each in outcomes]
+    return _table("scene", labels, rows, (*CHANGES, "time_ratio", *SIZES))
+
+
+def _table(
+    title: str, labels: Iterable[str], rows: Sequence[Mapping[str, Any]], keys: Sequence[str]
+) -> Iterator[str]:
+    """Yield the lines of a table of numbers by their keys, with how and why a row ended that has none."""
+    status = (row["status"].replace("_", " ").replace("converged", "") for row in rows)
+    said = (": ".join(filter(None, (ended, row["reason"]))) for ended, row in zip(status, rows, strict=True))
+    columns = (numbers(HEADINGS.get(key, key), (row[key] for row in rows), ".3g") for key in keys)
+    return table([plain(title, labels, left=True), *columns, plain("", said, left=True)])

@@ -5,14 +5,14 @@ below the last decimal, or below what the solvers resolve, is printed as zero, w
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from studies.answers.quantities import NOTHING, PREFIXES, fixed, power_of
+from studies.answers.quantities import NOTHING, Scale, fixed
 
 #: Digits of the largest value of a column.
 DIGITS = 7
@@ -20,8 +20,7 @@ DIGITS = 7
 ANGLE_DECIMALS, ANGLE_FLOOR = 3, 1e-10
 
 
-@dataclass(frozen=True, kw_only=True)
-class Column:
+class Column(NamedTuple):
     """One column of a table.
 
     Attributes:
@@ -33,11 +32,6 @@ class Column:
     unit: str
     cells: tuple[str, ...]
     group: str = ""
-
-    @property
-    def width(self) -> int:
-        """Characters that the column needs."""
-        return max(map(len, (self.name, self.unit, *self.cells)))
 
 
 def quantity(
@@ -58,57 +52,56 @@ def quantity(
         group: heading over the columns.
         **values: of each column by its heading; NaN where there is none.
     """
-    shown, scaled = _prefixed(unit, np.stack([_above(floor, each) for each in values.values()]), highest)
-    decimals = _decimals(_largest(scaled), digits)
-    rows = [tuple(fixed(value, decimals) for value in each) for each in scaled]
-    pairs = zip(values, rows, strict=True)
-    return tuple(Column(name=name, unit=shown, cells=cells, group=group) for name, cells in pairs)
+    shown = np.stack([_above(floor, each) for each in values.values()])
+    factor, fitting = Scale(heading="", unit=unit, highest=highest).fitting([shown])
+    decimals = _decimals(factor * shown, digits)
+    return tuple(
+        Column(name, fitting.replace("µ", "u"), tuple(fixed(value, decimals) for value in own), group)
+        for name, own in zip(values, factor * shown, strict=True)
+    )
 
 
-def wide(unit: str, digits: int, *, floor: float = 0.0, **values: ArrayLike) -> tuple[Column, ...]:
-    """Return columns (S,) over many powers of ten: every number has its significant digits, a column a
-    prefix.
+def by_row(
+    scales: Mapping[str, Scale], columns: Sequence[tuple[str, Mapping[str, float]]], digits: int
+) -> Iterator[Column]:
+    """Yield the columns of a table with a quantity a row, each in the unit that suits it.
 
-    unit: SI unit of the values. digits: significant ones [1]. floor: smaller magnitudes print as zero.
+    Args:
+        scales: of the rows, by key. columns: heading of each column, and its numbers by key.
+        digits: significant, of each number.
     """
-    columns = []
-    for name, value in values.items():
-        shown, scaled = _prefixed(unit, _above(floor, value), 6)
-        cells = tuple(one(each, digits) for each in scaled)
-        columns.append(Column(name=name, unit=shown, cells=cells))
-    return tuple(columns)
-
-
-def _prefixed(unit: str, values: np.ndarray, highest: int) -> tuple[str, np.ndarray]:
-    """Return a unit with a prefix, of a power of ten of `highest` at most, and the values in it.
-
-    Of the largest value it leaves three digits before the point at most.
-    """
-    power = power_of(_largest(values), highest)
-    return PREFIXES[power].replace("µ", "u") + unit, values / 10.0**power
+    values = [np.array([own[key] for _, own in columns]) for key in scales]
+    fitted = [scale.fitting([own]) for scale, own in zip(scales.values(), values, strict=True)]
+    yield plain("", (scale.heading for scale in scales.values()), left=True)
+    yield plain("unit", (unit.replace("µ", "u") for _, unit in fitted))
+    shown = [factor * own for (factor, _), own in zip(fitted, values, strict=True)]
+    for (heading, _), cells in zip(columns, zip(*shown, strict=True), strict=True):
+        yield plain(heading, (significant(each, digits) for each in cells))
 
 
 def angle(radians: ArrayLike, *, group: str = "") -> Column:
     """Return a column of angles in degrees; radians: values (S,) [rad]."""
     degrees = np.degrees(_above(ANGLE_FLOOR, radians))
-    decimals = max(ANGLE_DECIMALS, _decimals(_largest(degrees), ANGLE_DECIMALS + 2))
-    cells = tuple(fixed(each, decimals) for each in degrees)
-    return Column(name="rotation", unit="deg", cells=cells, group=group)
+    decimals = max(ANGLE_DECIMALS, _decimals(degrees, ANGLE_DECIMALS + 2))
+    return Column("rotation", "deg", tuple(fixed(each, decimals) for each in degrees), group)
 
 
-def plain(name: str, cells: Iterable[str], unit: str = "") -> Column:
-    """Return a column of texts."""
-    return Column(name=name, unit=unit, cells=tuple(cells))
+def plain(name: str, cells: Iterable[str], unit: str = "", *, left: bool = False) -> Column:
+    """Return a column of texts, flush right, or flush left where they are words."""
+    shown = (name, *cells)
+    width = max(map(len, shown)) if left else 0
+    name, *texts = (each.ljust(width) for each in shown)
+    return Column(name, unit, tuple(texts))
+
+
+def numbers(name: str, values: Iterable[float], form: str = ".1e") -> Column:
+    """Return a column of numbers, of any unit, in a form of Python; a dash for NaN."""
+    return plain(name, (f"{each:{form}}" if math.isfinite(each) else NOTHING for each in values))
 
 
 def significant(value: float, digits: int = DIGITS) -> str:
     """Return a number, of any unit, with its significant digits, for wide columns; a dash for NaN."""
     return f"{value + 0.0:.{digits}g}" if math.isfinite(value) else NOTHING
-
-
-def cell(value: float, width: int, form: str = ".1e", sign: str = "") -> str:
-    """Return a number, of any unit, right-aligned in `width` characters; a dash for NaN."""
-    return f"{value:{sign}{width}{form}}" if math.isfinite(value) else f"{NOTHING:>{width}}"
 
 
 def one(value: float, digits: int) -> str:
@@ -122,44 +115,22 @@ def one(value: float, digits: int) -> str:
     return f"{value:.{digits}g}"
 
 
-def table(columns: Sequence[Column]) -> Iterator[str]:
-    """Yield the lines of a table: groups where there are any, headings, units, rows; all flush right."""
-    columns = [
-        each for _, group in groupby(columns, lambda column: column.group) for each in _wide(list(group))
-    ]
-    heads = [[column.name for column in columns], [column.unit for column in columns]]
-    rows = zip(*(column.cells for column in columns), strict=True)
-    if any(column.group for column in columns):
-        yield from _groups(columns)
-    for cells in (*heads, *rows):
-        yield "".join(_cell(columns, place, text) for place, text in enumerate(cells))
+def table(columns: Iterable[Column]) -> Iterator[str]:
+    """Yield the lines of a table: groups, headings and units where there are any, then the rows."""
+    groups = (_lines(list(own)) for _, own in groupby(columns, lambda column: column.group))
+    for parts in zip(*groups, strict=True):
+        if line := " | ".join(parts).rstrip(" |"):
+            yield line
 
 
-def _wide(group: list[Column]) -> list[Column]:
-    """Return the columns of a group, the first of them so wide that the name of the group fits over them."""
-    first, *others = group
-    missing = len(first.group) - sum(each.width + 2 for each in others) - first.width
-    return [replace(first, unit=first.unit.rjust(first.width + max(missing, 0))), *others]
-
-
-def _groups(columns: Sequence[Column]) -> Iterator[str]:
-    """Yield the line of the groups, each flush right over its columns."""
-    line, span = "", 0
-    for place, column in enumerate(columns):
-        line += _cell(columns, place, "")
-        span = span + 2 + column.width if place and columns[place - 1].group == column.group else column.width
-        last = place + 1 == len(columns) or columns[place + 1].group != column.group
-        if last:
-            line = f"{line[:-span]}{column.group:>{span}}"
-    yield line
-
-
-def _cell(columns: Sequence[Column], place: int, text: str) -> str:
-    """Return a cell with the space before it; a group begins with a line."""
-    column = columns[place]
-    first = place > 0 and column.group != columns[place - 1].group
-    gap = " | " if first else ("  " if place else "")
-    return f"{gap}{text:>{column.width}}"
+def _lines(columns: Sequence[Column]) -> list[str]:
+    """Return the lines of neighbouring columns of one group, flush right below its name."""
+    texts = [(each.name, each.unit, *each.cells) for each in columns]
+    widths = [max(map(len, own)) for own in texts]
+    rows = [map(str.rjust, row, widths) for row in zip(*texts, strict=True)]
+    lines = [columns[0].group, *map("  ".join, rows)]
+    width = max(map(len, lines))
+    return [line.rjust(width) for line in lines]
 
 
 def _above(floor: float, values: ArrayLike) -> np.ndarray:
@@ -168,10 +139,7 @@ def _above(floor: float, values: ArrayLike) -> np.ndarray:
     return np.where(np.abs(found) < floor, 0.0, found)
 
 
-def _largest(values: np.ndarray) -> float:
-    return float(np.nanmax(np.abs(values), initial=0.0))
-
-
-def _decimals(largest: float, digits: int) -> int:
+def _decimals(values: np.ndarray, digits: int) -> int:
     """Return the decimals of so many significant digits of the largest value; of zero alone one."""
+    largest = float(np.nanmax(np.abs(values), initial=0.0))
     return 1 if largest == 0.0 else max(0, digits - 1 - math.floor(math.log10(largest)))

@@ -31,7 +31,7 @@ from studies.cases.design import read_design
 from studies.cases.effects import INERTIA
 from studies.commands import arguments as take
 from studies.commands.answer import called, deliver, draw, headed, not_estimated
-from studies.commands.columns import plain, significant, table
+from studies.commands.columns import by_row, plain, table
 from studies.commands.parser import Argument, command
 from studies.errors import BadInput
 from studies.pictures.shown import LETTERS
@@ -154,17 +154,11 @@ def _readable(found: Sequence[_Compared]) -> Iterator[str]:
     for letter, each in zip(letters, found, strict=True):
         told = (each.path.status.replace("_", " "), *_remarks(each))
         yield f"{letter}: {each.name}, {'; '.join(told)}"
-    rows, every = [], [each.values() for each in found]
-    for key, scale in ROWS.items():
-        values = np.array([each[key] for each in every])
-        if np.isfinite(values).any():
-            factor, unit = scale.fitting([values])
-            cells = (significant(value, DIGITS) for value in factor * values)
-            ratios = (_ratio(value, values[0]) for value in values[1:])
-            rows.append([f"{scale.heading:<22}", unit.replace("µ", "u"), *cells, *ratios])
-    heads = ["", "unit", *letters, *(f"{letter}/A" for letter in letters[1:])]
-    columns = [plain(head, cells) for head, cells in zip(heads, zip(*rows, strict=True), strict=True)]
-    yield from (line for line in table(columns) if line.strip())
+    every = [(letter, each.values()) for letter, each in zip(letters, found, strict=True)]
+    shown = {k: scale for k, scale in ROWS.items() if any(math.isfinite(own[k]) for _, own in every)}
+    (_, first), *others = every
+    ratios = (plain(f"{name}/A", (_ratio(own[key], first[key]) for key in shown)) for name, own in others)
+    yield from table([*by_row(shown, every, DIGITS), *ratios])
 
 
 def _remarks(found: _Compared) -> Iterator[str]:

@@ -21,7 +21,7 @@ from studies.answers.reference import QUANTITIES, NoReference, Reference
 from studies.answers.settings import SplineSettings
 from studies.commands import arguments as take
 from studies.commands.answer import not_converged
-from studies.commands.columns import cell
+from studies.commands.columns import Column, numbers, plain, table
 from studies.commands.parser import command, reads
 from studies.convergence.sweep import FINEST, drawn, element_sweep, known, reaching, spline_row, with_orders
 from studies.errors import BadInput
@@ -101,47 +101,43 @@ def _report(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> 
     yield "largest errors over the path, against the finite elements in the limit of refinement"
     unsure = {name: limit.uncertainty[name] for name in known(limit)}
     yield "its uncertainty: " + ", ".join(f"{name} {value:.1e}" for name, value in unsure.items())
-    for title, table, count in (
-        ("spline, control points a strip", splines, "control_points"),
-        ("finite elements, elements a strip", elements, "elements"),
-    ):
+    models = {"control_points": splines, "elements": elements}
+    for count, rows in models.items():
         yield ""
-        yield title
-        yield f"{'count':>6}" + "".join(f"{name:>13}{'order':>8}" for name in QUANTITIES) + "  status"
-        yield from _rows(table, count)
+        yield from table(_columns(rows, count))
     yield ""
-    yield "count that reaches, in trajectory and torque" + "".join(f"{a:>10.0e}" for a in ACCURACIES)
-    yield from _reached(splines, elements, limit, QUANTITIES[:2])
-    yield "in stiffness and largest stress too" if len(unsure) == len(QUANTITIES) else "in stiffness too"
-    yield from _reached(splines, elements, limit, tuple(unsure))
+    stress = "stiffness and largest stress" if len(unsure) == len(QUANTITIES) else "stiffness"
+    for said, names in (("trajectory and torque", QUANTITIES[:2]), (stress, tuple(unsure))):
+        reached = (
+            plain(f"{accuracy:.0e}", (_reaching(*each, accuracy, names, limit) for each in models.items()))
+            for accuracy in ACCURACIES
+        )
+        labels = (count.replace("_", " ") for count in models)
+        yield from table([plain(f"count that reaches, in {said}", labels, left=True), *reached])
     if max(unsure.values()) > min(ACCURACIES):
         yield f"{UNSURE}: the reference is uncertain by more than that; finer meshes help (--elements 20:640)"
 
 
-def _reached(
-    splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference, quantities: tuple[str, ...]
-) -> Iterator[str]:
-    """Yield for each model the counts that reach the accuracies in these quantities.
+def _reaching(
+    count: str, rows: pd.DataFrame, accuracy: float, quantities: tuple[str, ...], limit: Reference
+) -> str:
+    """Return the count of a model that reaches an accuracy in these quantities.
 
     An accuracy that the reference is not sure of itself is reached by no count.
     """
-    sure = max(limit.uncertainty[name] for name in quantities)
-    for table, count in ((splines, "control_points"), (elements, "elements")):
-        beyond = f"> {table[count].max()}"
-        found = (
-            UNSURE if sure > accuracy else reaching(table, count, accuracy, quantities) or beyond
-            for accuracy in ACCURACIES
-        )
-        yield f"{count.replace('_', ' '):<44}" + "".join(f"{number:>10}" for number in found)
+    if max(limit.uncertainty[name] for name in quantities) > accuracy:
+        return UNSURE
+    return str(reaching(rows, count, accuracy, quantities) or f"> {rows[count].max()}")
 
 
-def _rows(table: pd.DataFrame, count: str) -> Iterator[str]:
-    """Yield one line a row, the status with where a failed path stopped."""
-    for row in table.to_dict("records"):
-        cells = "".join(
-            cell(row[f"error_{name}"], 13, ".3e") + cell(row[f"order_{name}"], 8, ".2f")
-            for name in QUANTITIES
-        )
-        stopped = f" beyond {math.degrees(row['reached_rad']):.4g} deg" * (row["status"] != "converged")
-        ended = f"{row['status'].replace('_', ' ')}{stopped}"
-        yield f"{row[count]:>6}{cells}  {ended}"
+def _columns(rows: pd.DataFrame, count: str) -> Iterator[Column]:
+    """Yield the columns of a model, the status with where a failed path stopped."""
+    yield plain(count.replace("_", " "), map(str, rows[count]))
+    for name in QUANTITIES:
+        yield numbers(name, rows[f"error_{name}"], ".3e")
+        yield numbers("order", rows[f"order_{name}"], ".2f")
+    ended = (
+        status.replace("_", " ") + f" beyond {math.degrees(reached):.4g} deg" * (status != "converged")
+        for status, reached in zip(rows["status"], rows["reached_rad"], strict=True)
+    )
+    yield plain("status", ended, left=True)

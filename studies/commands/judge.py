@@ -41,7 +41,7 @@ def main(arguments: argparse.Namespace) -> int:
     rows = [_judged(arguments.file, str(name), own, reference) for name, own in given.groupby("quantity")]
     print(f"{arguments.file}: compared with {arguments.reference} ({THEORIES[arguments.reference]})")
     heads = ("quantity", "compared", "largest deviation", "at", "allowed", "verdict")
-    print("\n".join(line for line in table(list(map(plain, heads, zip(*rows, strict=True)))) if line.strip()))
+    print("\n".join(table(map(plain, heads, zip(*rows, strict=True)))))
     return DEVIATES if "deviates" in [row[-1] for row in rows] else 0
 
 

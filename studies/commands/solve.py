@@ -33,7 +33,7 @@ import numpy as np
 
 from studies.answers.adapters import answer_static
 from studies.answers.named import quantities_of
-from studies.answers.quantities import QUANTITIES
+from studies.answers.quantities import QUANTITIES, Scale
 from studies.answers.response import Response
 from studies.answers.settings import Settings
 from studies.answers.strength import strength
@@ -124,23 +124,24 @@ def _arrays(answer: Response) -> dict[str, Array]:
         found |= dict(zip(("centre_shift_x_m", "centre_shift_y_m"), answer.centre_shift.T, strict=True))
     found |= {each.key: values for each, values in quantities_of(answer) if not (pivot and each.mechanisms)}
     if answer.body is not None:
-        matrix = answer.body_stiffness
-        found |= {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
-        found |= dict(zip(("off_axis_ratio_x", "off_axis_ratio_y"), _off_axis(answer), strict=True))
+        found |= _stiffness_of_body(answer, answer.body_stiffness)
     return found
 
 
-def _off_axis(answer: Response) -> Array:
-    """Return the stiffness in x and y over that of the rotation, whose lever is a strip's length (2, S) [1].
+def _stiffness_of_body(answer: Response, matrix: Array) -> dict[str, Array]:
+    """Return stiffnesses of the body (S, 3, 3) by names with units, and those in x and y over that of the
+    rotation, whose lever is a strip's length [1].
 
     In x and y all else is held; the rotation is free to shift.
     """
-    matrix = answer.body_stiffness
     turning = np.full(len(matrix), np.nan)
     known = np.flatnonzero(~np.isnan(matrix).any(axis=(1, 2)))
     known = known[np.linalg.matrix_rank(matrix[known]) == 3]  # a body on a hinge turns without a moment
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
-    return np.asarray(_length(answer) ** 2 * np.diagonal(matrix, axis1=1, axis2=2)[:, :2].T / turning)
+    found = {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
+    for place, axis in enumerate("xy"):
+        found[f"off_axis_ratio_{axis}"] = _length(answer) ** 2 * matrix[:, place, place] / turning
+    return found
 
 
 def _length(answer: Response) -> float:
@@ -236,22 +237,16 @@ def _columns(answer: Response) -> Iterator[Column]:
 
 
 def _body_columns(answer: Response) -> Iterator[Column]:
-    """Yield the columns of the stiffness of the body, at a few of the states."""
+    """Yield the columns of the stiffness of the body, one for each of a few of the states."""
     last = len(answer.load_factor) - 1
     rows = sorted({round(last * part / SHOWN) for part in range(SHOWN + 1)})
-    for column in _states(answer):
-        yield Column(name=column.name, unit=column.unit, cells=tuple(column.cells[row] for row in rows))
-    if answer.crossing is None and np.isfinite(answer.torque).any():
-        yield columns.angle(answer.bodies[str(answer.body)][rows, 2])
-    matrix = answer.body_stiffness[rows]
-    xx, yy, xy = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1]
-    floor = ROUND_OFF * float(np.nanmax(np.abs(xx) + np.abs(yy), initial=0.0))
-    yield from columns.wide("N/m", DIGITS, floor=floor, **{"x": xx, "y": yy, "x y": xy})
-    coupled = {"x turn": matrix[:, 0, 2], "y turn": matrix[:, 1, 2]}
-    yield from columns.wide("N", DIGITS, floor=floor * _length(answer), **coupled)
-    yield from columns.wide("N m/rad", DIGITS, turn=matrix[:, 2, 2])
-    for name, ratio in zip(("x over", "y over"), _off_axis(answer), strict=True):
-        yield columns.plain(name, (one(each, DIGITS) for each in ratio[rows]))
+    matrix, length = answer.body_stiffness[rows], _length(answer)
+    sizes = matrix / np.outer((1.0, 1.0, length), (1.0, 1.0, length))
+    noise = ROUND_OFF * np.nanmax(np.abs(sizes[:, :2, :2]), initial=0.0)
+    found = _stiffness_of_body(answer, np.where(np.abs(sizes) < noise, 0.0, matrix))
+    states = [_state(*answer.places[row]).removeprefix("at ") for row in rows]
+    values = [(state, {key: own[k] for key, own in found.items()}) for k, state in enumerate(states)]
+    return columns.by_row({key: Scale.of_key(key) for key in found}, values, DIGITS)
 
 
 def _strength_told(answer: Response) -> Iterator[str]:
