@@ -5,10 +5,9 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +21,6 @@ from studies.errors import BadInput
 from studies.kinds import Array
 from studies.record.files import require_writable_folder, write_whole
 from studies.record.progress import Bar
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 NOT_CONVERGED = 3
 #: Analyses whose errors are estimated, or told not to be.
@@ -47,10 +43,9 @@ def deliver(
     table: Iterable[str],
     *,
     failure: str | None,
-    frame: "Callable[[], pd.DataFrame] | None" = None,
 ) -> int:
-    """Print `table`, and write `document` where `--json` says and `frame` where `--csv` does; return the exit
-    code. What goes to the output stream stands alone.
+    """Print `table`, and write `document` where `--json` says and its arrays where `--csv` does; return the
+    exit code. What goes to the output stream stands alone.
 
     Args:
         arguments: of the command.
@@ -58,15 +53,17 @@ def deliver(
             finite number.
         table: the answer in lines to read.
         failure: why the answer is not complete; None, or nothing, when it is.
-        frame: makes a table of numbers of the answer, of a command that has `--csv`.
     """
     csv, stream = getattr(arguments, "csv", None), getattr(arguments, "json", None)
     if STREAM not in (stream, csv) and (lines := list(table)):
         print("\n".join(lines))
     if stream is not None:
         _put(stream, json.dumps(_plain(document), allow_nan=False, indent=1) + "\n", "JSON")
-    if csv is not None and frame is not None:
-        _put(csv, frame().to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
+    if csv is not None:
+        import pandas as pd  # only who asks for a table waits for it
+
+        states = pd.DataFrame({"model": document["model"], **_arrays(document)})
+        _put(csv, states.to_csv(index=False, float_format="%.12g", lineterminator="\n"), "CSV")
     return not_converged(failure) if failure else 0
 
 
@@ -77,7 +74,6 @@ def asked(
     table: Callable[[Any], Iterable[str]],
     *,
     stopped: Callable[[Any], str] = attrgetter("message"),
-    frame: "Callable[[Any], pd.DataFrame] | None" = None,
 ) -> int:
     """Ask the chosen model, draw the answer where `--plot` says, and deliver it; return the exit code.
 
@@ -85,7 +81,7 @@ def asked(
         arguments: of the command.
         ask: makes an answer of settings, and tells how far it is.
         document: of an answer its JSON object. table: of an answer the lines to read.
-        stopped: why an answer is not complete. frame: of an answer a table of numbers.
+        stopped: why an answer is not complete.
     """
     (settings,) = chosen_settings(arguments)
     with Bar(f"{Path(arguments.case).stem}: {settings.model}") as bar:
@@ -95,8 +91,18 @@ def asked(
     if getattr(arguments, "export", None) is not None and answer.solution is not None:
         _export(arguments, answer)
     failure = None if answer.converged else stopped(answer)
-    numbers = frame and partial(frame, answer)
-    return deliver(arguments, document(answer), table(answer), failure=failure, frame=numbers)
+    return deliver(arguments, document(answer), table(answer), failure=failure)
+
+
+def _arrays(document: Mapping[str, Any], above: str = "") -> dict[str, Array]:
+    """Return the arrays (S,) of a JSON object by key, those of a body behind its name."""
+    found: dict[str, Array] = {}
+    for key, value in document.items():
+        if isinstance(value, Mapping):
+            found |= _arrays(value, f"{key}_" if key != "bodies" else "")
+        elif isinstance(value, np.ndarray):
+            found[f"{above}{key}"] = value
+    return found
 
 
 def _put(target: Path, text: str, form: str) -> None:

@@ -20,15 +20,14 @@ Some = TypeVar("Some", bound=Design)
 
 def _case_file(text: str) -> str:
     """Return the file of a case: of one by its name that comes with the suite, or the path as it is given."""
-    own = FOLDER / f"{text}.toml"
-    if Path(text).is_file() or text.endswith(".toml") or (Path(text).exists() and not own.is_file()):
+    path, own = Path(text), FOLDER / f"{text}.toml"
+    if path.is_file() or text.endswith(".toml") or (path.exists() and not own.is_file()):
         return text
-    if not own.is_file():
-        if Path(f"{text}.toml").is_file():
-            raise BadInput(f"got {text}, expected {text}.toml")
-        near = nearest(text, sorted(path.stem for path in FOLDER.glob("*.toml")))
-        raise BadInput(f"got {text}, expected {near}, or a file that ends in .toml")
-    return str(own)
+    if own.is_file():
+        return str(own)
+    near = nearest(text, sorted(path.stem for path in FOLDER.glob("*.toml")))
+    expected = f"{text}.toml" if Path(f"{text}.toml").is_file() else f"{near}, or a file that ends in .toml"
+    raise BadInput(f"got {text}, expected {expected}")
 
 
 def _writable_file(text: str) -> Path:
@@ -175,15 +174,14 @@ def chosen_settings(arguments: argparse.Namespace) -> list[Settings]:
     """Return the settings of every chosen model; BadInput for an option that none of them has."""
     models = [arguments.model] if isinstance(arguments.model, str) else arguments.model
     options = {model: SPLINE if model == "spline" else (ELEMENTS,) for model in models}
-    usable = dict.fromkeys(each for own in options.values() for each in own)
-    for each in (*SPLINE, ELEMENTS):
-        if each not in usable and getattr(arguments, each.name) is not None:
-            expected = f"only {', '.join(option(own.name) for own in usable)}"
-            raise BadInput(
-                f"{option(each.name)}: got it with --model {','.join(models)}, expected {expected}"
-            )
+    usable = dict.fromkeys(each.name for own in options.values() for each in own)
+    asked = {each.name: getattr(arguments, each.name) for each in (*SPLINE, ELEMENTS)}
+    given = {name: value for name, value in asked.items() if value is not None}
+    for name in given.keys() - usable:
+        got = f"{option(name)}: got it with --model {','.join(models)}"
+        raise BadInput(f"{got}, expected only {', '.join(map(option, usable))}")
     return [
-        settings_of_model(model, **{e.name: v for e in own if (v := getattr(arguments, e.name)) is not None})
+        settings_of_model(model, **{each.name: given[each.name] for each in own if each.name in given})
         for model, own in options.items()
     ]
 

@@ -13,34 +13,39 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from contextlib import redirect_stdout
+from io import StringIO
 from multiprocessing import get_context
 
 from studies.__main__ import command_of
-from studies.answers.settings import FeSettings, Settings, SplineSettings
-from studies.cases.problem import FOLDER, Problem
+from studies.__main__ import main as called
+from studies.answers.settings import SplineSettings
+from studies.cases.problem import FOLDER, named_case
 from studies.commands.arguments import OUT_FILE
 from studies.commands.parser import command
 from studies.record.files import forget, forget_stale, write_whole
 from studies.registry import COMMANDS, STUDIES
 
-MIXED, CONSISTENT = SplineSettings(control_points=4), SplineSettings(control_points=4, stretch="consistent")
-ELEMENTS = FeSettings(elements=4)
-#: Small calls that between them enter every kernel, settings and what is solved with them: first what others
-#: stand on, one a process, then the rest, the longest first.
-CALLS: tuple[tuple[tuple[Settings, tuple[str, ...]], ...], ...] = (
+CASE = "cross_axis_pivot"
+#: What small calls of `solve` and `release` have in common, and their discretisations.
+PATH = f"solve {CASE} --increments 1 --rotation-deg 5"
+MOTION = f"release {CASE} --no-check --rotation-deg 5 --duration 1e-5"
+SPLINE, ELEMENTS = "--control-points 4", "--elements 4 --model"
+#: Commands that between them enter every kernel: first what others stand on, then those of each process, the
+#: longest first. What no command enters stands by the name of the function that does.
+CALLS: tuple[tuple[tuple[str, ...], ...], ...] = (
+    ((f"{PATH} --accuracy 1", "many"), (f"{PATH} {ELEMENTS} fe",)),
     (
-        (MIXED, ("accuracy", "many")),
-        (MIXED, ("energy from rest",)),
-    ),
-    (
-        (ELEMENTS, ("static", "modes", "central-difference")),
-        (MIXED, ("sequential impulses",)),
-        (MIXED, ("leapfrog",)),
-        (MIXED, ("massless", "modes")),
-        (replace(ELEMENTS, element="reissner"), ("static", "modes", "central-difference")),
-        (CONSISTENT, ("static", "modes")),
-        (MIXED, ("energy",)),
+        (f"modes {CASE} {ELEMENTS} fe", f"{MOTION} {ELEMENTS} fe"),
+        (f"{MOTION} {SPLINE} --step 1e-8",),
+        ("impulses",),
+        (f"{MOTION} {SPLINE} --step 1e-8 --integrator leapfrog",),
+        (
+            f"{MOTION} {SPLINE} --step 1e-8 --effects=bending,stretching,body_inertia",
+            f"modes {CASE} {SPLINE}",
+        ),
+        (f"{PATH} {ELEMENTS} fe-shear", f"modes {CASE} {ELEMENTS} fe-shear", f"{MOTION} {ELEMENTS} fe-shear"),
+        (f"{PATH} {SPLINE} --stretch consistent", f"modes {CASE} {SPLINE} --stretch consistent"),
     ),
 )
 
@@ -55,56 +60,39 @@ def main(arguments: argparse.Namespace) -> int:
     workers = min(max(map(len, CALLS)), os.cpu_count() or 1)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         for calls in CALLS:
-            list(pool.map(_call, *zip(*calls, strict=True)))
+            list(pool.map(_enter, calls))
     print(f"studies: ready after {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     return 0
 
 
-def _call(settings: Settings, tasks: tuple[str, ...]) -> None:
-    """Solve something small by a model: statics, modes, and releases by integrators."""
+def _enter(calls: tuple[str, ...]) -> None:
+    """Run commands, whose answers nobody reads, and functions."""
+    for call in calls:
+        with redirect_stdout(StringIO()):
+            code = FUNCTIONS[call]() if call in FUNCTIONS else called(call.split())
+        if code:
+            raise RuntimeError(f"{call}: got exit code {code}, expected 0")
+
+
+def _many() -> None:
+    """Solve several designs in one call."""
     from spline_model.batch import solve_many
+
+    case = named_case(CASE)
+    solve_many(case.pivot_parameters(), rotation=0.1, increments=1, section_depth=case.depth)
+
+
+def _impulses() -> None:
+    """Move the pivot by sequential impulses."""
     from spline_model.sequential_impulse import solve_impulses
-    from studies.answers.adapters import answer_modes, answer_release, answer_static
-    from studies.answers.models import put
-    from studies.cases.effects import Effects
-    from studies.cases.problem import named_case
-
-    problem = replace(named_case("cross_axis_pivot"), rotation=0.1, increments=1)
-    for task in tasks:
-        if task in ("static", "accuracy"):
-            answer_static(problem, settings, accuracy=1.0 if task == "accuracy" else None)
-        elif task == "many":
-            solve_many(problem.pivot_parameters(), rotation=0.1, increments=1, section_depth=problem.depth)
-        elif task == "modes":
-            answer_modes(problem, settings)
-        elif task == "sequential impulses":
-            pivot = put(problem, settings, moving=True).modelled
-            for form in ("published", "stable"):
-                solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
-        elif task == "energy from rest":
-            _from_rest(problem, settings)
-        elif task == "massless":
-            light = replace(problem, effects=Effects(names=("bending", "stretching", "body_inertia")))
-            answer_release(light, settings, duration=1e-5, integrator="energy", step=1e-8)
-        else:
-            answer_release(problem, settings, duration=1e-5, integrator=task, step=1e-8)
-
-
-def _from_rest(problem: Problem, settings: Settings) -> None:
-    """Enter the default motion without statics, which another process compiles."""
-    import numpy as np
-
-    from spline_model.compile import compile_scene
-    from spline_model.motion.energy_consistent import Stepper
-    from spline_model.motion.start import Start, set_in_motion
-    from spline_model.solution import Later
     from studies.answers.models import put
 
-    pivot = put(problem, settings, moving=True).modelled.in_motion()
-    motion = set_in_motion(compile_scene(pivot.released()))
-    start = Start(motion, Later(motion.system.rest[None].copy), np.zeros(len(motion.system.mass)))
-    stepper = Stepper(start)
-    stepper.take(0.0, 1e-8, 0, 4, 1, np.empty((4, stepper.width)))
+    pivot = put(named_case(CASE), SplineSettings(control_points=4), moving=True).modelled
+    for form in ("published", "stable"):
+        solve_impulses(pivot, duration=1e-5, step=1e-6, form=form)
+
+
+FUNCTIONS = {"many": _many, "impulses": _impulses}
 
 
 #: Around the choices of each place: `$1` is the program and `$3` the word before the cursor.

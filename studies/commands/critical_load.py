@@ -23,16 +23,15 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from studies.answers.critical import UNSTABLE, CriticalLoad, critical_load
+from studies.answers.critical import CriticalLoad, critical_load
 from studies.answers.settings import Settings
 from studies.commands import answer as tell
 from studies.commands import arguments as take
-from studies.commands.columns import one
 from studies.commands.parser import Argument, command, degrees
 from studies.record.progress import Bar
 
-#: Digits of a force; rotation that is none [deg].
-DIGITS, NO_TURN = 6, 1e-3
+#: Rotation that is none [deg].
+NO_TURN = 1e-3
 
 
 @command(
@@ -81,28 +80,16 @@ def _document(found: CriticalLoad) -> dict[str, Any]:
 
 
 def _readable(found: CriticalLoad) -> Iterator[str]:
-    """Yield the model and its verdict."""
+    """Yield the model and its verdict, with the rotation there and the estimated error."""
     yield tell.described(found)
     way = f"force at {math.degrees(found.direction):g} deg, rotation {'held' if found.held else 'free'}"
-    yield f"{way}: {_verdict(found)}"
+    angle, turned = math.degrees(found.turned), ""
+    if abs(angle) > NO_TURN:
+        turned = f", turned {angle:.4g} deg within {math.degrees(found.turned_error):.1g} deg"
+    error = f", estimated error {found.uncertainty:.1e}" if math.isfinite(found.uncertainty) else ""
+    yield f"{way}: {found.verdict if found.converged else 'not resolved'}{turned}{error}"
     if found.converged and found.force is None:
         yield _softening(found)
-
-
-def _verdict(found: CriticalLoad) -> str:
-    """Return what was found, with the rotation there and the estimated error."""
-    angle = math.degrees(found.turned) if math.isfinite(found.turned) else 0.0
-    error = f"{math.degrees(found.turned_error):.1g}"
-    turned = f", turned {angle:.4g} deg within {error} deg" if abs(angle) > NO_TURN else ""
-    if not found.converged:
-        return "not resolved"
-    if found.kind == UNSTABLE:
-        said = f"{UNSTABLE}: stability is lost at {100.0 * found.preload:.4g} % of weight and pre-strain"
-    elif found.force is None:
-        return f"no critical load up to {one(found.reached, DIGITS)} N{turned}"
-    else:
-        said = f"buckles at {one(found.force, DIGITS)} N{turned} ({found.kind})"
-    return f"{said}, estimated error {found.uncertainty:.1e}"
 
 
 def _softening(found: CriticalLoad) -> str:
@@ -111,9 +98,9 @@ def _softening(found: CriticalLoad) -> str:
     if found.held:
         soft = "the rotation is held"
     elif found.soft is not None:
-        soft = f"the rotation passes 5 deg at {one(found.soft, DIGITS)} N"
+        soft = f"the rotation passes 5 deg at {found.soft:.6g} N"
     yields = "no strip yields, or the yield strength is not given"
     if found.yields is not None:
-        yields = f"first yield at {one(found.yields, DIGITS)} N"
+        yields = f"first yield at {found.yields:.6g} N"
     error = f", estimated error {found.softer:.1e}" if math.isfinite(found.softer) else ""
     return f"{soft}; {yields}{error}"

@@ -135,12 +135,8 @@ def names_of(known: Iterable[str]) -> Callable[[str], tuple[str, ...]]:
     """Return a parser of names with commas, each one of `known` and none twice; it raises BadInput."""
     choices = tuple(known)
 
-    def parse(text: str) -> tuple[str, ...]:
+    def value_of(text: str) -> tuple[str, ...] | None:
         given = tuple(text.split(","))
-        for name in given:
-            if name not in choices or given.count(name) > 1:
-                expected = f"one or more of {', '.join(choices)}, each once, separated by commas"
-                raise BadInput(f"got {name or 'nothing'}, expected {expected}")
-        return given
+        return given if set(given) <= set(choices) and len(set(given)) == len(given) else None
 
-    return parse
+    return reads(f"one or more of {', '.join(choices)}, each once, separated by commas", value_of)

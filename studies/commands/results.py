@@ -9,7 +9,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import ExitStack
 from functools import cache
 from multiprocessing import get_context
 from typing import Any
@@ -151,11 +151,14 @@ def _inputs(name: str, study: Study) -> Inputs:
 
 
 def _whole(names: list[str], count: int) -> Iterator[tuple[str, Study, Tables, float, Bar]]:
-    """Yield studies with their tables and seconds as their points are all answered, by so many processes,
-    while a bar shows how far they are."""
+    """Yield studies with their tables and seconds as their points are all answered, while a bar shows how far
+    they are; by so many processes of one thread each, or by this one alone."""
     names_at = {STUDIES[name]: name for name in names}
     studies = {place: study_of(name) for place, name in names_at.items()}
-    with _processes(count) as pool, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
+    with ExitStack() as opened, Bar(names[0] if len(names) == 1 else f"{len(names)} studies") as bar:
+        pool = ProcessPoolExecutor(count, mp_context=get_context("spawn")) if count > 1 else None
+        if pool:
+            opened.callback(pool.shutdown, cancel_futures=True)
         for place, tables, seconds in whole(studies, bar, pool):
             yield names_at[place], studies[place], tables, seconds, bar
 
@@ -237,16 +240,3 @@ def _elsewhere(key: Key) -> Timed:
 @cache
 def _points_at(place: str) -> Points:
     return _points(place, study_at(place))
-
-
-@contextmanager
-def _processes(count: int) -> Iterator[Executor | None]:
-    """Yield what runs points on `count` processes, one thread each; nothing for a single one."""
-    if count < 2:
-        yield None
-        return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
-    try:
-        yield pool
-    finally:
-        pool.shutdown(cancel_futures=True)

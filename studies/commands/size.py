@@ -35,6 +35,7 @@ from typing import Any, Self
 from spline_model.accuracy import DEFAULT
 from spline_model.confirmed import NOTHING
 from studies.answers.adapters import answer_static
+from studies.answers.quantities import Scale
 from studies.answers.reference import NoReference
 from studies.answers.response import Response
 from studies.answers.settings import SplineSettings
@@ -46,35 +47,28 @@ from studies.cases.keys import LOADS_FIRST
 from studies.cases.problem import Problem
 from studies.commands import arguments as take
 from studies.commands.answer import deliver, not_converged
-from studies.commands.columns import cell
+from studies.commands.columns import by_row, numbers, plain, table
 from studies.commands.parser import Argument, command, positive, whole_number
-from studies.design.evaluate import (
-    CENTRE_SHIFT,
-    PLAIN,
-    STIFFNESS,
-    STRESS,
-    TRAVEL,
-    VARIATION,
-    Accurate,
-    PathEnds,
-    by_elements,
-    sides_of,
-)
+from studies.design import evaluate
+from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Accurate
 from studies.design.optimise import SAME, Outcome, best, numbered, search, settled
 from studies.design.programme import STARTS
 from studies.design.question import Question
 from studies.errors import BadInput
+from studies.kinds import Array
 from studies.record.files import write_whole
 from studies.record.progress import Bar
 
-#: Quantity -> what the JSON calls it, what the table does, and the factor to the unit that this shows.
-SHOWN = {
-    CENTRE_SHIFT: ("largest_centre_shift_m", "centre shift [mm]", 1e3),
-    VARIATION: ("stiffness_variation", "variation of stiffness [%]", 1e2),
-    STIFFNESS: ("stiffness_Nm_per_rad", "stiffness [N m / rad]", 1.0),
-    TRAVEL: ("travel_m", "travel [mm]", 1e3),
-    STRESS: ("max_stress_Pa", "stress [MPa]", 1e-6),
+#: Quantity -> what the JSON calls it.
+KEYS = {
+    CENTRE_SHIFT: "largest_centre_shift_m",
+    VARIATION: "stiffness_variation",
+    STIFFNESS: "stiffness_Nm_per_rad",
+    TRAVEL: "travel_m",
+    STRESS: "max_stress_Pa",
 }
+#: Digits in the tables, of answers and of numbers of the case.
+DIGITS, WRITTEN = 5, 6
 
 
 @command(
@@ -123,7 +117,7 @@ def main(arguments: argparse.Namespace) -> int:
             outcomes = search(task, task.starts(arguments.starts), bar)
         best_one = best(outcomes)
         found = None if best_one is None else _Optimum.of(task, best_one)
-    except PathEnds as error:
+    except evaluate.PathEnds as error:
         return not_converged(f"{arguments.case}: the case itself has no answer over the range: {error}")
     failure = None
     if found is None:
@@ -174,7 +168,7 @@ def _require_sizable(where: str, start: Problem) -> None:
         expected = "none: both sides of a rectangular section are sized"
     elif "driven_displacement" in start.effects.names:
         got, expected = "scene.effects: got driven_displacement", "a body that is free to shift"
-    elif len(sides_of(start)) > 1 and start.order != LOADS_FIRST:
+    elif len(evaluate.sides_of(start)) > 1 and start.order != LOADS_FIRST:
         got = f'drive.order: got "{start.order}"'
         expected = f'"{LOADS_FIRST}", so that the loads are whole at every rotation'
     if got:
@@ -216,22 +210,26 @@ class _Optimum:
         found, answers = settled(asked, found)
         path, reason = answer_static(found.design, SplineSettings()), ""
         try:
-            elements = by_elements(found.design)
+            elements = evaluate.by_elements(found.design)
         except (NoReference, BadInput) as error:
-            elements, reason = dict.fromkeys(SHOWN, math.nan), str(error)
+            elements, reason = dict.fromkeys(KEYS, math.nan), str(error)
         return cls(outcome=found, answers=answers, path=path, elements=elements, no_elements=reason)
+
+
+def _named(asked: Question, measured: Mapping[str, float]) -> dict[str, float]:
+    """Return the quantities that are told of a design by their keys."""
+    return {KEYS[name]: measured[name] for name in asked.quantities}
+
+
+def _numbers(asked: Question, at: Array) -> dict[str, float]:
+    """Return the numbers of the case at scaled variables (N,), or (N + 1,), by name in the file's unit."""
+    return dict(zip(asked.names, map(float, asked.values(at)), strict=True))
 
 
 def _document(
     asked: Question, own: Accurate, outcomes: list[Outcome], found: _Optimum | None
 ) -> dict[str, Any]:
     """Return the answer as the JSON object of the command; own: the case's answers."""
-
-    def named(measured: Mapping[str, float]) -> dict[str, float]:
-        return {SHOWN[name][0]: measured[name] for name in asked.quantities}
-
-    def numbers(outcome: Outcome) -> dict[str, float]:
-        return dict(zip(asked.names, map(float, asked.values(outcome.at)), strict=True))
 
     starts = [
         {
@@ -241,27 +239,25 @@ def _document(
             "kkt_residual": each.residual,
             "paths_solved": each.solved,
             "message": _ended(number, each),
-            "numbers": numbers(each),
+            "numbers": _numbers(asked, each.at),
         }
         for number, each in zip(numbered(outcomes), outcomes, strict=True)
     ]
-    optimum = None
-    if found is not None:
-        optimum = {
-            "numbers": numbers(found.outcome),
-            "spline": named(found.answers.quantities),
-            "estimated_error": named(found.answers.errors),
-            "control_points": found.answers.control_points,
-            "finite_elements": named(found.elements),
-            "validity": asdict(validity(found.path)),
-            "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
-        }
+    optimum = found and {
+        "numbers": _numbers(asked, found.outcome.at),
+        "spline": _named(asked, found.answers.quantities),
+        "estimated_error": _named(asked, found.answers.errors),
+        "control_points": found.answers.control_points,
+        "finite_elements": _named(asked, found.elements),
+        "validity": asdict(validity(found.path)),
+        "active": [{"constraint": each.name, "price": each.price} for each in found.outcome.active],
+    }
     return {
         "objective": asked.objective,
-        SHOWN[asked.held][0]: asked.wanted,
+        KEYS[asked.held]: asked.wanted,
         "allowable_stress_Pa": asked.allowable_stress,
         "bounds": {each.name: [each.low, each.high] for each in asked.variables},
-        "case": named(own.quantities),
+        "case": _named(asked, own.quantities),
         "optimum": optimum,
         "starts": starts,
     }
@@ -275,7 +271,7 @@ def _said(asked: Question) -> tuple[str, str]:
         degrees = math.degrees(rotation)
         both = isinstance(asked.start, Problem)
         least += f" over +-{abs(degrees):.4g} deg" if both else f" over {degrees:.4g} deg"
-    if loads := [name for name in names if name not in PLAIN]:
+    if loads := [name for name in names if name not in evaluate.PLAIN]:
         least += f" under {', '.join(loads)}"
     if taken := [name.replace("_", " ") for name in OF_SIDES if name in names]:
         least += f" with {', '.join(taken)}"
@@ -290,31 +286,30 @@ def _readable(
 ) -> Iterator[str]:
     """Yield the lines of a table: case, optimum and finite elements, what holds it back, and the starts."""
     yield from _said(asked)
-    heading = "".join(f"{place:>12}" for place, _ in enumerate(asked.variables, start=1))
     yield ""
-    yield from (f"{place:>5}: {name}" for place, name in enumerate(asked.names, start=1))
+    designs = [("case", dict(zip(asked.names, asked.own, strict=True)))]
     if found is not None:
-        yield ""
         yield from _comparison(asked, own.quantities, found)
-        yield ""
-        yield f"{'':<10}{heading}"
-        yield f"{'case':<10}{_line(asked.own)}"
-        yield f"{'sized':<10}{_line(asked.values(found.outcome.at))}"
-        yield ""
+        designs.append(("sized", _numbers(asked, found.outcome.at)))
         active = ", ".join(f"{each.name} ({each.price:+.2g})" for each in found.outcome.active)
         yield f"held back by, with prices: {active or 'nothing'}"
         if held := [each.name for each in asked.variables if each.span == 0.0]:
             yield f"held as asked: {', '.join(held)}"
+        yield ""
+    scales = {name: Scale(heading=name, factor=1.0) for name in asked.names}
+    designs += [(f"start {k}", _numbers(asked, each.at)) for k, each in enumerate(outcomes)]
+    yield from table(by_row(scales, designs, WRITTEN))
     yield ""
-    yield f"{'start':>5} {'optimum':>8} {'over case':>10} {'paths':>6}  {heading}"
-    for i, (number, each) in enumerate(zip(numbered(outcomes), outcomes, strict=True)):
-        share = cell(each.objective / own.quantities[asked.objective], 10, ".4f")
-        begun = f"{i:>5} {number or '-':>8} {share} {each.solved:>6}"
-        yield f"{begun}  {_line(asked.values(each.at))}  {_ended(number, each)}"
-
-
-def _line(values: Any) -> str:
-    return "".join(f"{value:12.6g}" for value in values)
+    optima, objective = numbered(outcomes), own.quantities[asked.objective]
+    yield from table(
+        [
+            plain("start", map(str, range(len(outcomes)))),
+            plain("optimum", (str(number or "-") for number in optima)),
+            numbers("over case", (each.objective / objective for each in outcomes), ".4f"),
+            plain("paths", (str(each.solved) for each in outcomes)),
+            plain("", map(_ended, optima, outcomes), left=True),
+        ]
+    )
 
 
 def _ended(number: int, outcome: Outcome) -> str:
@@ -325,11 +320,9 @@ def _ended(number: int, outcome: Outcome) -> str:
 def _comparison(asked: Question, case: Mapping[str, float], found: _Optimum) -> Iterator[str]:
     """Yield what case and optimum answer, how sure that is, and what `solve` says of the optimum."""
     spline, errors = found.answers.quantities, found.answers.errors
-    yield f"{'':<28}{'case':>12}{'sized':>12}{'in FE':>12}"
-    for key, (_, label, factor) in SHOWN.items():
-        if key in case:
-            columns = (factor * each[key] for each in (case, spline, found.elements))
-            yield f"{label:<28}" + "".join(cell(value, 12, ".5g") for value in columns)
+    columns = [("case", case), ("sized", spline), ("in FE", found.elements)]
+    scales = {key: Scale.of_key(key) for key in _named(asked, case)}
+    yield from table(by_row(scales, [(name, _named(asked, own)) for name, own in columns], DIGITS))
     if found.no_elements:
         yield f"the finite elements have no answer: {found.no_elements}"
     yield _gain(case[asked.objective] / spline[asked.objective])

@@ -27,7 +27,7 @@ import argparse
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -46,9 +46,6 @@ from studies.commands.columns import Column, fixed, one, quantity
 from studies.commands.parser import command
 from studies.kinds import Array
 from studies.record.progress import Bar
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 #: Entries of the stiffness of a body, in x, y and turn, by name with unit.
 ENTRIES = {
@@ -86,7 +83,7 @@ def main(arguments: argparse.Namespace) -> int:
     def ask(settings: Settings, bar: Bar) -> Response:
         return answer_static(design, settings, accuracy=arguments.accuracy, progress=bar)
 
-    return tell.asked(arguments, ask, _document, _readable, stopped=_stopped, frame=_frame)
+    return tell.asked(arguments, ask, _document, _readable, stopped=_stopped)
 
 
 def _stopped(answer: Response) -> str:
@@ -104,16 +101,6 @@ def _stopped(answer: Response) -> str:
         last = math.degrees(answer.rotation[-1]) if len(answer.rotation) else 0.0
         reached = f"reached {fixed(last, 3)} of {math.degrees(asked):.3f} deg: "
     return f"{reached}{answer.message}{mend}"
-
-
-def _frame(answer: Response) -> "pd.DataFrame":
-    """Return a row a state: the model, its arrays, and of a mechanism the places of all bodies."""
-    import pandas as pd  # only who asks for a table waits for it
-
-    found: dict[str, Any] = {"model": answer.model} | _arrays(answer)
-    for name, place in tell.places(answer.bodies if answer.crossing is None else {}).items():
-        found |= {f"{name}_{key}": column for key, column in place.items()}
-    return pd.DataFrame(found)
 
 
 def _arrays(answer: Response) -> dict[str, Array]:
@@ -154,8 +141,8 @@ def _document(answer: Response) -> dict[str, Any]:
     return {
         **tell.headed(answer),
         "critical_points": _critical(answer),
-        **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         **_arrays(answer),
+        **({} if answer.crossing is not None else {"bodies": tell.places(answer.bodies)}),
         "strength": _strength(answer),
         "validity": asdict(validity(answer)),
         **({} if answer.estimate is None else {"estimate": answer.estimate}),
