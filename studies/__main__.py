@@ -17,7 +17,7 @@ from studies.commands.parser import Command, Parser  # noqa: E402
 from studies.errors import BadInput  # noqa: E402
 from studies.record.files import forget_stale  # noqa: E402
 from studies.record.source import HOME, ROOT  # noqa: E402
-from studies.registry import COMMANDS, PLACES  # noqa: E402
+from studies.registry import COMMANDS, MODULES  # noqa: E402
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -76,10 +76,11 @@ def _dispatch(words: list[str]) -> int:
 
 def command_of(name: str) -> tuple[Command, Parser]:
     """Import a command; return it with its parser, which its own text or that of its module explains."""
-    place, _, function = PLACES.get(name, f"studies.commands.{name}").partition(":")
-    module = import_module(place)
-    command: Command = getattr(module, function or "main")
-    return command, command.parser(name, inspect.getdoc(command.run) if function else module.__doc__)
+    place = next((module for module, names in MODULES.items() if name in names), name)
+    module = import_module(f"studies.commands.{place}")
+    alone = name not in MODULES.get(place, ())
+    command: Command = getattr(module, "main" if alone else name.replace("-", "_"))
+    return command, command.parser(name, module.__doc__ if alone else inspect.getdoc(command.run))
 
 
 def _overview() -> Parser:

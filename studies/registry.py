@@ -35,16 +35,13 @@ COMMANDS: dict[str, str] = {
     "completion": "print a script that completes commands in bash and zsh",
     "readme": "rewrite README, docs and results/reference from the stored results",
 }
-#: Commands that are no `main` of a module of their name in studies/commands -> module, or module:function.
-PLACES: dict[str, str] = {
-    "critical-load": "studies.commands.critical_load",
-    "completion": "studies.commands.compile:completion",
-    "markers": "studies.commands.interactive:markers",
-    "calibrate": "studies.commands.interactive:calibrate",
-    "run": "studies.commands.results:run",
-    "draw": "studies.commands.results:draw",
-    "verify": "studies.commands.results:verify",
-    "status": "studies.commands.results:status",
+#: Module in studies/commands -> its commands that are functions of their names; others are a `main` each.
+MODULES: dict[str, tuple[str, ...]] = {
+    "stability": ("modes", "critical-load"),
+    "choose": ("converge", "audit", "advise"),
+    "interactive": ("markers", "calibrate"),
+    "results": ("run", "draw", "verify", "status", "readme"),
+    "compile": ("completion",),
 }
 
 #: Study -> module with its declaration, `STUDY`, whose first line says what it shows; or module:constant, and

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from report.build import quotable
-from studies.commands import readme
+from studies.commands import results
 from studies.record.source import ROOT
 from studies.registry import STUDIES, study_of
 from tests.report.sources import FOLDER, SECTIONS, prose, quoted, text
@@ -23,7 +23,7 @@ def test_no_number_is_typed(path):
 )
 def test_what_is_given_is_quoted(kind, functions):
     """Every fact, condition and table is used by a section or a page, and every one that is used is given."""
-    pages = {"listings": set(readme.FINDINGS)}.get(kind, set())
+    pages = {"listings": set(results.FINDINGS)}.get(kind, set())
     assert set().union(pages, *map(quoted, functions)) == set(quotable()[kind])
 
 

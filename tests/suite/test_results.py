@@ -11,7 +11,7 @@ from matplotlib.legend import Legend
 
 from report.facts import Results
 from studies.__main__ import main
-from studies.commands import readme
+from studies.commands import results
 from studies.cost.openseespy import _loaded
 from studies.errors import BadInput
 from studies.record import style
@@ -60,26 +60,26 @@ def test_figure_names_are_unique():
     assert len(names) == len(set(names))
 
 
-@pytest.mark.parametrize("page", readme.BLOCKS, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", results.BLOCKS, ids=lambda page: page.name)
 def test_pages_agree_with_the_results(page):
     """The tables of README.md and of docs/findings.md are those of the stored results."""
     text = page.read_text(encoding="utf-8")
-    assert readme._rewritten(page, Results(Store(), allow_stale=True)) == text
-    for name in readme.BLOCKS[page]:
+    assert results._rewritten(page, Results(Store(), allow_stale=True)) == text
+    for name in results.BLOCKS[page]:
         begin, end = f"<!-- {name}: ", f"<!-- end of {name} -->"
         assert text.index(begin) < text.index("|---|", text.index(begin)) < text.index(end)
 
 
 def test_pages_are_not_written_without_results_or_marks(tmp_path, monkeypatch):
     """Without results, or without the marks, nothing is written and the reason is one line."""
-    page = readme.ROOT / "README.md"
+    page = results.ROOT / "README.md"
     with pytest.raises(BadInput, match=r"control_points: got no stored result, expected a fresh result"):
-        readme._rewritten(page, Results(Store(tmp_path)))
+        results._rewritten(page, Results(Store(tmp_path)))
     bare = tmp_path / "BARE.md"
     bare.write_text("no marks", encoding="utf-8")
-    monkeypatch.setitem(readme.BLOCKS, bare, readme.BLOCKS[page])
+    monkeypatch.setitem(results.BLOCKS, bare, results.BLOCKS[page])
     with pytest.raises(BadInput, match=r"BARE\.md: got no marks, expected <!-- agreement: written by"):
-        readme._rewritten(bare, Results(Store(), allow_stale=True))
+        results._rewritten(bare, Results(Store(), allow_stale=True))
 
 
 def test_stored_tables_are_tidy():
