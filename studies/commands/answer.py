@@ -19,7 +19,7 @@ from studies.commands.arguments import chosen_settings
 from studies.commands.parser import STREAM
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.record.files import require_writable_folder, write_whole
+from studies.record.files import write_all, write_whole
 from studies.record.progress import Bar
 
 NOT_CONVERGED = 3
@@ -223,9 +223,7 @@ def _export(arguments: argparse.Namespace, answer: Answer) -> None:
     from studies.exchange import files  # only who exports waits for it
 
     folder, contents = arguments.export, files(answer)
-    require_writable_folder(folder)  # which makes it
-    for name, content in contents.items():
-        write_whole(folder / name, content)
+    write_all(folder, contents)
     said = f"{folder}: {len(answer.values)} states of {answer.analysis} in {len(contents)} files"
     print(said, file=_aside(arguments))
 

@@ -24,7 +24,7 @@ from studies.effects.audit import CHANGED, Audit
 from studies.effects.scenes import CHANGES, SIZES, Outcome
 from studies.errors import BadInput, Unanswered
 from studies.record import style
-from studies.record.files import require_writable_folder, write_whole
+from studies.record.files import require_writable_folder, write_all
 from studies.record.progress import Bar, watched
 from studies.record.source import HOME
 from studies.record.store import as_csv
@@ -87,8 +87,7 @@ def converge(arguments: argparse.Namespace) -> int:
         figure = drawn(splines, elements, limit)
         contents = {f"convergence.{kind}": style.rendered(figure, kind) for kind in ("svg", "png")}
     contents = {"control_points.csv": as_csv(splines), "elements.csv": as_csv(elements)} | contents
-    for name, content in contents.items():
-        write_whole(output / name, content)
+    write_all(output, contents)
     print(f"\n{output}: {', '.join(contents)}")
     return 0
 

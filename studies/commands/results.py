@@ -26,7 +26,7 @@ from studies.errors import BadInput
 from studies.kinds import Progress
 from studies.published import benchmark
 from studies.record import style
-from studies.record.files import write_whole
+from studies.record.files import write_all, write_whole
 from studies.record.progress import Bar
 from studies.record.source import HOME, ROOT
 from studies.record.store import Inputs, Store, differing, inputs
@@ -314,8 +314,7 @@ def readme(arguments: argparse.Namespace) -> int:
     for path, text in texts.items():
         write_whole(path, text.encode())
         print(f"{path.relative_to(ROOT)}: {', '.join(BLOCKS[path])}")
-    for name, content in benchmark.package(results.table).items():
-        write_whole(benchmark.FOLDER / name, content)
+    write_all(benchmark.FOLDER, benchmark.package(results.table))
     print(f"{benchmark.FOLDER.relative_to(ROOT)}: {', '.join(benchmark.THEORIES)}")
     return 0
 

@@ -7,9 +7,8 @@ of another module: what is kept would then answer for a source that is gone.
 
 import json
 import os
-import shutil
 import tempfile
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -87,26 +86,17 @@ def temporary_prefix(path: Path) -> str:
     return f".{path.name}."
 
 
-def replace_folder(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Make `folder` hold exactly `contents` (file name -> bytes): written aside first, then renamed into
-    place.
+def write_all(folder: Path, contents: Mapping[str, bytes], former: Iterable[str] = ()) -> None:
+    """Write files (name -> content) to a folder, which is made, each whole, and remove former ones by name.
 
     Raises:
-        OutputError: the place cannot be written; a folder that was there before is untouched.
+        OutputError: the place cannot be written.
     """
-    with _clear_error(folder):
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        aside = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
-        try:
-            fresh, former = aside / "fresh", aside / "former"
-            fresh.mkdir()
-            for name, content in contents.items():
-                (fresh / name).write_bytes(content)
-            if folder.exists():
-                folder.replace(former)
-            fresh.replace(folder)
-        finally:
-            shutil.rmtree(aside)
+    require_writable_folder(folder)
+    for name, content in contents.items():
+        write_whole(folder / name, content)
+    for name in set(former) - set(contents):
+        (folder / name).unlink(missing_ok=True)
 
 
 #: Packages that hold compiled kernels.

@@ -23,7 +23,7 @@ from pandas.api.types import is_bool_dtype, is_integer_dtype, is_numeric_dtype
 
 from studies.cases.design import fingerprint, named_design
 from studies.cases.document import parsed
-from studies.record.files import replace_folder, require_writable_folder, write_whole
+from studies.record.files import require_writable_folder, write_all, write_whole
 from studies.record.source import HOME, ROOT, source_hash
 from studies.record.style import rendered
 
@@ -122,7 +122,9 @@ class Store:
             "elapsed_s": round(elapsed, 2),
             **_surroundings(),
         }
-        replace_folder(self.data(study), {**contents, PROVENANCE: _as_json(record)})
+        former = [path.name for path in self.data(study).glob("*.csv")]
+        # the provenance comes last: what is interrupted before does not have its hashes, and is stale
+        write_all(self.data(study), {**contents, PROVENANCE: _as_json(record)}, former)
         return True
 
     def load_tables(self, study: str) -> dict[str, pd.DataFrame]:
@@ -135,11 +137,7 @@ class Store:
         pairs = [(name, kind) for name in figures for kind in ("svg", "png")]
         contents = {f"{name}.{kind}": rendered(figures[name], kind) for name, kind in pairs}
         record = self.record(study)
-        require_writable_folder(self.figures)
-        for name in set(record["figures"] or ()) - set(contents):
-            (self.figures / name).unlink(missing_ok=True)
-        for name, content in contents.items():
-            write_whole(self.figures / name, content)
+        write_all(self.figures, contents, record["figures"] or ())
         record["figures"] = _hashes(contents)
         self._note(study, record)
 

@@ -14,7 +14,7 @@ import pytest
 from studies.commands.results import whole
 from studies.engine import Part, Study
 from studies.record import progress, style
-from studies.record.files import OutputError, replace_folder, write_whole
+from studies.record.files import OutputError, write_whole
 from studies.record.progress import Bar, measure, silent
 from studies.record.source import ROOT
 from studies.record.store import Digits, Store, as_csv, differing, inputs
@@ -121,14 +121,13 @@ def test_interrupted_file_leaves_the_former_one(tmp_path, monkeypatch):
     assert path.read_bytes() == b"former"
 
 
-def test_interrupted_folder_leaves_the_former_one(tmp_path):
-    """When one file of a folder cannot be written the former folder stands whole."""
-    folder = tmp_path / "study"
-    replace_folder(folder, {"a.csv": b"former"})
+def test_an_interrupted_result_is_told(store):
+    """When one table of a study cannot be written, nothing is left of its parts, and the result is stale."""
+    tables = {"example": TABLE.assign(rotation_rad=0.0), "absent/b": TABLE}
     with pytest.raises(OutputError, match="cannot be written"):
-        replace_folder(folder, {"a.csv": b"new", "absent/b.csv": b"new"})
-    assert [item.name for item in tmp_path.iterdir()] == ["study"]
-    assert {item.name: item.read_bytes() for item in folder.iterdir()} == {"a.csv": b"former"}
+        store.save_tables(STUDY, tables, inputs(MODULE, CASES), 1.0)
+    assert {path.name for path in store.data(STUDY).iterdir()} == {"example.csv", "provenance.json"}
+    assert _state(store) == ("stale", "example.csv was changed after it was made")
 
 
 def test_figures_write_units_and_the_pivot_in_one_way():
