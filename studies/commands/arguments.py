@@ -60,34 +60,24 @@ def _picture_file(text: str) -> Path:
     return _writable_file(text)
 
 
-CASE = Argument(
-    "case CASE",
-    "the design: a file, or the name of one that comes with the suite, such as cross_axis_pivot",
-    _case_file,
-)
+CASE = Argument("case CASE", "the design: a file, or one of the suite, as cross_axis_pivot", _case_file)
 EFFECTS = Argument(
     "--effects LIST",
-    "changes of the scene's effects, as in --effects=+gravity,-strip_inertia; names alone are all "
-    "(default: the case's)",
+    "+NAME adds, -NAME removes: --effects=+gravity; names alone are all (default: the case's)",
 )
 CONTROL_POINTS = Argument(
-    "--control-points N",
-    "control points a strip (spline; default: as many as the accuracy takes, 6 of a motion)",
-    int,
+    "--control-points N", "control points a strip (spline; default: by the accuracy, 6 of a motion)", int
 )
-SEGMENTS = Argument(
-    "--segments M", "curves that a strip is cut into, with those control points each (spline; default 1)", int
-)
+SEGMENTS = Argument("--segments M", "curves a strip, of those control points each (spline; default 1)", int)
 MEASURE = Argument(
     "--measure",
-    "of curvature and strain: spatial as in the paper, published with its forces, both with "
-    "--stretch consistent (spline; default material)",
+    "spatial as in the paper, published with its forces; for consistent stretch (spline; default material)",
     present,
     choices=("material", "spatial", "published"),
 )
 STRETCH = Argument(
     "--stretch",
-    "form of the axial strain: consistent as the paper, which locks (spline; default mixed)",
+    "form of the axial strain: consistent as in the paper, which locks (spline; default mixed)",
     choices=("mixed", "consistent", "inextensible"),
 )
 #: The options of either discretisation; given for the other model one is refused rather than ignored.
@@ -96,10 +86,7 @@ ELEMENTS = Argument("--elements N", "elements a strip (fe, fe-shear; default 20)
 _WHAT = "spline (default), corotational or shear-deformable FE"
 _ONE = Argument("--model", _WHAT, choices=MODELS, default="spline")
 _SEVERAL = Argument(
-    "--model LIST",
-    f"{_WHAT}: spline, fe, fe-shear, or several with commas",
-    names_of(MODELS),
-    default=("spline",),
+    "--model LIST", f"{_WHAT}: spline, fe, fe-shear, with commas", names_of(MODELS), default=("spline",)
 )
 #: Models and their settings, of one model or several; a design, a model and its settings.
 MODELS_OF = EFFECTS, _SEVERAL, *SPLINE, ELEMENTS
@@ -115,38 +102,19 @@ HELD = Argument("--held", "hold the rotation of the body")
 DURATION = Argument("--duration T", "of the motion, in s (default: four periods of the design)", positive)
 STEP = Argument("--step S", "of the integrator, in s (default: its own)", positive)
 INTEGRATOR = Argument(
-    "--integrator NAME",
-    "spline: energy (default), leapfrog; fe: central-difference (default), generalised-alpha",
+    "--integrator NAME", "energy (default), leapfrog; fe: central-difference (default), generalised-alpha"
 )
 
-JSON = Argument(
-    "--json FILE|-",
-    "write the answer as JSON to FILE too, or to the output stream alone (default: a table to read)",
-    _file_or_stream,
-)
-CSV = Argument(
-    "--csv FILE|-",
-    "write a row a state as CSV to FILE too, or to the output stream alone (default: a table to read)",
-    _file_or_stream,
-)
-PLOT = Argument(
-    "--plot FILE",
-    "draw the answer at the width of a page, as .svg, .png or .pdf (default: no picture)",
-    _picture_file,
-)
-EXPORT = Argument(
-    "--export FOLDER",
-    "write shapes and section forces of all states there, as VTK and CSV (default: no files)",
-    _new_folder,
-)
+_AS = "write the answer as {} to FILE too, or to the output stream alone (default: a table to read)"
+JSON = Argument("--json FILE|-", _AS.format("JSON"), _file_or_stream)
+CSV = Argument("--csv FILE|-", _AS.format("CSV, a row a state,"), _file_or_stream)
+PLOT = Argument("--plot FILE", "draw the answer, as .svg, .png or .pdf (default: no picture)", _picture_file)
+EXPORT = Argument("--export FOLDER", "write all states as VTK and CSV (default: no files)", _new_folder)
 OUT = Argument("--out FOLDER", read=Path)
 OUT_FILE = Argument("--out FILE", read=_writable_file)
 NAMES = Argument("names NAME", "studies, groups, or all; `status` names them", nargs="+")
 RESULTS = Argument(
-    "--results FOLDER",
-    "folder of tables and figures, default results/ of the clone, or of the current folder without a clone",
-    Path,
-    default=HOME / "results",
+    "--results FOLDER", "tables and figures (default: results/ of the clone)", Path, default=HOME / "results"
 )
 
 

@@ -100,12 +100,7 @@ def _values(answer: Response) -> dict[str, Any]:
 
 
 @command(
-    Argument(
-        "cases CASE",
-        "the designs: files, or names of those that come with the suite",
-        take.CASE.read,
-        nargs="+",
-    ),
+    Argument("cases CASE", "the designs: files, or names of the suite's", take.CASE.read, nargs="+"),
     *take.MODELS_OF,
     take.ROTATION.but("end of the paths, in deg (default: the cases')"),
     take.INCREMENTS,

@@ -44,18 +44,11 @@ EXTRA = {
     CASE.but("a design of one's own to start with, a file or the name of one that comes along", nargs="?"),
     Argument("--port P", "of the server, default any free one", whole_number(0), default=0),
     Argument(
-        "--share ADDRESS",
-        "open the page to the own network too, at this machine's address there (default: closed)",
-        nargs="?",
-        const="",
+        "--share ADDRESS", "open the page to the own network too (default: closed)", nargs="?", const=""
     ),
     Argument("--no-browser", "print the address, open nothing"),
     Argument("--film FILE|demo", "pictures from a film, not a camera (default: none)"),
-    Argument(
-        "--camera browser|none|N",
-        "the browser's, none, or number N of this machine, default browser",
-        default="browser",
-    ),
+    Argument("--camera browser|none|N", "N: number of this machine's, default browser", default="browser"),
     Argument("--calibration FILE", "the camera's constants as JSON (default: none)", Path),
     Argument("--preset NAME", "design to start with: polymer (default), table-1, or a case of the suite"),
     Argument("--record FILE", "store the session's events (default: none)", Path),

@@ -73,12 +73,7 @@ DIGITS, WRITTEN = 5, 6
 
 @command(
     take.CASE,
-    Argument(
-        "--objective",
-        "what is to be least",
-        choices=[CENTRE_SHIFT, VARIATION, STRESS],
-        required=True,
-    ),
+    Argument("--objective", "what is to be least", choices=[CENTRE_SHIFT, VARIATION, STRESS], required=True),
     Argument(
         "--free KEY[=LOW:HIGH]",
         "a number of the file to be found, with its bounds, or the one value that it has; repeatable "
@@ -88,21 +83,10 @@ DIGITS, WRITTEN = 5, 6
     ),
     take.ROTATION.but("end of the range, of a pivot to either side, in deg (default: the case's)"),
     Argument("--stiffness K", "at rotation 0, in N m/rad (default: the case's own)", positive),
+    Argument("--travel-mm U", "of a body that follows its loads, in mm (default: the case's own)", positive),
+    Argument("--max-stress-MPa S", "in MPa (default: the yield strength, or the case's own)", positive),
     Argument(
-        "--travel-mm U",
-        "of the body of a mechanism that follows its loads, in mm (default: the case's own)",
-        positive,
-    ),
-    Argument(
-        "--max-stress-MPa S",
-        "allowable, in MPa (default: the yield strength, or the case's own)",
-        positive,
-    ),
-    Argument(
-        "--aspect R",
-        "largest width of a pivot's strips, relative to the length, default 1",
-        positive,
-        default=1.0,
+        "--aspect R", "a pivot's largest width, relative to the length, default 1", positive, default=1.0
     ),
     Argument("--starts N", "starts of the search, default 8", whole_number(1), default=STARTS),
     take.OUT_FILE.but("write the optimum there as a case file (default: none)"),

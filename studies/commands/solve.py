@@ -17,7 +17,7 @@ reported with where and why it stopped.
 
 The shift is the displacement of the body point that coincides with the strip crossing at rest. The
 stiffness of the body is the change of forces and moment at its centre by its x, y and turn in the axes of
-the ground, the other two held, loads fixed and drives released; "x over" and "y over" are those of x and y
+the ground, the other two held, loads fixed and drives released; the off-axis ratios are those of x and y
 times the square of a strip's length over the stiffness of the rotation. It is shown at some of the states,
 and of all of them in JSON and CSV. If the case defines `yield_strength_Pa`, the output includes the safety
 factor and the rotation or load at first yield.
@@ -67,9 +67,8 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
     take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
     take.ACCURACY.but(
-        "wanted relative error of path, torque, stiffness and stress, and of section forces (spline) or "
-        "energy (fe): raises the control points (default 1e-4, or none with --control-points) or doubles "
-        "the elements (default: none is asked for)"
+        "wanted relative error of path, torque, stiffness and stress: raises the control points (default 1e-4, "
+        "or none with --control-points) or doubles the elements (default: none is asked for)"
     ),
     take.JSON,
     take.CSV,

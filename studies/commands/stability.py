@@ -29,8 +29,7 @@ SHAPE_UNITS, NOISE = ("kg^-0.5", "kg^-0.5", "kg^-0.5/m"), 1e-7
     take.HELD,
     take.COUNT,
     take.ACCURACY.but(
-        "wanted relative error of the frequencies: raises the control points (default 1e-4, or none "
-        "with --control-points) or doubles the elements (default: none is asked for)"
+        "wanted relative error of the frequencies, as of `solve` (default 1e-4; none with a given number)"
     ),
     take.JSON,
     take.PLOT,
@@ -112,13 +111,7 @@ NO_TURN = 1e-3
 
 @command(
     *take.MODEL,
-    Argument(
-        "--force-direction-deg X",
-        "of the force, in deg from x to y, default -90: down",
-        degrees,
-        dest="direction",
-        default=-90.0,
-    ),
+    Argument("--force-direction-deg X", "in deg from x to y, default -90: down", degrees, default=-90.0),
     take.HELD.but("hold the rotation of the body (default: it is free)"),
     take.JSON,
 )
@@ -143,7 +136,7 @@ def critical_load(arguments: argparse.Namespace) -> int:
     largest force; 2: bad input; 3: not resolved, the discretisations disagree.
     """
     design = take.chosen_design(arguments)
-    how = {"direction": math.radians(arguments.direction), "held": arguments.held}
+    how = {"direction": math.radians(arguments.force_direction_deg), "held": arguments.held}
 
     def ask(settings: Settings, bar: Bar) -> CriticalLoad:
         return critical.critical_load(design, settings, **how)
