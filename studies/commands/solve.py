@@ -27,6 +27,7 @@ import argparse
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -47,15 +48,8 @@ from studies.commands.parser import command
 from studies.kinds import Array
 from studies.record.progress import Bar
 
-#: Entries of the stiffness of a body, in x, y and turn, by name with unit.
-ENTRIES = {
-    "xx_N_per_m": (0, 0),
-    "xy_N_per_m": (0, 1),
-    "yy_N_per_m": (1, 1),
-    "xt_N": (0, 2),
-    "yt_N": (1, 2),
-    "tt_Nm_per_rad": (2, 2),
-}
+#: Units of the entries of the stiffness of a body, by how many of their two coordinates are turns.
+UNITS = ("N_per_m", "N", "Nm_per_rad")
 #: States that the table of the stiffness of the body shows.
 SHOWN = 4
 #: Its digits, and its part that is round-off; displacement below which there is none, in lengths of a strip.
@@ -67,8 +61,8 @@ DIGITS, ROUND_OFF, SHIFT_FLOOR = 4, 1e-9, 1e-12
     take.ROTATION.but("end of the path, in deg (default: the case's)"),
     take.INCREMENTS,
     take.ACCURACY.but(
-        "wanted relative error of path, torque, stiffness and stress: raises the control points (default 1e-4, "
-        "or none with --control-points) or doubles the elements (default: none is asked for)"
+        "wanted relative error of path, torque, stiffness and stress: raises the control points (default "
+        "1e-4, or none with --control-points) or doubles the elements (default: none is asked for)"
     ),
     take.JSON,
     take.CSV,
@@ -124,7 +118,10 @@ def _stiffness_of_body(answer: Response, matrix: Array) -> dict[str, Array]:
     known = np.flatnonzero(~np.isnan(matrix).any(axis=(1, 2)))
     known = known[np.linalg.matrix_rank(matrix[known]) == 3]  # a body on a hinge turns without a moment
     turning[known] = 1.0 / np.linalg.inv(matrix[known])[:, 2, 2]
-    found = {f"body_stiffness_{name}": matrix[:, i, j] for name, (i, j) in ENTRIES.items()}
+    found = {}
+    for (i, force), (j, moved) in combinations_with_replacement(enumerate("xyt"), 2):
+        unit = UNITS[(force + moved).count("t")]
+        found[f"body_stiffness_{force}{moved}_{unit}"] = matrix[:, i, j]
     for place, axis in enumerate("xy"):
         found[f"off_axis_ratio_{axis}"] = _length(answer) ** 2 * matrix[:, place, place] / turning
     return found

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +15,11 @@ from studies.answers.adapters import answer_of
 from studies.answers.answer import Answer
 from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES, Quantity, Scale
-from studies.answers.response import TURNED
+from studies.answers.response import TURNED, Response
 from studies.errors import BadInput
 from studies.kinds import Array
 from studies.pictures import shapes
-from studies.pictures.shown import LETTERS, Chart, Curve, Shown
+from studies.pictures.shown import LETTERS, Chart, Shown
 from studies.record import style
 from studies.record.files import PICTURES, write_whole
 from studies.record.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Look
@@ -49,7 +50,7 @@ ENERGY = Scale(heading="energy", unit="J")
 STRESS = Scale(heading="largest stress", unit="Pa", highest=6)
 SHIFT = Scale(heading="centre shift", unit="m", highest=-3)
 
-Values = Callable[[Any], Array | None]
+_Values = Callable[[Any], Array | None]
 
 
 def _looks(shown: Sequence[Shown]) -> list[Look]:
@@ -65,54 +66,44 @@ def _charts_of(shown: Sequence[Shown]) -> Iterator[Chart]:
     answers: list[Any] = [each.answer for each in shown]
     path = answers[0].analysis == "static"
     turned = path and all(each.turns for each in answers)
-    x = ROTATION if turned else LOAD if path else TIME
+    series = ROTATION if turned else LOAD if path else TIME
+    along = _turning if turned else attrgetter("values")
 
-    def over(answer: Any) -> Array:
-        return turning(answer.rotation) if turned else np.asarray(answer.values)
+    def chart(
+        y: Scale, up: _Values, x: Scale = series, over: _Values = along, **more: Any
+    ) -> Iterator[Chart]:
+        """Yield the chart of a quantity of all that have it; none where none has."""
+        drawn = [(look, over(each), up(each)) for look, each in zip(_looks(shown), answers, strict=True)]
+        curves = [(look, x, y) for look, x, y in drawn if x is not None and y is not None]
+        if curves:
+            yield Chart(x=x, y=y, curves=curves, **more)
 
-    chart = partial(_chart, _looks(shown), answers)
+    energies = chart(Scale(heading="strain energy", unit="J"), attrgetter("strain_energy"))
+    if len(answers) == 1:
+        energies = _parts_of_energy(answers[0], series, along(answers[0]))
     if not turned:
-        yield from chart(x, ROTATION, over, _rotation)
+        yield from chart(ROTATION, _rotation)
     parts = {each.key: each for answer in answers for each in named(answer.design)}
     for each in (*(own for own in QUANTITIES if path), *parts.values()):
-        if not each.chart or answers[0].analysis not in each.analyses:
-            continue
-        yield from chart(x, replace(each, highest=3), over, partial(_of_path, each, turned))
+        if each.chart and answers[0].analysis in each.analyses:
+            yield from chart(replace(each, highest=3), partial(_of_path, each, turned))
     if not path:
-        yield from _energies(chart, answers, x, over)
-    yield from chart(X, Y, partial(_travel, axis=0), partial(_travel, axis=1), equal=True)
-    yield from chart(x, SHIFT, over, lambda each: each.shift)
+        yield from energies
+    yield from chart(Y, partial(_travel, axis=1), X, partial(_travel, axis=0), equal=True)
+    yield from chart(SHIFT, attrgetter("shift"))
     yields = [each.limit for each in shown if each.limit is not None]
     level = (min(yields), "yield" if len(set(yields)) == 1 else "lowest yield") if yields else None
-    yield from chart(x, STRESS, over, _stress, level=level)
+    yield from chart(STRESS, _stress, level=level)
     if path:
-        yield from _energies(chart, answers, x, over)
+        yield from energies
 
 
-def turning(rotation: Array) -> Array:
-    """Return rotations (S,) [rad] without the states of the loading, which precede the last first
+def _turning(answer: Response) -> Array:
+    """Return the rotations (S,) [rad] without the states of the loading, which precede the last first
     rotation."""
+    rotation = answer.rotation
     begin = np.flatnonzero(np.abs(rotation - rotation[0]) <= TURNED)[-1]
     return np.where(np.arange(len(rotation)) < begin, np.nan, rotation)
-
-
-def _chart(
-    looks: Sequence[Look],
-    answers: Sequence[Answer],
-    x: Scale,
-    y: Scale,
-    across: Values,
-    up: Values,
-    **more: Any,
-) -> Iterator[Chart]:
-    """Yield the chart of a quantity of all that have it; none where none has."""
-    curves: list[Curve] = []
-    for look, each in zip(looks, answers, strict=True):
-        along, values = across(each), up(each)
-        if along is not None and values is not None:
-            curves.append((look, along, values))
-    if curves:
-        yield Chart(x=x, y=y, curves=tuple(curves), **more)
 
 
 def _stress(answer: Answer) -> Array | None:
@@ -142,19 +133,11 @@ def _travel(answer: Answer, axis: int) -> Array | None:
     return np.asarray(answer.centre[:, axis] - rest[axis])
 
 
-def _energies(
-    chart: Callable[..., Iterator[Chart]], answers: Sequence[Any], x: Scale, over: Values
-) -> Iterator[Chart]:
-    """Yield the chart of the energy by its parts, or of several answers that of the strain alone."""
-    if len(answers) > 1:
-        strain = Scale(heading="strain energy", unit="J")
-        yield from chart(x, strain, over, lambda each: each.strain_energy)
-        return
-    (only,) = answers
-    largest = max(float(np.abs(part).max()) for part in only.energies.values())
-    parts = {name: part for name, part in only.energies.items() if np.abs(part).max() > SHARE * largest}
-    along: Any = over(only)
-    curves = tuple((Look(label=name, colour=PARTS[name]), along, part) for name, part in parts.items())
+def _parts_of_energy(answer: Answer, x: Scale, along: Any) -> Iterator[Chart]:
+    """Yield the chart of the energy by its parts, if there is any."""
+    largest = max(float(np.abs(part).max()) for part in answer.energies.values())
+    parts = {name: part for name, part in answer.energies.items() if np.abs(part).max() > SHARE * largest}
+    curves = [(Look(label=name, colour=PARTS[name]), along, part) for name, part in parts.items()]
     if curves:
         yield Chart(x=x, y=ENERGY, curves=curves)
 

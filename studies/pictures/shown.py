@@ -1,5 +1,6 @@
 """What a picture shows of an answer: its name, and curves over one axis."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,7 +55,7 @@ class Chart:
 
     x: Scale
     y: Scale
-    curves: tuple[Curve, ...]
+    curves: Sequence[Curve]
     level: tuple[float, str] | None = None
     equal: bool = False
 
