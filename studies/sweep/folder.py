@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -28,32 +29,12 @@ from studies.record.source import source_hash
 from studies.sweep.plan import Plan
 from studies.sweep.points import POINT, REASON, STATUS, stored
 
-MANIFEST, PARTS, TABLE, CSV = "sweep.json", "parts", "designs.parquet", "designs.csv"
+MANIFEST, TABLE, CSV = "sweep.json", "designs.parquet", "designs.csv"
 SUITE = "cross-axis-pivot-validation"
 #: Libraries whose version can change a number or a byte of the table.
 LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
 #: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
-SOURCES = ("studies.sweep.points", "studies.sweep.sample")
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Lock a folder for one run; OutputError if another run has it. Windows cannot lock folders."""
-    if sys.platform == "win32":
-        yield
-        return
-    import fcntl
-
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            reason = "got a folder where another run is at work, expected it to end first"
-            raise OutputError(f"{folder}: {reason}") from None
-        yield
-    finally:
-        os.close(handle)
+SOURCES = ("studies.sweep.points", "studies.sweep.axes")
 
 
 class Folder:
@@ -64,12 +45,8 @@ class Folder:
     """
 
     def __init__(self, root: Path, plan: Plan) -> None:
-        self.root = root
-        self.table = root / TABLE
-        self.csv = root / CSV
-        self._plan = plan
-        self._parts = root / PARTS
-        self._manifest = _manifest_of(plan)
+        self.root, self._plan, self._parts = root, plan, root / "parts"
+        self._table, self._manifest = root / TABLE, _manifest_of(plan)
         _require_usable(root, self._manifest)
 
     @contextmanager
@@ -83,52 +60,64 @@ class Folder:
         with _locked(self.root):
             self._clean()
             if _require_usable(self.root, self._manifest):
-                files.write_whole(
-                    self.root / MANIFEST, (json.dumps(self._manifest, indent=2) + "\n").encode()
-                )
+                content = json.dumps(self._manifest, indent=2) + "\n"
+                files.write_whole(self.root / MANIFEST, content.encode())
             yield
 
     def missing(self) -> list[int]:
         """Return the numbers of the chunks that are not there yet."""
-        if self.table.is_file():
+        if self._table.is_file():
             return []
-        done = {int(path.stem.partition("-")[2]) for path in self._parts.glob("part-*.parquet")}
-        return [number for number in range(self._plan.chunks) if number not in done]
+        return [number for number in range(self._plan.chunks) if not self._part(number).is_file()]
 
     def write(self, number: int, table: pa.Table) -> None:
         """Keep the rows of one chunk; OutputError where they cannot be written."""
         self._parts.mkdir(exist_ok=True)
-        stream = pa.BufferOutputStream()
-        pq.write_table(table, stream)
-        files.write_whole(self._part(number), stream.getvalue().to_pybytes())
+        with whole_file(self._part(number)) as stream:
+            pq.write_table(table, stream)
 
     def finish(self, *, csv: bool) -> None:
         """Make the table of the parts, one after the other, and remove them; OutputError if it cannot be."""
-        if not self.table.is_file():
-            with whole_file(self.table) as stream:
-                parts = (pq.read_table(self._part(number)) for number in range(self._plan.chunks))
-                _stream(parts, lambda schema: pq.ParquetWriter(stream, schema))
-        if csv and not self.csv.is_file():
-            with whole_file(self.csv) as stream, pq.ParquetFile(self.table) as source:
+        parts = [self._part(number) for number in range(self._plan.chunks)]
+        if not self._table.is_file():
+            with whole_file(self._table) as stream:
+                _stream(map(pq.read_table, parts), lambda schema: pq.ParquetWriter(stream, schema))
+        if csv and not (self.root / CSV).is_file():
+            with whole_file(self.root / CSV) as stream, pq.ParquetFile(self._table) as source:
                 groups = (_flat(source.read_row_group(i)) for i in range(source.num_row_groups))
                 _stream(groups, lambda schema: pa_csv.CSVWriter(stream, schema))
-        for number in range(self._plan.chunks):
-            self._part(number).unlink(missing_ok=True)
+        for part in parts:
+            part.unlink(missing_ok=True)
         if self._parts.is_dir():
             self._parts.rmdir()
 
     def _clean(self) -> None:
         """Remove what a run that was killed has left half-written."""
-        prefixes = tuple(temporary_prefix(self.root / name) for name in (MANIFEST, TABLE, CSV))
-        for path in self.root.iterdir():
-            if path.name.startswith(prefixes):
-                path.unlink()
-        if self._parts.is_dir():
-            for path in self._parts.glob(".part-*"):
-                path.unlink()
+        left = [path for name in (MANIFEST, TABLE, CSV) for path in self.root.glob(f".{name}.*")]
+        for path in (*left, *self._parts.glob(".part-*")):
+            path.unlink()
 
     def _part(self, number: int) -> Path:
         return self._parts / f"part-{number:08d}.parquet"
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Lock a folder for one run; OutputError if another run has it. Windows cannot lock folders."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        reason = "got a folder where another run is at work, expected it to end first"
+        raise OutputError(f"{folder}: {reason}") from None
+    finally:
+        os.close(handle)
 
 
 def _manifest_of(plan: Plan) -> dict[str, Any]:
@@ -157,11 +146,9 @@ def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
     """Return whether the folder is new; OutputError unless it is that, empty, or of the same sweep."""
     if root.exists() and not root.is_dir():
         raise OutputError(f"{root}: got a file, expected a folder")
-    if not root.exists() or all(
-        path.name.startswith(temporary_prefix(Path(MANIFEST))) for path in root.iterdir()
-    ):
+    path, prefix = root / MANIFEST, temporary_prefix(root / MANIFEST)
+    if not root.exists() or all(each.name.startswith(prefix) for each in root.iterdir()):
         return True
-    path = root / MANIFEST
     if not path.is_file():
         raise OutputError(f"{root}: got a folder with other files, expected an empty one or that of a sweep")
     try:
@@ -182,9 +169,9 @@ def _difference(former: dict[str, Any], now: dict[str, Any]) -> str:
     """Return the first key, with dots, under which two documents differ."""
     for key in [*now, *former]:
         one, other = former.get(key), now.get(key)
+        if one != other and isinstance(one, dict) and isinstance(other, dict):
+            return f"{key}.{_difference(one, other)}"
         if one != other:
-            if isinstance(one, dict) and isinstance(other, dict):
-                return f"{key}.{_difference(one, other)}"
             return key
     return "order of keys"
 
@@ -202,8 +189,7 @@ def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:
     """Write tables one after the other by the writer that is made for their schema."""
     first = next(tables)
     with writer_of(first.schema) as writer:
-        writer.write_table(first)
-        for table in tables:
+        for table in chain((first,), tables):
             writer.write_table(table)
 
 

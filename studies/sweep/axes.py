@@ -2,23 +2,26 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from studies.cases import document
 from studies.cases.document import CaseError
-from studies.cases.rules import Key, choice, shown, whole
+from studies.cases.rules import Key, Rule, choice, shown, whole
 from studies.kinds import Array
-from studies.sweep.plan import Column
+
+#: Values of a key that varies: numbers, or other values as objects.
+Column = NDArray[Any]
 
 METHODS = ("grid", "list", "sobol")
 #: Most points, whose varied values are all in memory.
 MOST = 10_000_000
 POINTS = whole(1, MOST)
 FIELDS = ("from", "to", "points", "scale")
-SCALES = ("linear", "log")
 #: Keys of [sample].
 KEYS = tuple(
     Key("sample", name, name, rule, optional=True)
@@ -31,29 +34,11 @@ KEYS = tuple(
 )
 
 
-class _Range(NamedTuple):
-    """Values from a low to a high end; `log`: even steps of the logarithm."""
-
-    low: float
-    high: float
-    log: bool
-
-    def at(self, share: Array) -> Column:
-        """Return the values at shares (D,) of [0, 1]; the ends are exactly those of the file."""
-        if self.log:
-            low, high = math.log(self.low), math.log(self.high)
-            values = np.exp(low + (high - low) * share)
-        else:
-            values = self.low + (self.high - self.low) * share
-        found: Column = np.clip(np.where(share == 1.0, self.high, values), self.low, self.high)
-        return found
-
-
 def sample_of(
-    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Any]
+    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Rule]
 ) -> dict[str, Column]:
     """Return the values (D,) of each key that varies, in the file's units, as the section [vary] and the
-    values of `KEYS` say; CaseError as of `read_plan`."""
+    values of `KEYS` say; CaseError as of `studies.sweep.plan.read_plan`."""
     method = given.get("method", "grid")
     for name in ("points", "seed"):
         if name in given and method != "sobol":
@@ -80,10 +65,9 @@ def _drawn(axes: Mapping[str, Any], points: int, seed: int) -> dict[str, Column]
     """Return the columns of a random sample over axes."""
     sobol = qmc.Sobol(d=len(axes), scramble=True, seed=seed)
     unit = sobol.random_base2(math.ceil(math.log2(points)))[:points]
-    shares = dict(zip(axes, unit.T, strict=True))
     return {
-        key: axis.at(shares[key]) if isinstance(axis, _Range) else axis[(shares[key] * len(axis)).astype(int)]
-        for key, axis in axes.items()
+        key: axis(share) if callable(axis) else axis[(share * len(axis)).astype(int)]
+        for (key, axis), share in zip(axes.items(), unit.T, strict=True)
     }
 
 
@@ -93,14 +77,13 @@ def leaves(table: Mapping[str, Any], way: str = "") -> Iterator[tuple[str, Any]]
     A table is gone into unless it has a field of an axis.
     """
     for name, value in table.items():
-        key = f"{way}.{name}" if way else name
         if isinstance(value, dict) and value and not set(FIELDS) & set(value):
-            yield from leaves(value, key)
+            yield from leaves(value, f"{way}{name}.")
         else:
-            yield key, value
+            yield f"{way}{name}", value
 
 
-def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) -> None:
+def require_known(where: str, section: str, key: str, known: Mapping[str, Rule]) -> None:
     """Raise CaseError unless the case has the key."""
     if key not in known:
         expected = document.nearest(key, list(known))
@@ -108,8 +91,9 @@ def require_known(where: str, section: str, key: str, known: Mapping[str, Any]) 
         raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}{page}")
 
 
-def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: str) -> Any:
-    """Return one axis of [vary]: its values, or the range that they are drawn from."""
+def _axis(where: str, key: str, given: Any, known: Mapping[str, Rule], method: str) -> Any:
+    """Return one axis of [vary]: its values, or, of a range that is drawn from, the values by shares (D,) of
+    [0, 1]."""
     require_known(where, "vary", key, known)
     label = f"vary.{key}"
     if isinstance(given, list):
@@ -119,41 +103,36 @@ def _axis(where: str, key: str, given: Any, known: Mapping[str, Any], method: st
     document.refuse_unknown(where, label, given, FIELDS)
     if method == "list":
         raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
-    return _range(where, key, given, known[key], grid=method == "grid")
+    return _range(where, label, given, known[key], grid=method == "grid")
 
 
-def _listed(where: str, label: str, rule: Any, values: list[Any]) -> Column:
-    """Return listed values, each admitted by the rule; pairs as tuples."""
+def _listed(where: str, label: str, rule: Rule, values: list[Any]) -> Column:
+    """Return listed values, each admitted by the rule: numbers as floats unless all are whole ones of a rule
+    for these, pairs of numbers as tuples, texts and other lists as they are."""
     if not values:
         raise CaseError(f"{where}: {label}: got [], expected a list of values")
     for value in values:
         document.admitted(where, label, rule, value)
     whole = rule.kind != "number" and all(isinstance(value, int) for value in values)
-    kept = values if whole else [_kept(value) for value in values]
-    if len({type(value) for value in kept}) > 1:
+    column: Column = np.empty(len(values), dtype=object)
+    for place, value in enumerate(values):
+        if isinstance(value, list) and all(isinstance(part, int | float) for part in value):
+            column[place] = tuple(map(float, value))
+        else:
+            column[place] = float(value) if isinstance(value, int | float) and not whole else value
+    if len({type(value) for value in column}) > 1:
         expected = "numbers, texts or pairs of numbers alone"
         raise CaseError(f"{where}: {label}: got values of different types, expected {expected}")
-    column: Column = np.empty(len(kept), dtype=object)
-    for place, value in enumerate(kept):
-        column[place] = value
     return column
 
 
-def _kept(value: Any) -> Any:
-    """Return a number as a float, and a pair of numbers as a tuple; other texts and lists as they are."""
-    if isinstance(value, list) and all(isinstance(part, int | float) for part in value):
-        return tuple(map(float, value))
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else value
-
-
-def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: bool) -> Any:
+def _range(where: str, label: str, given: Mapping[str, Any], rule: Rule, *, grid: bool) -> Any:
     """Return an axis from a low to a high end, of a grid its values."""
-    label = f"vary.{key}"
     if rule.kind != "number":
         raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
     if "points" in given and not grid:
         raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
-    fields = {"from": rule, "to": rule, "points": POINTS, "scale": choice(*SCALES)}
+    fields = {"from": rule, "to": rule, "points": POINTS, "scale": choice("linear", "log")}
     optional = {"scale", "points"} - ({"points"} if grid else set())
     keys = [Key(label, name, name, each, optional=name in optional) for name, each in fields.items()]
     found = document.values(where, keys, given, label)
@@ -163,5 +142,14 @@ def _range(where: str, key: str, given: Mapping[str, Any], rule: Any, *, grid: b
         raise CaseError(f"{where}: {label}: got {got}, expected from < to")
     if log and low <= 0:
         raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
-    whole = _Range(float(low), float(high), log)
-    return whole.at(np.linspace(0.0, 1.0, found["points"])) if grid else whole
+    axis = partial(_spread, float(low), float(high), log)
+    return axis(np.linspace(0.0, 1.0, found["points"])) if grid else axis
+
+
+def _spread(low: float, high: float, log: bool, share: Array) -> Column:
+    """Return the values at shares (D,) of [0, 1] of a range; the ends are exactly those of the file."""
+    if log:
+        values = np.exp(math.log(low) + (math.log(high) - math.log(low)) * share)
+    else:
+        values = low + (high - low) * share
+    return np.asarray(np.clip(np.where(share == 1.0, high, values), low, high))
