@@ -60,8 +60,7 @@ from studies.design.evaluate import (
     by_elements,
     sides_of,
 )
-from studies.design.optimise import SAME, Outcome, best, numbered, search, settled
-from studies.design.programme import STARTS
+from studies.design.optimise import SAME, STARTS, Outcome, best, numbered, search, settled
 from studies.design.question import Question
 from studies.errors import BadInput
 from studies.record.files import write_whole
