@@ -1,6 +1,7 @@
 """What an answer bears: its largest stress, and from which load factor and rotation on a strip yields."""
 
 from dataclasses import dataclass, fields, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -98,49 +99,35 @@ def _first_yield(answer: Response, share: Array) -> _Yield | None:
     places, after = answer.places, int(beyond[0])
     if after == 0:
         return _Yield(load_factor=float(places[0, 0]), rotation=float(places[0, 1]), error=0.0)
-    known: dict[float, tuple[float, Array]] = {
-        float(k): (share[k] - 1.0, places[k]) for k in (after - 1, after)
-    }
+    from scipy.optimize import brentq  # imported by an answer that yields
+
+    step, rise = places[after] - places[after - 1], float(share[after] - share[after - 1])
+
+    @cache
+    def state(at: float) -> tuple[float, Array]:
+        """Return the share beyond 1, and the place, at a state or between two."""
+        if at in (after - 1, after):
+            return float(share[int(at)]) - 1.0, places[int(at)]
+        return _solved(answer, places[after - 1] + (at - (after - 1)) * step)
+
     stress = next((answer.errors[name] for name in STRESSES if name in answer.errors), np.nan)
-    error = stress * float(share.max()) / float(share[after] - share[after - 1])
-    at = _root(answer, known, after)
-    if at is None:  # the path between the increments is not found: their line is all that is known
-        at, error = after - 1 + (1.0 - share[after - 1]) / (share[after] - share[after - 1]), np.nan
-        known[at] = 0.0, _between(places, at)
-    found, step = known[at][1], places[after] - places[after - 1]
+    error = stress * float(share.max()) / rise
+    try:
+        at = brentq(lambda at: state(at)[0], after - 1.0, float(after), xtol=PRECISION)
+        found = state(at)[1]
+    except Unanswered:  # the path between the increments is not found: their line is all that is known
+        found, error = places[after - 1] + (1.0 - share[after - 1]) / rise * step, np.nan
     turned = bool(abs(step[1]) > 0.0 and found[1] != 0.0)
     part = abs(step[1] / found[1]) if turned else abs(step[0] / found[0])
     return _Yield(load_factor=float(found[0]), rotation=float(found[1]), error=float(error * part))
 
 
-def _root(answer: Response, known: dict[float, tuple[float, Array]], after: int) -> float | None:
-    """Return where between two states the share is 1, and keep what is known there; None where paths stop."""
+def _solved(answer: Response, place: Array) -> tuple[float, Array]:
+    """Return the share beyond 1 at the end of a path to a load factor and rotation (2,) on that of an answer,
+    and this place, with the rotation that is found where none is driven.
 
-    from scipy.optimize import brentq
-
-    def beyond(at: float) -> float:
-        if at not in known:
-            place = _between(answer.places, at)
-            there = _solved(answer, place)
-            assert there.yield_share is not None
-            known[at] = float(there.yield_share[-1]) - 1.0, np.array([place[0], there.places[-1, 1]])
-        return known[at][0]
-
-    try:
-        at = float(brentq(beyond, after - 1.0, float(after), xtol=PRECISION))
-        beyond(at)
-    except Unanswered:
-        return None
-    return at
-
-
-def _between(places: Array, at: float) -> Array:
-    """Return load factor and rotation (2,) of a place between states: both are linear there if prescribed."""
-    return np.array([np.interp(at, np.arange(len(places)), column) for column in places.T])
-
-
-def _solved(answer: Response, place: Array) -> Response:
-    """Return the answer to a path that ends at a load factor and rotation on that of an answer."""
+    Both are linear between two states if they are prescribed.
+    """
     design = answer.design
     changes: dict[str, Any] = {"effects": design.effects.grown(float(place[0]))}
     if design.rotation is not None:
@@ -153,4 +140,7 @@ def _solved(answer: Response, place: Array) -> Response:
         raise Unanswered(path.message)
     if getattr(answer.solution, "balanced", False):
         path = replace(path, balanced=True)
-    return Response.of(asked, path)
+    there = Response.of(asked, path)
+    share = there.yield_share
+    assert share is not None, "the strips of the answer have a yield strength"
+    return float(share[-1]) - 1.0, np.array([place[0], there.places[-1, 1]])

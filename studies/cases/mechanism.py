@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from studies.cases import document, keys
@@ -73,31 +73,40 @@ class Point:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mechanism:
-    """The given data of a mechanism of flexures and of its drive.
+class Driven:
+    """The effects of a design and the path that it is driven through, of a pivot and of any mechanism.
 
     Args:
-        strips, bodies: of different names.
-        body: name of the driven, released and reported body; None if there is no body.
-        rotation: end of the driven rotation [rad]; None: the rotation follows the loads.
+        rotation: end of the driven rotation, counter-clockwise [rad]; None: the rotation follows the loads.
         increments: equal increments of the path [1].
         effects: of the case.
         history, held: of a rotation that is prescribed in a motion: pairs of time [s] and factor [1], and
             begin and end [s]; None for a release.
         order: of loads and rotation, "loads first" or "together".
-        points: whose displacement is reported.
+        points: of bodies, whose displacement is reported.
+    """
+
+    rotation: float | None
+    increments: int
+    effects: Effects = field(default_factory=Effects)
+    order: str = LOADS_FIRST
+    history: tuple[tuple[float, float], ...] | None = None
+    held: tuple[float, float] | None = None
+    points: tuple[Point, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism(Driven):
+    """The given data of a mechanism of flexures and of its drive.
+
+    Args:
+        strips, bodies: of different names.
+        body: name of the driven, released and reported body; None if there is no body.
     """
 
     strips: tuple[Strip, ...]
     bodies: tuple[Body, ...]
     body: str | None
-    rotation: float | None
-    increments: int
-    effects: Effects
-    order: str = LOADS_FIRST
-    history: tuple[tuple[float, float], ...] | None = None
-    held: tuple[float, float] | None = None
-    points: tuple[Point, ...] = ()
 
     @property
     def crossing_point(self) -> None:

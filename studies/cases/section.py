@@ -175,14 +175,8 @@ def of_sides(width: Any, thickness: Any) -> dict[str, Any]:
 
 def of_moments(area: float, second_moment_of_area: float) -> dict[str, Any]:
     """Return a section with that A [m^2] and I [m^4] and unknown sides, as values for a replacement."""
-    return {
-        "area": area,
-        "second_moment_of_area": second_moment_of_area,
-        "width": None,
-        "thickness": None,
-        "width_end": None,
-        "thickness_end": None,
-    }
+    unknown = dict.fromkeys(key.attribute for key in (*SIDES, *TAPER))
+    return {"area": area, "second_moment_of_area": second_moment_of_area, **unknown}
 
 
 def rectangle_of(area: float, second_moment_of_area: float) -> dict[str, float]:

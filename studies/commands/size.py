@@ -51,8 +51,7 @@ from studies.commands.columns import by_row, numbers, plain, table
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.design import evaluate
 from studies.design.evaluate import CENTRE_SHIFT, STIFFNESS, STRESS, TRAVEL, VARIATION, Accurate
-from studies.design.optimise import SAME, Outcome, best, numbered, search, settled
-from studies.design.programme import STARTS
+from studies.design.optimise import SAME, STARTS, Outcome, best, numbered, search, settled
 from studies.design.question import Question
 from studies.errors import BadInput
 from studies.kinds import Array

@@ -71,7 +71,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.scheduler is not None and arguments.workers:
         raise BadInput("--workers: got it with --scheduler, expected one of them: a cluster has its own")
     from studies.record.progress import Bar
-    from studies.sweep.read import read_plan
+    from studies.sweep.plan import read_plan
     from studies.sweep.run import cluster, local_pool, sweep
 
     plan = read_plan(arguments.designs)

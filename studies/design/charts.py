@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 from spline_model import solve_many
 from spline_model.effects.plate import plate_factors
 from studies.answers.adapters import answer_static
+from studies.answers.answer import centre_shift
 from studies.answers.settings import FeSettings, SplineSettings
 from studies.answers.validity import Strip, anticlastic_factor, strips_of
 from studies.cases.problem import named_case
@@ -61,7 +62,7 @@ ELEMENTS = 160
 def paths(ratios: Array, inclinations: Array, slenderness: float) -> dict[str, Array]:
     """Return the quantities of the charts (D, S) [1] by name, of D pivots in increments to the last rotation.
 
-    Of unit length and modulus, with the crossing at (0, 0).
+    Of unit length and modulus.
 
     Args:
         ratios, inclinations: (D,) crossing ratios [1] and inclinations [deg]. slenderness: L/t [1].
@@ -82,13 +83,11 @@ def paths(ratios: Array, inclinations: Array, slenderness: float) -> dict[str, A
         raise ValueError(f"charts: {np.sum(~found.converged)} designs of L/t {slenderness:g} are not reached")
     stiffness = found.stiffness / section["second_moment_of_area"]
     most, least = (extreme.accumulate(stiffness, axis=1) for extreme in (np.maximum, np.minimum))
-    # the body's centre is midway between its clamps: from the crossing up by this
-    arm = ((1.0 - ratios) * np.sin(angles))[:, None]
-    sine, cosine = np.sin(found.rotation), np.cos(found.rotation)
-    x, y = (found.centre - found.centre[:, :1]).transpose(2, 0, 1)
+    crossing = ratios[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=1)
+    shift = centre_shift(crossing, found.rotation, found.centre)
     return {
         "stiffness": stiffness,
-        "shift": np.hypot(x + arm * sine, y + arm * (1.0 - cosine)),
+        "shift": np.linalg.norm(shift, axis=-1),
         "stress": found.strain * slenderness,
         "variation": (most - least) / stiffness[:, :1],
     }

@@ -18,7 +18,6 @@ from studies.answers.reference import reference
 from studies.answers.settings import SplineSettings
 from studies.cases.design import Design
 from studies.cases.effects import MOTION_ONLY
-from studies.cases.problem import Problem
 from studies.kinds import Array
 
 CENTRE_SHIFT, VARIATION, STRESS = "centre-shift", "stiffness-variation", "stress"
@@ -36,7 +35,7 @@ PLAIN = {"bending", "stretching", "clamped_width", "anticlastic", "root_complian
 
 def sides_of(design: Design) -> list[Design]:
     """Return the designs of the rotations that a range takes: both of a pivot under loads, else one."""
-    if not isinstance(design, Problem) or set(design.effects.names) <= PLAIN:
+    if design.crossing_point is None or set(design.effects.names) <= PLAIN:
         return [design]
     return [design, replace(design, rotation=-design.rotation)]
 
@@ -44,7 +43,7 @@ def sides_of(design: Design) -> list[Design]:
 def _held_states(design: Design) -> list[int]:
     """Return the states of a range where stress is held: at the end of each side, and, but for a pivot
     without loads, before the body turns."""
-    if not isinstance(design, Problem):
+    if design.crossing_point is None:
         return [0, -1]
     return [-1] if len(sides_of(design)) == 1 else [design.increments, -1, 0]
 
@@ -211,7 +210,7 @@ def by_elements(design: Design) -> dict[str, float]:
     turned, sides = slice(-design.increments - 1, None), []
     for limit in map(reference, sides_of(design)):
         shift = limit.centre
-        if isinstance(design, Problem):
+        if design.crossing_point is not None:
             shift = centre_shift(design.crossing_point, limit.rotation, limit.centre)
         moved = np.hypot(*(shift[turned] - shift[turned][0]).T)
         sides.append((moved, limit.stiffness[turned], limit.finest.max_stress[turned]))

@@ -13,7 +13,6 @@ from spline_model.parameters import CENTRES, MATERIAL, POINTS
 from studies.cases.design import Design, design_of
 from studies.cases.document import is_mechanism, nearest
 from studies.cases.keys import SIDES
-from studies.cases.problem import Problem
 from studies.cases.section import refuse_tapers
 from studies.design.evaluate import (
     CENTRE_SHIFT,
@@ -29,7 +28,7 @@ from studies.design.evaluate import (
 )
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep import plan
+from studies.sweep import varied
 
 #: Bounds of a number of a section or material where none are given, over its own.
 ROOM = (0.5, 2.0)
@@ -128,7 +127,7 @@ class Question:
         if pivot or any(side.name in text for text in texts for side in SIDES):
             shared = document.get("strip" if pivot else "section", {})
             for table in (shared, *document.get("strips", ())):
-                plan.to_sides(table)
+                varied.to_sides(table)
         start = design_of(where, document)
         refuse_tapers(where, start.strips, "sizing")
         found = _usual(document) if pivot else {}
@@ -193,7 +192,7 @@ class Question:
         """Return the case with these variables (N,) in the file's units."""
         document = copy.deepcopy(dict(self.content))
         for name, value in zip(self.names, values, strict=True):
-            plan.put(document, dict.fromkeys(name.split(","), float(value)))
+            varied.put(document, dict.fromkeys(name.split(","), float(value)))
         return document
 
     def design(self, values: Array) -> Design:
@@ -226,7 +225,7 @@ class Question:
     def _changes(self, place: int, values: Array) -> dict[str, float]:
         """Return the derivatives of the sensitivities' parameters by one variable."""
         variable, one = self.variables[place], np.eye(len(values))[place]
-        if isinstance(self.start, Problem) and variable.name in OF_PIVOTS:
+        if variable.name in OF_PIVOTS:
             return {OF_PIVOTS[variable.name]: math.radians(1.0) if variable.name == INCLINATION else 1.0}
         size, rows = STEP * (abs(values[place]) if variable.low > 0.0 else variable.span), []
         for step in (size, 0.5 * size):
@@ -254,7 +253,7 @@ class Question:
 
 def _usual(document: Mapping[str, Any]) -> dict[str, _Variable]:
     """Return the numbers of a pivot that are found unless it is said otherwise, with their bounds."""
-    own = {key: float(plan.value_at(document, key)) for key in OF_PIVOTS}
+    own = {key: float(varied.value_at(document, key)) for key in OF_PIVOTS}
     length, thickness, width = own[LENGTH], own[THICKNESS], own[WIDTH]
     bounds = {
         LENGTH: (0.5 * length, length),
@@ -283,7 +282,7 @@ def _variable(
     `Question.of`."""
     names, _, bounds = text.partition("=")
     given = tuple(name.strip() for name in names.split(","))
-    known = plan.known(where, document, "spline")
+    known = varied.known(where, document, "spline")
     for name in given:
         if name not in known:
             alike = [key for key in known if key.rpartition(".")[2] == name.rpartition(".")[2]]
@@ -294,7 +293,7 @@ def _variable(
         raise BadInput(f"--free: got {given[0]}, expected a number that stands in {where}")
     if not bounds and text in usual:
         return usual[text]
-    if not bounds and (own <= 0.0 or given[0].split(".")[-1] in plan.PARTS):
+    if not bounds and (own <= 0.0 or given[0].split(".")[-1] in varied.PARTS):
         raise BadInput(f"--free: got {text} without bounds, expected {text}=LOW:HIGH, in the file's unit")
     try:
         ends = list(map(float, bounds.split(":"))) if bounds else [own * room for room in ROOM]
@@ -308,9 +307,9 @@ def _variable(
 def _value(document: Mapping[str, Any], key: str) -> float | None:
     """Return the number at a key, of a strip the one of all where it has none; None where there is none."""
     shared = (
-        plan.value_at(document, f"{table}.{key.rpartition('.')[2]}") for table in ("section", "material")
+        varied.value_at(document, f"{table}.{key.rpartition('.')[2]}") for table in ("section", "material")
     )
-    for found in (plan.value_at(document, key), *shared):
+    for found in (varied.value_at(document, key), *shared):
         if found is not None:
             return float(found) if isinstance(found, int | float) else None
     return None

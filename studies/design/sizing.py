@@ -27,8 +27,7 @@ from studies.design.evaluate import (
     Followed,
     by_elements,
 )
-from studies.design.optimise import Outcome, best, search
-from studies.design.programme import STARTS
+from studies.design.optimise import STARTS, Outcome, best, search
 from studies.design.question import Question
 from studies.effects.audit import with_sections
 from studies.engine import Answer, Part, Row, Study, Tables

@@ -1,56 +1,75 @@
-"""What a sweep is, once DESIGNS.toml has been read: frozen values that go to workers as they are; and what it
-may vary: the keys of a case, the settings of a model, and the slenderness of a pivot."""
+"""A sweep as DESIGNS.toml describes it: which designs, in which order, and what is asked of each.
+
+An error in the file is one line before anything is solved.
+"""
 
 import copy
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import qmc
 
-from studies.answers.settings import Settings, settings_of_model
-from studies.cases import effects, keys
-from studies.cases.design import Design, design_of
-from studies.cases.document import is_mechanism, tables, values
-from studies.cases.rules import Key, Rule, not_negative, number, positive, text, whole
-from studies.cases.section import of_sides, rectangle_of
+from studies.answers.models import put
+from studies.answers.settings import MODELS
+from studies.cases import document
+from studies.cases.document import CaseError
+from studies.cases.keys import ROTATION
+from studies.cases.problem import FOLDER
+from studies.cases.rules import TRUTH, Key, Rule, choice, positive, shown, text, whole
+from studies.kinds import Array
+from studies.sweep import points, varied
+from studies.sweep.points import KINDS, Task
+from studies.sweep.varied import MOMENTS, SLENDERNESS
 
-KINDS = ("static", "modes", "release")
 #: Values of a key that varies: numbers, or other values as objects.
 Column = NDArray[Any]
 
-
-@dataclass(frozen=True, kw_only=True)
-class Task:
-    """What every chunk of a sweep needs to know.
-
-    Attributes:
-        where: file that refusals name. case: document of the case with what is fixed by the sweep.
-        model: as on the command line. settings: keywords of its settings.
-        kind: of the analysis, one of `KINDS`.
-        options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
-        keys: that are varied. quantities: names of what is stored.
-    """
-
-    where: str
-    case: dict[str, Any]
-    model: str
-    settings: dict[str, Any]
-    kind: str
-    options: dict[str, Any]
-    keys: tuple[str, ...]
-    quantities: tuple[str, ...]
-
-    def design(self, values: Mapping[str, Any]) -> Design:
-        """Return one design of the sweep; CaseError where a value is out of its range."""
-        document = copy.deepcopy(self.case)
-        put(document, values)
-        return design_of(self.where, document)
-
-    def settings_of(self, values: Mapping[str, Any]) -> Settings:
-        """Return the settings of one design: those of the sweep, and those that it varies."""
-        own = {key.partition(".")[2]: value for key, value in values.items() if is_setting(key)}
-        return settings_of_model(self.model, **(self.settings | own))
+METHODS = ("grid", "list", "sobol")
+#: Most points, whose varied values are all in memory.
+MOST = 10_000_000
+POINTS = whole(1, MOST)
+FIELDS = ("from", "to", "points", "scale")
+#: Keys of [sample].
+_SAMPLE = tuple(
+    Key("sample", name, name, rule, optional=True)
+    for name, rule in {
+        "method": choice(*METHODS),
+        "points": POINTS,
+        "seed": whole(0, 2**32 - 1),
+        "chunk": POINTS,
+    }.items()
+)
+SECTIONS = ("settings", "set", "analysis", "sample", "vary", "store")
+#: Most designs a chunk: a third of a second of static paths.
+CHUNK = 64
+#: Chunks that a sweep has at least, where they are not too small: enough for a few workers.
+CHUNKS = 16
+#: Kind of an analysis -> key of an option, the keyword that it sets, and its rule.
+OPTIONS = {
+    "static": (),
+    "modes": (
+        ("rotation_deg", "rotation", ROTATION),
+        ("count", "count", whole(1, 100)),
+        ("held", "held", TRUTH),
+    ),
+    "release": (
+        ("duration_s", "duration", positive("s")),
+        ("step_s", "step", positive("s")),
+        ("integrator", "integrator", text("the name of an integrator")),
+    ),
+}
+#: Options where the file does not say otherwise.
+STANDARD: dict[str, dict[str, Any]] = {
+    "static": {},
+    "modes": {"count": 3},
+    "release": {"duration": 0.05},
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,160 +101,241 @@ class Plan:
         return {key: column[start:stop].tolist() for key, column in self.columns.items()}
 
 
-def _dotted(rows: Iterable[Key]) -> dict[str, Key]:
-    """Return keys by their section and name."""
-    return {f"{key.section}.{key.name}": key for key in rows}
+def read_plan(path: str | Path) -> Plan:
+    """Return the sweep that the file describes.
+
+    Raises:
+        BadInput: one line with the file, the key, what was got and what was expected.
+    """
+    where = str(path)
+    return plan_of(where, document.parsed(path), Path(path).parent)
 
 
-#: Keys of a pivot as a sweep names them.
-PIVOT_KEYS = _dotted(keys.KEYS)
-SETTINGS = "settings"
-#: L over the thickness of a rectangular section of the case's width: sets the thickness.
-SLENDERNESS = "strip.slenderness"
-#: Keys of a section without known sides; a slenderness replaces them.
-MOMENTS = ("strip.area_m2", "strip.second_moment_m4", "strip.outer_fibre_m")
-TAPER = {f"strip.{key.name}" for key in keys.TAPER}
-SECTION = (*MOMENTS, "strip.thickness_m")
-#: Parts of a key that holds two numbers.
-PARTS = {"x": 0, "y": 1}
-#: The list of a scene's effects, as names with commas.
-EFFECTS = "scene.effects"
+def plan_of(where: str, content: Mapping[str, Any], folder: Path) -> Plan:
+    """Return the sweep of a parsed file whose relative paths start from `folder`; CaseError as of
+    `read_plan`."""
+    tables = _tables(where, content)
+    if not tables["vary"]:
+        raise CaseError(f"{where}: [vary]: got nothing to vary, expected keys of the case, as strip.length_m")
+    case = _case(where, content.get("case"), folder)
+    model = document.one_of(where, "model", content.get("model", "spline"), MODELS)
+    known = varied.known(str(content["case"]), case, model)
+    fixed = dict(_leaves(tables["set"]))
+    for key, value in fixed.items():
+        if key.startswith(varied.SETTINGS):
+            raise CaseError(f"{where}: set.{key}: got a setting, expected it in [settings]")
+        _require_known(where, "set", key, known)
+        document.admitted(where, f"set.{key}", known[key], value)
+    varied.put(case, fixed)
+    rules = varied.settings_rules(model).items()
+    keys = [Key("settings", name, name, rule, optional=True) for name, rule in rules]
+    settings = document.values(where, keys, tables["settings"], "settings")
+    asked = document.values(where, _SAMPLE, tables["sample"], "sample")
+    columns = _sample_of(where, asked, tables["vary"], known)
+    _refuse_overlaps(where, list(columns), case)
+    kind, options = _analysis(where, tables["analysis"])
+    found = points.known(case, kind, options.get("count", 0))
+    task = Task(
+        where=where,
+        case=case,
+        model=model,
+        settings=settings,
+        keys=tuple(columns),
+        kind=kind,
+        options=options,
+        quantities=_quantities(where, tables["store"], found),
+    )
+    _require_usable(task, columns)
+    count = len(next(iter(columns.values())))
+    chunk = asked.get("chunk", min(CHUNK, -(-count // CHUNKS)))
+    made_from = {**content, "case": case, "chunk": chunk}
+    return Plan(task=task, columns=columns, chunk=chunk, content=copy.deepcopy(made_from))
 
 
-def is_setting(key: str) -> bool:
-    """Return whether a key of [vary] is of the settings, not of the case."""
-    return key.startswith(f"{SETTINGS}.")
+def _tables(where: str, content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return the sections, empty where they are not there."""
+    for name in content:
+        if name in ("strip", "strips"):
+            raise CaseError(f'{where}: [{name}]: got a case, expected a sweep, which names one: case = "..."')
+        if name not in ("case", "model", *SECTIONS):
+            expected = document.nearest(name, ["case", "model", *SECTIONS])
+            raise CaseError(f"{where}: {name}: got an unknown name, expected {expected}")
+    tables = {name: document.table(where, content, name) for name in SECTIONS}
+    return tables | {"settings": {document.present(key): value for key, value in tables["settings"].items()}}
 
 
-_SETTING_RULES: dict[str, Rule] = {
-    "control_points": whole(4, 100),
-    "axial_modes": whole(1, 100),
-    "gauss_points": whole(1, 200),
-    "elements": whole(1, 10_000),
-    "penalty_stiffness": not_negative("EI/L^2"),
-}
+def _case(where: str, name: Any, folder: Path) -> dict[str, Any]:
+    """Return the document of the case: one that comes with the suite, or a file beside DESIGNS.toml."""
+    if not isinstance(name, str) or not name:
+        raise CaseError(f"{where}: case: got {shown(name)}, expected the name of a case or a file")
+    own = FOLDER / f"{name}.toml"
+    if own.is_file():
+        return document.parsed(own)
+    if name.endswith(".toml"):
+        return document.parsed(folder / name)
+    expected = document.nearest(name, sorted(path.stem for path in FOLDER.glob("*.toml")))
+    raise CaseError(f"{where}: case: got {name}, expected {expected}, or a file that ends in .toml")
 
 
-def _names(value: Any) -> list[str]:
-    """Return the names of effects in a text with commas; ValueError unless all are known."""
-    names = [name.strip() for name in text(NAMES.expected).parse(value).split(",")]
+def _refuse_overlaps(where: str, keys: list[str], case: Mapping[str, Any]) -> None:
+    """Raise CaseError if a key comes twice, whole and in part, or beside a slenderness that sets it."""
+    for key in keys:
+        pair = key.rpartition(".")[0]
+        if pair in keys:
+            raise CaseError(f"{where}: vary.{key}: got it beside {pair}, expected one of them")
+    given = [key for key in (*MOMENTS, "strip.thickness_m") if key in keys]
+    given += ["strip.thickness_m"] if "outer_fibre_m" in case.get("strip", {}) else []
+    if SLENDERNESS in keys and given:
+        raise CaseError(f"{where}: vary.{SLENDERNESS}: got it beside {given[0]}, which it sets itself")
+
+
+def _analysis(where: str, given: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return kind and options of a task."""
+    kind = document.one_of(where, "analysis.kind", given.get("kind", "static"), KINDS)
+    rows = (("kind", "kind", choice(*KINDS)), *OPTIONS[kind])
+    keys = [Key("analysis", *row, optional=True) for row in rows]
+    found = STANDARD[kind] | document.values(where, keys, given, "analysis")
+    return kind, {name: value for name, value in found.items() if name != "kind"}
+
+
+def _quantities(where: str, given: Mapping[str, Any], found: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of what is stored, of those that are found: as the file says, or what is usual."""
+    document.refuse_unknown(where, "store", given, ["quantities"])
+    names = given.get("quantities", [name for name, quantity in found.items() if quantity.usual])
+    if not isinstance(names, list) or not names or len(set(map(str, names))) < len(names):
+        raise CaseError(f"{where}: store.quantities: got {shown(names)}, expected different names in a list")
     for name in names:
-        effects.require_known("effect", name)
-    return names
+        document.one_of(where, "store.quantities", name, tuple(found))
+    return tuple(names)
 
 
-#: What the strips and bodies of a mechanism must have, as keys go by it.
-NAME = [key for key in keys.BODY if key.name == "name"]
-#: A list of effects, written as names with commas.
-NAMES = Rule(expected="names of effects with commas", read=_names)
+def _require_usable(task: Task, columns: Mapping[str, Column]) -> None:
+    """Raise BadInput unless the model takes the case and every setting.
 
-
-def known(where: str, document: Mapping[str, Any], model: str) -> dict[str, Rule]:
-    """Return the rule of every key that a sweep of the case's document with the model may vary.
-
-    Raises CaseError where the parts of the case, whose keys go by their name or place, are no tables.
+    Ends of ranges and listed values have kept their own rules by now; here the case as a whole is read.
     """
-    if is_mechanism(document):
-        found = _of_mechanism(where, document)
-    else:
-        found = {name: key.rule for name, key in PIVOT_KEYS.items()} | {SLENDERNESS: positive("1")}
-    found |= {name: key.rule for rows in keys.EFFECT_KEYS.values() for name, key in _dotted(rows).items()}
-    for section, listed in keys.LISTS.items():
-        for place, _ in enumerate(tables(where, document, section), start=1):
-            rows = (key for effect in listed for key in keys.EFFECT_KEYS[effect])
-            found |= {f"{section}.{place}.{key.name}": key.rule for key in rows}
-    for name, rule in list(found.items()):
-        if rule.kind == "pair":
-            found |= {f"{name}.{part}": number("a finite number") for part in PARTS}
-    settings = {
-        f"{SETTINGS}.{each.name}": _SETTING_RULES.get(each.name, text("a name"))
-        for each in fields(settings_of_model(model))
-        if each.name != "element"
+    design = task.design({key: column[0] for key, column in columns.items()})
+    settings = ((key, set(columns[key].tolist())) for key in columns if key.startswith(varied.SETTINGS))
+    for values in ({}, *({key: value} for key, every in settings for value in every)):
+        put(design, task.settings_of(values), moving=task.kind != "static")
+
+
+def _sample_of(
+    where: str, given: Mapping[str, Any], varied: Mapping[str, Any], known: Mapping[str, Rule]
+) -> dict[str, Column]:
+    """Return the values (D,) of each key that varies, in the file's units, as the section [vary] and the
+    values of `_SAMPLE` say; CaseError as of `read_plan`."""
+    method = given.get("method", "grid")
+    for name in ("points", "seed"):
+        if name in given and method != "sobol":
+            raise CaseError(f"{where}: sample.{name}: got it for a {method}, which has those of [vary]")
+    if method == "sobol" and "points" not in given:
+        raise CaseError(f"{where}: sample.points: got no such key, expected {POINTS.expected}")
+    axes = {key: _axis(where, key, value, known, method) for key, value in _leaves(varied)}
+    if method == "sobol":
+        return _drawn(axes, given["points"], given.get("seed", 0))
+    counts = {key: len(axis) for key, axis in axes.items()}
+    if method == "list":
+        if len(set(counts.values())) > 1:
+            told = ", ".join(f"{key} {count}" for key, count in counts.items())
+            raise CaseError(f"{where}: [vary]: got lists of different lengths ({told}), expected the same")
+        return axes
+    points = math.prod(counts.values())
+    if points > MOST:
+        raise CaseError(f"{where}: [vary]: got a grid of {points} points, expected at most {MOST}")
+    mesh = np.meshgrid(*axes.values(), indexing="ij")  # the last axis runs fastest
+    return {key: each.ravel() for key, each in zip(axes, mesh, strict=True)}
+
+
+def _drawn(axes: Mapping[str, Any], points: int, seed: int) -> dict[str, Column]:
+    """Return the columns of a random sample over axes."""
+    sobol = qmc.Sobol(d=len(axes), scramble=True, seed=seed)
+    unit = sobol.random_base2(math.ceil(math.log2(points)))[:points]
+    return {
+        key: axis(share) if callable(axis) else axis[(share * len(axis)).astype(int)]
+        for (key, axis), share in zip(axes.items(), unit.T, strict=True)
     }
-    return {**found, EFFECTS: NAMES, **settings}
 
 
-def _of_mechanism(where: str, document: Mapping[str, Any]) -> dict[str, Rule]:
-    """Return the keys of a mechanism: `strips.NAME.key`, `bodies.NAME.key` and those of its sections."""
-    shared = (*keys.SECTION, *keys.MATERIAL, *keys.DRIVE)
-    found = {name: key.rule for name, key in _dotted(shared).items()}
-    own = {"strips": (*keys.STRIP, *keys.OWN), "bodies": keys.BODY}
-    for section, rows in own.items():
-        for label, part in tables(where, document, section):
-            name = values(where, NAME, {k: v for k, v in part.items() if k == "name"}, label)["name"]
-            found |= {f"{section}.{name}.{key.name}": key.rule for key in rows}
-    return {key: rule for key, rule in found.items() if rule.kind != "text"}
+def _leaves(table: Mapping[str, Any], way: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the keys of nested tables with dots between the names, and what stands there.
 
-
-def _put(document: dict[str, Any], key: str, value: Any) -> None:
-    """Set one key of a case's document in place; `value` in the file's unit.
-
-    Parameters of effects that a list does not contain are removed.
+    A table is gone into unless it has a field of an axis.
     """
-    if key == EFFECTS:
-        value = NAMES.parse(value)
-        tables = document.get("effects", {})
-        document["effects"] = {name: table for name, table in tables.items() if name in value}
-    table, name, part = _place(document, key)
-    if part is not None:
-        pair = list(table.get(name, (0.0, 0.0)))
-        pair[part] = value
-        value = pair
-    table[name] = value
-
-
-def value_at(document: Mapping[str, Any], key: str) -> Any:
-    """Return what stands at a key of a case's document, None where there is nothing."""
-    table, name, part = _place(copy.deepcopy(dict(document)), key)
-    found = table.get(name)
-    return found if part is None or found is None else found[part]
-
-
-def _place(document: dict[str, Any], key: str) -> tuple[dict[str, Any], str, int | None]:
-    """Return the table that a key stands in, of an array the one of its name or number, its name there, and
-    which number of a pair it is."""
-    *way, name = key.split(".")
-    part = PARTS.get(name) if len(way) > 1 else None
-    if part is not None:
-        *way, name = way
-    place: Any = document
-    for each in way:
-        if isinstance(place, list):
-            named = {str(table.get("name", number)): table for number, table in enumerate(place, start=1)}
-            place = named[each]
+    for name, value in table.items():
+        if isinstance(value, dict) and value and not set(FIELDS) & set(value):
+            yield from _leaves(value, f"{way}{name}.")
         else:
-            place = place.setdefault(each, {})
-    return place, name, part
+            yield f"{way}{name}", value
 
 
-def put(document: dict[str, Any], values: Mapping[str, Any]) -> None:
-    """Set the keys of one design in place, its list of effects first, a slenderness last; settings are not of
-    the document."""
-    for key, value in sorted(values.items(), key=lambda item: item[0] != EFFECTS):
-        if key in MOMENTS:
-            _to_moments(document["strip"])
-        if key != SLENDERNESS and not is_setting(key):
-            _put(document, key, value)
-    if SLENDERNESS in values:
-        strip = document["strip"]
-        to_sides(strip)
-        strip["thickness_m"] = strip["length_m"] / values[SLENDERNESS]
+def _require_known(where: str, section: str, key: str, known: Mapping[str, Rule]) -> None:
+    """Raise CaseError unless the case has the key."""
+    if key not in known:
+        expected = document.nearest(key, list(known))
+        page = "" if expected.endswith(")") else ", which docs/cases.md lists"
+        raise CaseError(f"{where}: {section}.{key}: got no key of the case, expected {expected}{page}")
 
 
-def _to_moments(section: dict[str, Any]) -> None:
-    """Give a table of the document its section by area and second moment, in place of width and thickness."""
-    _exchange(section, keys.SIDES, of_sides, keys.MOMENTS)
+def _axis(where: str, key: str, given: Any, known: Mapping[str, Rule], method: str) -> Any:
+    """Return one axis of [vary]: its values, or, of a range that is drawn from, the values by shares (D,) of
+    [0, 1]."""
+    _require_known(where, "vary", key, known)
+    label = f"vary.{key}"
+    if isinstance(given, list):
+        return _listed(where, label, known[key], given)
+    if not isinstance(given, dict) or not given:
+        raise CaseError(f"{where}: {label}: got {shown(given)}, expected a list or {{ from, to }}")
+    document.refuse_unknown(where, label, given, FIELDS)
+    if method == "list":
+        raise CaseError(f'{where}: {label}: got a range, expected values for sample.method = "list"')
+    return _range(where, label, given, known[key], grid=method == "grid")
 
 
-def to_sides(section: dict[str, Any]) -> None:
-    """Give a table of the document its section by width and thickness, in place of area and second moment."""
-    _exchange(section, keys.MOMENTS, rectangle_of, keys.SIDES)
+def _listed(where: str, label: str, rule: Rule, values: list[Any]) -> Column:
+    """Return listed values, each admitted by the rule: numbers as floats unless all are whole ones of a rule
+    for these, pairs of numbers as tuples, texts and other lists as they are."""
+    if not values:
+        raise CaseError(f"{where}: {label}: got [], expected a list of values")
+    for value in values:
+        document.admitted(where, label, rule, value)
+    whole = rule.kind != "number" and all(isinstance(value, int) for value in values)
+    column: Column = np.empty(len(values), dtype=object)
+    for place, value in enumerate(values):
+        if isinstance(value, list) and all(isinstance(part, int | float) for part in value):
+            column[place] = tuple(map(float, value))
+        else:
+            column[place] = float(value) if isinstance(value, int | float) and not whole else value
+    if len({type(value) for value in column}) > 1:
+        expected = "numbers, texts or pairs of numbers alone"
+        raise CaseError(f"{where}: {label}: got values of different types, expected {expected}")
+    return column
 
 
-def _exchange(
-    section: dict[str, Any], given: Iterable[Key], make: Callable[..., Any], wanted: Iterable[Key]
-) -> None:
-    names = [key.name for key in given]
-    if all(name in section for name in names):
-        made = make(*(section.pop(name) for name in names))
-        section |= {key.name: made[key.attribute] for key in wanted}
+def _range(where: str, label: str, given: Mapping[str, Any], rule: Rule, *, grid: bool) -> Any:
+    """Return an axis from a low to a high end, of a grid its values."""
+    if rule.kind != "number":
+        raise CaseError(f"{where}: {label}: got a range, expected values ({rule.expected})")
+    if "points" in given and not grid:
+        raise CaseError(f"{where}: {label}.points: got it without a grid, expected sample.points alone")
+    fields = {"from": rule, "to": rule, "points": POINTS, "scale": choice("linear", "log")}
+    optional = {"scale", "points"} - ({"points"} if grid else set())
+    keys = [Key(label, name, name, each, optional=name in optional) for name, each in fields.items()]
+    found = document.values(where, keys, given, label)
+    low, high, log = given["from"], given["to"], found.get("scale") == "log"
+    if not low < high:
+        got = f"an empty range from {shown(low)} to {shown(high)}"
+        raise CaseError(f"{where}: {label}: got {got}, expected from < to")
+    if log and low <= 0:
+        raise CaseError(f"{where}: {label}.from: got {low}, expected it above 0 for a logarithm")
+    axis = partial(_spread, float(low), float(high), log)
+    return axis(np.linspace(0.0, 1.0, found["points"])) if grid else axis
+
+
+def _spread(low: float, high: float, log: bool, share: Array) -> Column:
+    """Return the values at shares (D,) of [0, 1] of a range; the ends are exactly those of the file."""
+    if log:
+        values = np.exp(math.log(low) + (math.log(high) - math.log(low)) * share)
+    else:
+        values = low + (high - low) * share
+    return np.asarray(np.clip(np.where(share == 1.0, high, values), low, high))

@@ -1,12 +1,16 @@
-"""What a sweep stores of each design, and designs solved one by one, a row each, whatever becomes of them.
+"""The task that every chunk of a sweep has, what it stores of each design, and designs solved one by one, a
+row each, whatever becomes of them.
 
 Quantities have names with units, say what they mean, and how they follow from the answer of `solve`, `modes`
 or `release`.
 """
 
+import copy
 import json
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -18,12 +22,13 @@ from studies.answers.motion import Spectrum
 from studies.answers.named import named
 from studies.answers.quantities import QUANTITIES, STANDING, Quantity
 from studies.answers.response import Response
+from studies.answers.settings import Settings, settings_of_model
 from studies.answers.validity import validity
-from studies.cases.design import design_of
+from studies.cases.design import Design, design_of
 from studies.cases.document import CaseError, is_mechanism
 from studies.errors import BadInput
 from studies.kinds import Array
-from studies.sweep.plan import Task
+from studies.sweep import varied
 
 #: How a design ended.
 CONVERGED, NOT_CONVERGED = "converged", "not_converged"
@@ -32,6 +37,42 @@ REFUSED, FAILED = "refused", "failed"
 POINT, STATUS, REASON = "point", "status", "reason"
 #: Reason of a static row whose error nothing estimates: of elements, and of a given number of control points.
 NOT_ESTIMATED = "error not estimated"
+#: Analyses.
+KINDS = ("static", "modes", "release")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """What every chunk of a sweep needs to know.
+
+    Attributes:
+        where: file that refusals name. case: document of the case with what is fixed by the sweep.
+        model: as on the command line. settings: keywords of its settings.
+        kind: of the analysis, one of `KINDS`.
+        options: of modes (`rotation` [rad], `held`, `count`) or of a release (`duration` [s], ...).
+        keys: that are varied. quantities: names of what is stored.
+    """
+
+    where: str
+    case: dict[str, Any]
+    model: str
+    settings: dict[str, Any]
+    kind: str
+    options: dict[str, Any]
+    keys: tuple[str, ...]
+    quantities: tuple[str, ...]
+
+    def design(self, values: Mapping[str, Any]) -> Design:
+        """Return one design of the sweep; CaseError where a value is out of its range."""
+        document = copy.deepcopy(self.case)
+        varied.put(document, values)
+        return design_of(self.where, document)
+
+    def settings_of(self, values: Mapping[str, Any]) -> Settings:
+        """Return the settings of one design: those of the sweep, and those that it varies."""
+        prefix = varied.SETTINGS
+        own = {key.removeprefix(prefix): value for key, value in values.items() if key.startswith(prefix)}
+        return settings_of_model(self.model, **(self.settings | own))
 
 
 class _Column(NamedTuple):
@@ -80,6 +121,11 @@ def _moved(answer: Response) -> Array:
     return np.asarray(np.hypot(*answer.centre_shift.T))
 
 
+def _shifted(axis: int, answer: Response) -> Any:
+    """Return the displacement of the crossing point along an axis at the end [m]."""
+    return answer.centre_shift[-1, axis]
+
+
 PATH = {
     "rotation_rad": _Column("rotation at the end", lambda a: a.rotation[-1] if a.body else math.nan),
     **{each.name_in_sweep: _standing(each) for each in QUANTITIES if each.standing},
@@ -122,38 +168,19 @@ SHIFT = {
         "displacement of the body's point at the strips' crossing, at the end", lambda a: _moved(a)[-1]
     ),
     "centre_shift_max_m": _Column("largest displacement of that point", lambda a: _moved(a).max()),
-    "centre_shift_end_x_m": _Column(
-        "x of the displacement at the end", lambda a: a.centre_shift[-1, 0], False
-    ),
-    "centre_shift_end_y_m": _Column(
-        "y of the displacement at the end", lambda a: a.centre_shift[-1, 1], False
-    ),
+    "centre_shift_end_x_m": _Column("x of the displacement at the end", partial(_shifted, 0), False),
+    "centre_shift_end_y_m": _Column("y of the displacement at the end", partial(_shifted, 1), False),
 }
 
 
-def _place(body: str, axis: int) -> Callable[[Response], Any]:
-    return lambda answer: answer.bodies[body][-1, axis]
+def _place(body: str, axis: int, answer: Response) -> Any:
+    """Return x, y [m] or the rotation [rad] of a body at the end of a path."""
+    return answer.bodies[body][-1, axis]
 
 
-def _of_bodies(names: list[str]) -> dict[str, _Column]:
-    """Return the places of bodies at the end of a path."""
-    return {
-        f"{body}_{part}": _Column(f"{part} of {body} at the end", _place(body, axis))
-        for body in names
-        for axis, part in enumerate(("x_m", "y_m", "rotation_rad"))
-    }
-
-
-def _frequency(mode: int) -> Callable[[Spectrum], float]:
-    return lambda found: found.frequency[mode] if mode < len(found.frequency) else np.nan
-
-
-def _of_modes(count: int) -> dict[str, _Column]:
-    """Return the frequencies of the lowest modes; negative where the state is unstable."""
-    return {
-        f"frequency_{mode}_Hz": _Column(f"frequency of mode {mode}", _frequency(mode - 1))
-        for mode in range(1, count + 1)
-    }
+def _frequency(mode: int, found: Spectrum) -> float:
+    """Return the frequency of a mode [Hz]; NaN of more modes than there are."""
+    return found.frequency[mode] if mode < len(found.frequency) else math.nan
 
 
 RELEASE = {
@@ -170,18 +197,26 @@ RELEASE = {
 def known(case: Mapping[str, Any], kind: str, count: int) -> dict[str, _Column]:
     """Return all quantities of an analysis of the case's document, `count` of modes."""
     if kind == "modes":
-        return _of_modes(count)
+        return {
+            f"frequency_{mode + 1}_Hz": _Column(f"frequency of mode {mode + 1}", partial(_frequency, mode))
+            for mode in range(count)
+        }
     if kind == "release":
         return RELEASE
+    places = SHIFT
+    if is_mechanism(case):
+        places = {
+            f"{body['name']}_{part}": _Column(
+                f"{part} of {body['name']} at the end", partial(_place, body["name"], axis)
+            )
+            for body in case.get("bodies", [])
+            for axis, part in enumerate(("x_m", "y_m", "rotation_rad"))
+        }
     try:
-        design = design_of("case", case)
+        parts = named(design_of("case", case))
     except CaseError:  # only what is varied completes it
-        parts = {}
-    else:
-        parts = {each.name_in_sweep: _standing(each) for each in named(design)}
-    mechanism = is_mechanism(case)
-    places = _of_bodies([body["name"] for body in case.get("bodies", [])]) if mechanism else SHIFT
-    return PATH | places | parts
+        parts = ()
+    return PATH | places | {each.name_in_sweep: _standing(each) for each in parts}
 
 
 def stored(task: Task) -> dict[str, _Column]:
@@ -222,13 +257,10 @@ def solve(task: Task, given: Mapping[str, Any]) -> tuple[str, str, dict[str, flo
     The status is "converged"; "not_converged": the model stopped, and the reason states why and where;
     "refused": the model rejects the design; "failed": any other error.
     """
-    ask: dict[str, Callable[..., Any]] = {
-        "static": answer_static,
-        "modes": answer_modes,
-        "release": answer_release,
-    }
+    analyses: tuple[Callable[..., Any], ...] = (answer_static, answer_modes, answer_release)
+    ask = dict(zip(KINDS, analyses, strict=True))[task.kind]
     try:
-        answer = ask[task.kind](task.design(given), task.settings_of(given), **task.options)
+        answer = ask(task.design(given), task.settings_of(given), **task.options)
         if not answer.converged:
             return NOT_CONVERGED, answer.message, {}
         remarks = [answer.message, answer.resolution]

@@ -1,41 +1,61 @@
-"""Run a sweep: the chunks that are missing, on processes or a Dask cluster, then the table."""
+"""Run a sweep: the chunks that are missing, on processes or a Dask cluster, then the table.
 
-import asyncio
+Its folder holds what it was made from, a part for each chunk, and in the end one table:
+
+    sweep.json          inputs, versions, columns with units' names and meanings
+    parts/              one Parquet file a chunk, until all are there
+    designs.parquet     the table, a row group a chunk, in the order of the points
+    designs.csv         the same, where asked for
+
+Every file is written under another name and renamed when it is complete.
+"""
+
+import hashlib
+import json
 import logging
 import multiprocessing
 import os
 import signal
-import threading
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Iterator
 from concurrent import futures
-from contextlib import AbstractContextManager, ExitStack, contextmanager
-from dataclasses import dataclass
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from importlib.metadata import version
+from itertools import chain, islice
 from pathlib import Path
-from typing import Any
+from queue import SimpleQueue
+from typing import Any, NamedTuple
 
 import pyarrow as pa
+import pyarrow.csv as pa_csv
+import pyarrow.parquet as pq
 
 from studies.errors import BadInput
 from studies.kinds import Progress
+from studies.record import files
+from studies.record.files import OutputError, temporary_prefix, whole_file
 from studies.record.progress import silent
-from studies.sweep.parts import Folder, suite
+from studies.record.source import source_hash
 from studies.sweep.plan import Plan
-from studies.sweep.points import solve_chunk
+from studies.sweep.points import POINT, REASON, STATUS, solve_chunk, stored
 
 #: Chunks a worker that are under way or waiting, so that none idles and no result piles up.
 AHEAD = 2
-#: How often an interruption is looked for while nothing comes [s].
-PATIENCE = 0.1
 #: Longest wait for the scheduler, and for its first worker [s].
 TIMEOUT, WORKERS_WITHIN = 5.0, 30.0
+MANIFEST, TABLE, CSV = "sweep.json", "designs.parquet", "designs.csv"
+SUITE = "cross-axis-pivot-validation"
+#: Libraries whose version can change a number or a byte of the table.
+LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "pyarrow")
+#: What the numbers follow from: the solution of a chunk, and the drawing of the sample.
+SOURCES = ("studies.sweep.points", "studies.sweep.plan")
 
 
 class SweepError(BadInput):
     """A chunk that no worker could solve."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Pool:
+class Pool(NamedTuple):
     """Workers behind the interface of `concurrent.futures`, and how many they are."""
 
     executor: futures.Executor
@@ -64,75 +84,40 @@ def sweep(
     Raises:
         OutputError: the folder cannot be used or written. SweepError: a chunk that no worker could solve.
     """
-    folder, solved, total = Folder(out, plan), 0, plan.points
-    with ExitStack() as stack:
-        workers = None
-        if folder.missing():  # asked before anything is written: a scheduler may be out of reach
-            workers = stack.enter_context(local_pool() if pool is None else pool)
-        stack.enter_context(folder.held())
+    folder, solved = _Folder(out, plan), 0
+    asked = (pool or local_pool()) if folder.missing() else nullcontext()
+    with asked as workers, folder.held():  # in this order: a scheduler may be out of reach
         missing = folder.missing()
-        if missing and workers is not None:
-            interrupted = stack.enter_context(_interruptions())
-            done = total - sum(stop - start for start, stop in map(plan.span, missing))
-            progress(done, total)
-            for number, table in _tables(plan, missing, workers, interrupted):
+        if missing and workers:
+            done = plan.points - sum(stop - start for start, stop in map(plan.span, missing))
+            progress(done, plan.points)
+            for number, table in _tables(plan, missing, workers):
                 folder.write(number, table)
                 solved += table.num_rows
-                progress(done + solved, total)
+                progress(done + solved, plan.points)
         folder.finish(csv=csv)
     return solved
 
 
-@contextmanager
-def _interruptions() -> Iterator[Callable[[], None]]:
-    """Yield a check that raises KeyboardInterrupt where one came; the second one of a user is not held back.
+def _tables(plan: Plan, missing: list[int], pool: Pool) -> Iterator[tuple[int, pa.Table]]:
+    """Yield number and rows of the chunks as they are solved, a bounded number of them under way.
 
-    Raised in the middle of `wait`, it would leave locks of the futures taken, and the workers at them for
-    ever.
+    An interruption may come while the queue is waited for: unlike `futures.wait`, it then leaves no locks.
     """
-    came = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: None  # interruptions reach the main thread alone
-        return
-    before = signal.getsignal(signal.SIGINT)
-
-    def note(*_: object) -> None:
-        came.set()
-        signal.signal(signal.SIGINT, before)
-
-    def check() -> None:
-        if came.is_set():
-            raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, note)
-    try:
-        yield check
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _tables(
-    plan: Plan, missing: list[int], pool: Pool, interrupted: Callable[[], None]
-) -> Iterator[tuple[int, pa.Table]]:
-    """Yield number and rows of the chunks as they are solved, a bounded number of them under way."""
-    waiting = iter(missing)
+    ended: SimpleQueue[futures.Future[pa.Table]] = SimpleQueue()
     pending: dict[futures.Future[pa.Table], int] = {}
-    try:
-        while True:
-            while len(pending) < AHEAD * pool.workers and (number := next(waiting, None)) is not None:
-                start, stop = plan.span(number)
-                rows = plan.rows(start, stop)
-                pending[pool.executor.submit(solve_chunk, plan.task, start, rows)] = number
-            if not pending:
-                return
-            done = futures.wait(pending, timeout=PATIENCE, return_when=futures.FIRST_COMPLETED).done
-            interrupted()  # it ends processes too: what they leave is no failure of theirs
-            for future in sorted(done, key=pending.__getitem__):
-                number = pending.pop(future)
-                yield number, _result(plan, number, future)
-    finally:
-        for future in pending:
-            future.cancel()
+    waiting = iter(missing)
+    while True:
+        for number in islice(waiting, AHEAD * pool.workers - len(pending)):
+            start, stop = plan.span(number)
+            future = pool.executor.submit(solve_chunk, plan.task, start, plan.rows(start, stop))
+            pending[future] = number
+            future.add_done_callback(ended.put)
+        if not pending:
+            return
+        future = ended.get()
+        number = pending.pop(future)
+        yield number, _result(plan, number, future)
 
 
 def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Table:
@@ -141,32 +126,35 @@ def _result(plan: Plan, number: int, future: futures.Future[pa.Table]) -> pa.Tab
         return future.result()
     except (Exception, futures.CancelledError) as error:
         first, last = plan.span(number)
-        reason = (str(error).splitlines() or [""])[0]
         raise SweepError(
-            f"points {first} to {last - 1}: no worker could solve them ({type(error).__name__}: {reason}); "
+            f"points {first} to {last - 1}: no worker could solve them ({_said(error)}); "
             "the same command goes on with what is missing"
         ) from error
+
+
+def _said(error: BaseException) -> str:
+    """Return kind and first line of an error."""
+    return f"{type(error).__name__}: {error}".splitlines()[0]
 
 
 @contextmanager
 def local_pool(workers: int | None = None) -> Iterator[Pool]:
     """Yield processes on this machine, one for each core by default; an interruption ends them at once."""
     count, others = workers or os.cpu_count() or 1, set(multiprocessing.active_children())
-    spawn = multiprocessing.get_context("spawn")
-    executor = futures.ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_quietly)
+    executor = futures.ProcessPoolExecutor(
+        count,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=signal.signal,  # an interruption from the keyboard reaches every process
+        initargs=(signal.SIGINT, signal.SIG_IGN),
+    )
     try:
-        yield Pool(executor=executor, workers=count)
+        yield Pool(executor, count)
     except BaseException:
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
         raise
     finally:
         executor.shutdown(wait=True, cancel_futures=True)
-
-
-def _end_quietly() -> None:
-    """Let an interruption from the keyboard, which reaches every process, end this one without a trace."""
-    signal.signal(signal.SIGINT, lambda *_: os._exit(130))
 
 
 @contextmanager
@@ -192,55 +180,186 @@ def cluster(
         ) from None
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is said by what is raised
-    _require_scheduler(address, timeout)
-    with Client(address, timeout=timeout, set_as_default=False) as client:
-        try:
+    with _refusing(address, "where no scheduler answers", "an address as tcp://HOST:PORT"):
+        client = Client(address, timeout=timeout, set_as_default=False)
+    with client:
+        with _refusing(address, "which lacks workers", f"one: dask worker {address}"):
             client.wait_for_workers(workers, timeout=workers_within)
-        except TimeoutError:
-            raise BadInput(
-                f"--scheduler: got {address}, which lacks workers after {workers_within:g} s, "
-                f"expected one: dask worker {address}"
-            ) from None
-        _require_suite(client, address)
-        yield Pool(executor=client.get_executor(pure=False), workers=sum(client.nthreads().values()))
+        with _refusing(address, "whose workers cannot use the suite", "it to be installed there"):
+            versions = client.run(suite)
+        for worker, found in versions.items():
+            if found != suite():
+                raise BadInput(
+                    f"--scheduler: got {address}, whose worker {worker} has another version of the suite, "
+                    "expected the same everywhere"
+                )
+        yield Pool(client.get_executor(pure=False), sum(client.nthreads().values()))
 
 
-def _require_suite(client: Any, address: str) -> None:
-    """Raise BadInput unless the workers have this suite in this version."""
+@contextmanager
+def _refusing(address: str, got: str, expected: str) -> Iterator[None]:
+    """Raise BadInput, in one line, for any error in the context: of the network or of other machines."""
     try:
-        found = client.run(suite)
-    except Exception as error:  # whatever is wrong over there
-        reason = f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"
-        raise BadInput(
-            f"--scheduler: got {address}, whose workers cannot use the suite ({reason}), "
-            "expected it to be installed there"
-        ) from None
-    for worker, other in found.items():
-        if other != suite():
-            raise BadInput(
-                f"--scheduler: got {address}, whose worker {worker} has another version of the suite, "
-                "expected the same everywhere"
+        yield
+    except Exception as error:
+        raise BadInput(f"--scheduler: got {address}, {got} ({_said(error)}), expected {expected}") from None
+
+
+class _Folder:
+    """The folder of one sweep: made if it is not there, gone on with if it holds the same one.
+
+    Raises:
+        OutputError: it holds something else; nothing is written yet.
+    """
+
+    def __init__(self, root: Path, plan: Plan) -> None:
+        self.root, self._plan, self._parts = root, plan, root / "parts"
+        self._table, self._manifest = root / TABLE, _manifest_of(plan)
+        _require_usable(root, self._manifest)
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Hold the folder for one run, within which it may be written to.
+
+        Raises:
+            OutputError: it cannot be written to, or another run is at work in it.
+        """
+        files.require_writable_folder(self.root)
+        with _locked(self.root):
+            self._clean()
+            if _require_usable(self.root, self._manifest):
+                content = json.dumps(self._manifest, indent=2) + "\n"
+                files.write_whole(self.root / MANIFEST, content.encode())
+            yield
+
+    def missing(self) -> list[int]:
+        """Return the numbers of the chunks that are not there yet."""
+        if self._table.is_file():
+            return []
+        return [number for number in range(self._plan.chunks) if not self._part(number).is_file()]
+
+    def write(self, number: int, table: pa.Table) -> None:
+        """Keep the rows of one chunk; OutputError where they cannot be written."""
+        self._parts.mkdir(exist_ok=True)
+        with whole_file(self._part(number)) as stream:
+            pq.write_table(table, stream)
+
+    def finish(self, *, csv: bool) -> None:
+        """Make the table of the parts, one after the other, and remove them; OutputError if it cannot be."""
+        parts = [self._part(number) for number in range(self._plan.chunks)]
+        if not self._table.is_file():
+            with whole_file(self._table) as stream:
+                _stream(map(pq.read_table, parts), lambda schema: pq.ParquetWriter(stream, schema))
+        if csv and not (self.root / CSV).is_file():
+            with whole_file(self.root / CSV) as stream, pq.ParquetFile(self._table) as source:
+                groups = (_flat(source.read_row_group(i)) for i in range(source.num_row_groups))
+                _stream(groups, lambda schema: pa_csv.CSVWriter(stream, schema))
+        for part in parts:
+            part.unlink(missing_ok=True)
+        if self._parts.is_dir():
+            self._parts.rmdir()
+
+    def _clean(self) -> None:
+        """Remove what a run that was killed has left half-written."""
+        left = [path for name in (MANIFEST, TABLE, CSV) for path in self.root.glob(f".{name}.*")]
+        for path in (*left, *self._parts.glob(".part-*")):
+            path.unlink()
+
+    def _part(self, number: int) -> Path:
+        return self._parts / f"part-{number:08d}.parquet"
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Lock a folder for one run; OutputError if another run has it. Windows cannot lock folders."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        reason = "got a folder where another run is at work, expected it to end first"
+        raise OutputError(f"{folder}: {reason}") from None
+    finally:
+        os.close(handle)
+
+
+def _manifest_of(plan: Plan) -> dict[str, Any]:
+    """Return what the table follows from, and what its columns are; without date or place."""
+    content = json.loads(json.dumps(plan.content))
+    columns = {POINT: "number of the point, from 0"}
+    columns |= dict.fromkeys(plan.columns, "varied; unit as in the name of the key")
+    columns |= {STATUS: "converged, not_converged, refused or failed", REASON: "why, or a remark; else empty"}
+    columns |= {name: quantity.meaning for name, quantity in stored(plan.task).items()}
+    return {
+        "inputs_sha256": _sha256(json.dumps(content, sort_keys=True)),
+        "inputs": content,
+        "suite": suite(),
+        "versions": {name: version(name) for name in LIBRARIES},
+        "columns": columns,
+    }
+
+
+def suite() -> dict[str, str]:
+    """Return which version of the suite this is: its number, and a hash of what the numbers follow from."""
+    source = "".join(source_hash(module) for module in SOURCES)
+    return {"version": version(SUITE), "source_sha256": _sha256(source)}
+
+
+def _require_usable(root: Path, manifest: dict[str, Any]) -> bool:
+    """Return whether the folder is new; OutputError unless it is that, empty, or of the same sweep."""
+    if root.exists() and not root.is_dir():
+        raise OutputError(f"{root}: got a file, expected a folder")
+    path, prefix = root / MANIFEST, temporary_prefix(root / MANIFEST)
+    if not root.exists() or all(each.name.startswith(prefix) for each in root.iterdir()):
+        return True
+    if not path.is_file():
+        raise OutputError(f"{root}: got a folder with other files, expected an empty one or that of a sweep")
+    try:
+        former = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise OutputError(f"{path}: cannot be read, expected what a sweep has written there") from None
+    for part in ("inputs", "versions", "suite"):
+        if former.get(part) != manifest[part]:
+            changed = _difference(former.get(part) or {}, manifest[part])
+            what = f"another {changed}" if part == "inputs" else f"{part} that differ ({changed})"
+            raise OutputError(
+                f"{root}: got a sweep with {what}, expected the same as before, or another folder"
             )
+    return False
 
 
-def _require_scheduler(address: str, timeout: float) -> None:
-    """Raise BadInput unless a scheduler answers there; a client that waits in vain takes long to give up."""
-    from distributed.core import rpc
+def _difference(former: dict[str, Any], now: dict[str, Any]) -> str:
+    """Return the first key, with dots, under which two documents differ."""
+    for key in [*now, *former]:
+        one, other = former.get(key), now.get(key)
+        if one != other and isinstance(one, dict) and isinstance(other, dict):
+            return f"{key}.{_difference(one, other)}"
+        if one != other:
+            return key
+    return "order of keys"
 
-    async def asked() -> str:
-        async with rpc(address, timeout=timeout) as scheduler:
-            return str((await scheduler.identity())["type"])
 
-    async def within() -> str:
-        return await asyncio.wait_for(asked(), timeout)
+def _flat(table: pa.Table) -> pa.Table:
+    """Return a table with its lists as texts, as CSV has none."""
+    for place, column in enumerate(table.schema):
+        if pa.types.is_list(column.type):
+            texts = pa.array([json.dumps(each) for each in table[place].to_pylist()])
+            table = table.set_column(place, column.name, texts)
+    return table
 
-    try:
-        found = asyncio.run(within())
-        reason = "" if found == "Scheduler" else f"there is a {found}"
-    except Exception as error:  # of the network, of names, of whatever else may listen there
-        reason = (str(error).splitlines() or [type(error).__name__])[0] or type(error).__name__
-    if reason:
-        raise BadInput(
-            f"--scheduler: got {address}, where no scheduler answers within {timeout:g} s ({reason}), "
-            "expected an address as tcp://HOST:PORT"
-        )
+
+def _stream(tables: Iterator[pa.Table], writer_of: Any) -> None:
+    """Write tables one after the other by the writer that is made for their schema."""
+    first = next(tables)
+    with writer_of(first.schema) as writer:
+        for table in chain((first,), tables):
+            writer.write_table(table)
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

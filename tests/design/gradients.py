@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from studies.design.programme import Programme
+from studies.design.optimise import Programme
 from tests.models import extrapolated
 
 #: First step of differences, of a variable's bounds, and how often it is halved.

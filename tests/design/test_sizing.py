@@ -8,8 +8,7 @@ import pytest
 
 from studies.cases.design import document_of
 from studies.design.evaluate import CENTRE_SHIFT, VARIATION, PathEnds
-from studies.design.optimise import numbered, optimise, search
-from studies.design.programme import OUTSIDE, Programme
+from studies.design.optimise import OUTSIDE, Programme, numbered, optimise, search
 from studies.design.question import Question
 from studies.design.sizing import (
     AGAIN,

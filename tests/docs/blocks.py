@@ -127,7 +127,7 @@ class Runner:
             return
         path.write_text(source if whole else f"{table_1}\n{source}", encoding="utf-8")
         sweep = "[vary]" in source
-        reader = "sweep.read import read_plan" if sweep else "cases.design import read_design"
+        reader = "sweep.plan import read_plan" if sweep else "cases.design import read_design"
         read = f"from studies.{reader} as read; read({path.name!r})"
         self._command(f'python -c "{read}"')
 

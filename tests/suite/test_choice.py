@@ -15,8 +15,8 @@ from studies.answers.strength import strength
 from studies.cases.design import read_design
 from studies.cases.document import parsed
 from studies.cases.problem import named_case
+from studies.sweep.plan import plan_of
 from studies.sweep.points import solve_chunk
-from studies.sweep.read import plan_of
 from tests.suite.refused import FINDS
 
 CLAMPED = FINDS / "clamped_mechanism.toml"

@@ -17,7 +17,7 @@ from studies.cases.rules import Key, Rule
 from studies.commands.case import MECHANISM, PIVOT, SHOWN
 from studies.record.source import ROOT
 from studies.registry import COMMANDS
-from studies.sweep.plan import known
+from studies.sweep.varied import known
 from tests.suite.refused import CHANGED, FILES, WORDS
 
 HUGE = f"1{'0' * 400}"

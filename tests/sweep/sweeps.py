@@ -6,8 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from studies.sweep.plan import Plan
-from studies.sweep.read import plan_of
+from studies.sweep.plan import Plan, plan_of
 from studies.sweep.run import Pool
 
 #: Twelve pivots over two settings.

@@ -12,7 +12,7 @@ import pytest
 
 from studies.errors import BadInput
 from studies.record.source import ROOT
-from studies.sweep.read import read_plan
+from studies.sweep.plan import read_plan
 from studies.sweep.run import cluster, sweep
 from tests.sweep.sweeps import RANDOM
 
@@ -62,7 +62,7 @@ def test_workers_of_another_version_are_refused(monkeypatch):
     with loopback(1) as other:
         with cluster(other.scheduler_address) as pool:
             assert pool.workers == 1
-        monkeypatch.setattr("studies.sweep.parts.source_hash", lambda module: "other")
+        monkeypatch.setattr("studies.sweep.run.source_hash", lambda module: "other")
         with pytest.raises(BadInput, match="another version of the suite"), cluster(other.scheduler_address):
             pass
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from studies.record.source import ROOT
-from studies.sweep.read import read_plan
+from studies.sweep.plan import read_plan
 from tests.sweep.sweeps import RANDOM
 
 EXAMPLES = sorted((ROOT / "studies" / "sweep" / "examples").glob("*.toml"))

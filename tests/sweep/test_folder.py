@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from studies.record.files import OutputError
-from studies.sweep import parts, run
+from studies.sweep import run
 from studies.sweep.points import solve_chunk
 from studies.sweep.run import SweepError, local_pool, sweep
 from tests.sweep.sweeps import GRID, RANDOM, plan, within
@@ -131,12 +131,12 @@ def test_another_sweep_asks_for_another_folder(change, words, whole):
 
 def test_other_code_or_libraries_ask_for_another_folder(whole, monkeypatch):
     """Requirement: points of different versions never stand in one table."""
-    real = parts.version
-    monkeypatch.setattr(parts, "version", lambda name: "0.0" if name == "numba" else real(name))
+    real = run.version
+    monkeypatch.setattr(run, "version", lambda name: "0.0" if name == "numba" else real(name))
     with pytest.raises(OutputError, match=r"versions that differ \(numba\)"):
         sweep(plan(RANDOM), whole, pool=within())
-    monkeypatch.setattr(parts, "version", real)
-    monkeypatch.setattr(parts, "source_hash", lambda module: "other")
+    monkeypatch.setattr(run, "version", real)
+    monkeypatch.setattr(run, "source_hash", lambda module: "other")
     with pytest.raises(OutputError, match=r"suite that differ \(source_sha256\)"):
         sweep(plan(RANDOM), whole, pool=within())
 
