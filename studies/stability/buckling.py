@@ -22,7 +22,6 @@ from studies.record.store import Digits
 from studies.stability.verdict import (
     ARCS,
     CHECK,
-    DEFAULT,
     FE,
     REFINED,
     TOLERANCE,
@@ -161,7 +160,7 @@ def _difference(found: float, reference: float) -> float:
 PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 #: Models that follow them.
-PUSHED = (DEFAULT, TWELVE, FE)
+PUSHED = (TWELVE, FE)
 
 
 def _branch(depth: float, model: str, branch: str) -> Answer:
