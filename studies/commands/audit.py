@@ -28,7 +28,7 @@ from studies.commands.answer import deliver, not_converged
 from studies.commands.columns import cell
 from studies.commands.parser import Argument, command, positive, whole_number
 from studies.effects.audit import Audit, audit
-from studies.effects.scenes import Outcome
+from studies.effects.scenes import Scene
 from studies.errors import Unanswered
 from studies.record.progress import Bar
 
@@ -60,11 +60,11 @@ def _document(found: Audit) -> dict[str, Any]:
         "settings": found.run.settings.keywords(),
         "duration_s": found.run.duration,
         "step_s": found.run.step,
-        "full": found.row(found.full),
-        "rows": [found.row(row) for row in found.rows],
-        "tried": [found.row(row) for row in found.tried],
+        "full": found.full.row(found.full),
+        "rows": [row.row(found.full) for row in found.rows],
+        "tried": [row.row(found.full) for row in found.tried],
         "beyond": found.beyond,
-        "cheapest": found.row(found.cheapest),
+        "cheapest": found.cheapest.row(found.full),
         "full_wall_s": found.full.wall_s,
     }
 
@@ -72,7 +72,7 @@ def _document(found: Audit) -> dict[str, Any]:
 def _readable(found: Audit) -> Iterator[str]:
     """Yield the lines of a table, and the cheapest scene."""
     run = found.run
-    yield f"full scene: {', '.join(found.full.variant.effects.names)}"
+    yield f"full scene: {', '.join(found.full.effects.names)}"
     yield f"static path and {1e3 * run.duration:.3g} ms of motion in steps of {run.step:.2g} s; changes to it"
     head = f"{'path':>9}{'torque':>9}{'swing':>10}{'1st mode':>10}{'loss':>10}"
     yield f"{'scene':<28}{head}{'time':>8}{'unknowns':>9}{'DOF':>5}{'highest Hz':>12}{'step s':>9}"
@@ -88,21 +88,21 @@ def _readable(found: Audit) -> Iterator[str]:
         answer = f"{price['status'].replace('_', ' ')}: {price['reason']}" if price["reason"] else cells
         yield f"{'with ' + price['effect'].replace('_', ' '):<28}{answer}"
     yield ""
-    if not best.variant.dropped:
+    if not best.dropped:
         yield f"no cheaper scene is within {found.tolerance:g}"
         return
-    yield f"cheapest within {found.tolerance:g}: {', '.join(best.variant.effects.names)}"
-    yield f"that is: {best.variant.label}"
+    yield f"cheapest within {found.tolerance:g}: {', '.join(best.effects.names)}"
+    yield f"that is: {best.label}"
     yield _line(found, best)
-    ratio = found.row(best)["time_ratio"]
+    ratio = best.row(found.full)["time_ratio"]
     yield f"largest change {best.largest:.2g}, {ratio:.2f} times as fast as the full scene"
 
 
-def _line(found: Audit, row: Outcome) -> str:
-    label = f"{row.variant.label if len(row.variant.dropped) < 2 else 'all of these':<28}"
+def _line(found: Audit, row: Scene) -> str:
+    label = f"{row.label if len(row.dropped) < 2 else 'all of these':<28}"
     if not row.size:
         return f"{label} {row.status.replace('_', ' ')}: {row.reason}"
-    shown = found.row(row)
+    shown = row.row(found.full)
     cells = f"{cell(shown['trajectory'], 9)}{cell(shown['torque'], 9)}"
     cells += "".join(cell(shown[name], 10, sign="+") for name in ("swing_frequency", "first_mode", "loss"))
     extent = f"{shown['unknowns']:9d}{shown['degrees_of_freedom']:5d}"
