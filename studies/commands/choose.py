@@ -21,7 +21,7 @@ from studies.cost import tried
 from studies.cost.tried import PATH_ERRORS, PATH_JUDGED
 from studies.effects import audit as effects
 from studies.effects.audit import CHANGED, Audit
-from studies.effects.scenes import CHANGES, SIZES, Outcome
+from studies.effects.scenes import CHANGES, SIZES, Scene
 from studies.errors import BadInput, Unanswered
 from studies.record import style
 from studies.record.files import require_writable_folder, write_all
@@ -207,11 +207,11 @@ def _document_of_audit(found: Audit) -> dict[str, Any]:
         "settings": found.run.settings.keywords(),
         "duration_s": found.run.duration,
         "step_s": found.run.step,
-        "full": found.row(found.full),
-        "rows": [found.row(row) for row in found.rows],
-        "tried": [found.row(row) for row in found.tried],
+        "full": found.full.row(found.full),
+        "rows": [row.row(found.full) for row in found.rows],
+        "tried": [row.row(found.full) for row in found.tried],
         "beyond": found.beyond,
-        "cheapest": found.row(found.cheapest),
+        "cheapest": found.cheapest.row(found.full),
         "full_wall_s": found.full.wall_s,
     }
 
@@ -219,27 +219,27 @@ def _document_of_audit(found: Audit) -> dict[str, Any]:
 def _readable_of_audit(found: Audit) -> Iterator[str]:
     """Yield the lines of a table, and the cheapest scene."""
     run, best = found.run, found.cheapest
-    yield f"full scene: {', '.join(found.full.variant.effects.names)}"
+    yield f"full scene: {', '.join(found.full.effects.names)}"
     yield f"static path and {1e3 * run.duration:.3g} ms of motion in steps of {run.step:.2g} s; changes to it"
     yield from _scenes(found, (found.full, *found.rows))
     yield ""
     labels = ("with " + price["effect"].replace("_", " ") for price in found.beyond)
     yield from _table_of_audit("neglected by planar beams", labels, found.beyond, CHANGED)
     yield ""
-    if not best.variant.dropped:
+    if not best.dropped:
         yield f"no cheaper scene is within {found.tolerance:g}"
         return
-    yield f"cheapest within {found.tolerance:g}: {', '.join(best.variant.effects.names)}"
-    yield f"that is: {best.variant.label}"
+    yield f"cheapest within {found.tolerance:g}: {', '.join(best.effects.names)}"
+    yield f"that is: {best.label}"
     yield from _scenes(found, (best,))
-    ratio = found.row(best)["time_ratio"]
+    ratio = best.row(found.full)["time_ratio"]
     yield f"largest change {best.largest:.2g}, {ratio:.2f} times as fast as the full scene"
 
 
-def _scenes(found: Audit, outcomes: Sequence[Outcome]) -> Iterator[str]:
+def _scenes(found: Audit, outcomes: Sequence[Scene]) -> Iterator[str]:
     """Yield the lines of a table of scenes, several effects without their names."""
-    labels = (each.variant.label if len(each.variant.dropped) < 2 else "all of these" for each in outcomes)
-    rows = [found.row(each) for each in outcomes]
+    labels = (each.label if len(each.dropped) < 2 else "all of these" for each in outcomes)
+    rows = [each.row(found.full) for each in outcomes]
     return _table_of_audit("scene", labels, rows, (*CHANGES, "time_ratio", *SIZES))
 
 

@@ -18,17 +18,8 @@ from studies.cases.problem import named_case
 from studies.engine import Claim, Part, Row, Study, Tables, percent
 from studies.kinds import Progress
 from studies.paper.formulations import FE, LOOKS, SIX, refined
-from studies.record.panels import (
-    CONTROL_POINTS,
-    MESH,
-    STRIP_POINTS,
-    Axis,
-    Curves,
-    Doubt,
-    HeatMap,
-    Panel,
-    sheet,
-)
+from studies.record import panels
+from studies.record.panels import Axis, Curves, Doubt, Panel, sheet
 from studies.record.progress import silent, watched
 from studies.record.style import ELEMENTS, STRETCH, Look
 
@@ -131,8 +122,8 @@ def drawn(splines: pd.DataFrame, elements: pd.DataFrame, limit: Reference) -> Fi
         most = np.fmax(splines[column].max(), elements[column].max())
         y = Axis(column, f"error of the {quantity} [1]", log=True, limits=(least / 10.0, 2.0 * most))
         doubt = Doubt(least)
-        above.append(Panel(CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))
-        below.append(Panel(MESH, y, (Curves(elements, LOOKS[FE]), doubt)))
+        above.append(Panel(panels.CONTROL_POINTS, y, (Curves(splines, LOOKS[SIX]), doubt)))
+        below.append(Panel(panels.MESH, y, (Curves(elements, LOOKS[FE]), doubt)))
     above[0], below[0] = replace(above[0], title="spline"), replace(below[0], title="finite elements")
     return sheet(11.5, 6.0, (above, below))
 
@@ -225,7 +216,7 @@ def _lines(tables: Tables) -> Figure:
         doubt = Doubt(float(limits["uncertainty"][limits["quantity"] == quantity].max()))
         refined_by = (rows[rows["segments"] == 1], rows[rows["control_points"] == EACH])
         forms = [Curves(each, STRETCH, by=("stretch", "measure")) for each in refined_by]
-        lines.append([Panel(STRIP_POINTS, y, (curves, doubt)) for curves in forms])
+        lines.append([Panel(panels.STRIP_POINTS, y, (curves, doubt)) for curves in forms])
     titles = ["one segment, more control points", f"more segments of {EACH} control points"]
     return sheet(9.5, 6.6, lines, columns=titles, legend=3)
 
@@ -235,14 +226,14 @@ def _maps(tables: Tables) -> Figure:
     rows = tables["map"].query("stretch == 'mixed' and measure == 'material'")
     modes = Axis("axial_modes", "axial-force modes a segment, m", ticks=range(1, max(COUNTS[1])))
     points = Axis("control_points", "control points a segment, n", each=True)
-    panels = []
+    shown = []
     for segments, title in zip(COUNTS, ("one segment", "two segments"), strict=True):
         mine = rows[rows["segments"] == segments]
-        errors = HeatMap(rows=mine, column="error_torque", limits=(1e-10, 1.0))
+        errors = panels.HeatMap(rows=mine, column="error_torque", limits=(1e-10, 1.0))
         rings = Curves(_default_modes(mine), RING, more={"markersize": 15})
-        panels.append(Panel(points, modes, (errors, rings), title=title))
+        shown.append(Panel(points, modes, (errors, rings), title=title))
     title = "Numbers: decimal exponent of the error; rings: the default m = n - 2; x: not converged"
-    return sheet(9.5, 4.4, [panels], title=title, colours="largest error of the torque [1]")
+    return sheet(9.5, 4.4, [shown], title=title, colours="largest error of the torque [1]")
 
 
 def _forms(tables: Tables) -> Iterator[Row]:

@@ -7,7 +7,6 @@ reaches a level, and keeps it at finer meshes or steps, over the fastest spline 
 
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -29,10 +28,11 @@ from studies.engine import Answer, Part, Row, Study, Tables
 from studies.kinds import Array
 from studies.paper.formulations import DURATION, INSTANTS
 from studies.record.panels import Axis, Curves, Level, Panel, sheet
+from studies.record.progress import measure
 from studies.record.source import ROOT
 
 #: What paths and swings are judged by, and the errors at which their times are compared [1] and [rad].
-JUDGED = {"paths": tried.PATH_JUDGED, "swings": ("rotation_rad",)}
+JUDGED = {"paths": tried.PATH_JUDGED, "swings": tried.SWING_JUDGED}
 LEVELS = {"paths": (1e-1, 1e-2, 1e-3, 2e-4, 1e-5, 1e-6), "swings": (1e-1, 2e-2, 1e-2, 5e-3, 2e-3)}
 #: A limit must be this much more certain than the level that errors against it are compared at.
 CERTAINTY = 2.0
@@ -114,9 +114,7 @@ def _apart(name: str, found: pd.DataFrame) -> dict[str, pd.DataFrame]:
 
 def _joined(tables: Tables, name: str) -> pd.DataFrame:
     """Return errors and times in one table."""
-    rows = tables[name].assign(setting=tables[name]["setting"].fillna(""))
-    times = tables[f"{name[:-1]}_times"]
-    return rows.merge(times.assign(setting=times["setting"].fillna("")), on=[*WHICH], how="left")
+    return tables[name].merge(tables[f"{name[:-1]}_times"], on=[*WHICH], how="left")
 
 
 def _ratios(name: str, tables: Tables) -> Iterator[Row]:
@@ -150,19 +148,15 @@ WAITED = {
     "80 elements": ("--model", "fe", "--elements", "80"),
 }
 #: Runs of a command.
-COMMANDS = 5
+COMMANDS = 3
 
 
 def _waited(label: str) -> Answer:
     """Return what a user waits for a command, which loads everything."""
     command = [sys.executable, "-m", "studies", "solve", TABLE_1, *WAITED[label]]
-    whole = []
-    for _ in range(COMMANDS):
-        begin = time.perf_counter()
-        subprocess.run(command, cwd=ROOT, capture_output=True, check=True)
-        whole.append(time.perf_counter() - begin)
-    wait = {"model": label, "whole_s": float(np.median(whole)), "runs": len(whole)}
-    return {"waits_of_time": wait}
+    asked = partial(subprocess.run, command, cwd=ROOT, capture_output=True, check=True)
+    timed = measure(asked, repeat=COMMANDS, warm_up=0)
+    return {"waits_of_time": {"model": label, "whole_s": timed.median, "runs": COMMANDS}}
 
 
 def _figure(tables: Tables) -> Figure:

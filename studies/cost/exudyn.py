@@ -42,10 +42,10 @@ What was tried on Table 1, for the whole path of 20 increments:
 import contextlib
 import importlib.util
 import io
+import re
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -73,38 +73,132 @@ EVERY_STEP = 1e-12
 CONTRACTION = 0.1
 
 
-@dataclass(frozen=True, kw_only=True)
-class System:
-    """One pivot in Exudyn: its modules and numbers of what is asked later."""
+class _System:
+    """One pivot in Exudyn.
 
-    exu: Any
-    container: Any
-    mbs: Any
-    body: int
-    drive: int
-    place: int
-    reaction: int
+    Attributes:
+        exu, mbs: Exudyn, and the system of bodies. zero: marker of a coordinate that is zero.
+        body, drive, place, reaction: numbers of the body's node, of the constraint of its rotation, and of
+            the sensors of its coordinates and of the torque.
+    """
+
+    def __init__(self, strip: "_Strip", problem: Problem, elements: int) -> None:
+        self.exu, self._items = _loaded()
+        self._container = self.exu.SystemContainer()
+        self.mbs = self._container.AddSystem()
+        at_rest, kinds = geometry_of(problem), self.exu.OutputVariableType
+        self.body = self.add("NodeRigidBody2D", referenceCoordinates=[*at_rest.centre, 0.0])
+        inertia = {"mass": problem.body_mass, "inertia": problem.body_moment_of_inertia}
+        self.add("ObjectRigidBody2D", nodeNumber=self.body, **inertia)
+        self.zero = self.add("MarkerNodeCoordinate", nodeNumber=self.add("NodePointGround"), coordinate=0)
+        for root, direction, tip in zip(at_rest.root, at_rest.direction, at_rest.tip, strict=True):
+            places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
+            self._attach(tip - at_rest.centre, *strip(self, problem, places, direction))
+        self.drive = self.hold(self.body, 2)
+        coordinates = {"storeInternal": True, "outputVariableType": kinds.Coordinates}
+        self.place = self.add("SensorNode", nodeNumber=self.body, **coordinates)
+        force = {"storeInternal": True, "outputVariableType": kinds.Force}
+        self.reaction = self.add("SensorObject", objectNumber=self.drive, **force)
+        self.mbs.Assemble()
+
+    def add(self, kind: str, **values: Any) -> int:
+        """Add a node, object, marker or sensor of that class; return its number."""
+        (group,) = re.findall("^(?:Node|Object|Marker|Sensor)", kind)
+        number: int = getattr(self.mbs, f"Add{group}")(getattr(self._items, kind)(**values))
+        return number
+
+    def hold(self, node: int, coordinate: int) -> int:
+        """Hold one coordinate of a node where it is at rest; return the number of the constraint."""
+        marker = self.add("MarkerNodeCoordinate", nodeNumber=node, coordinate=coordinate)
+        return self.add("ObjectConnectorCoordinate", markerNumbers=[self.zero, marker], offset=0.0)
+
+    def _attach(self, place: Array, last: int, angle: float) -> None:
+        """Join the node `last`, of axes at `angle` [rad], rigidly to the body, at `place` from its centre."""
+        cosine, sine = np.cos(angle), np.sin(angle)
+        axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        there = self.exu.HT(rotation=axes, translation=[*place, 0.0])
+        markers = [
+            self.add("MarkerBodyRigid", bodyNumber=0, localHT=there),
+            self.add("MarkerNodeRigid", nodeNumber=last),
+        ]
+        self.add("ObjectJointGeneric", markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1])
+
+    def settings(self, solver: str, steps: int, tolerance: float) -> tuple[Any, Any]:
+        """Return settings of a run of fixed steps that writes no file, keeps every step in the sensors, and
+        has the faster linear solver for the number of coordinates; and those of `solver` among them."""
+        asked = self.exu.SimulationSettings()
+        asked.solution.file.write = False
+        asked.solution.sensors.writePeriod = EVERY_STEP
+        own = getattr(asked, solver)
+        own.verboseMode = own.stepInformation = 0
+        own.adaptiveStep = False
+        own.newton.useModifiedNewton = True
+        own.newton.relativeTolerance = tolerance
+        setattr(own, "numberOfLoadSteps" if solver == "staticSolver" else "numberOfSteps", steps)
+        kinds, data = self.exu.LinearSolverType, self.mbs.systemData
+        sparse = data.ODE2Size() + data.AEsize() >= SPARSE_FROM
+        asked.linearSolver.solverType = kinds.EigenSparse if sparse else kinds.EigenDense
+        asked.linearSolver.reuseAnalyzedPattern = sparse
+        return asked, own
+
+    def drive_through(self, turns: Array, tolerance: float, *, modified: bool = True) -> float:
+        """Solve the static path through rotations (S,) [rad] by modified or full Newton iterations; return
+        what its steps took [s]."""
+        asked, static = self.settings("staticSolver", len(turns) - 1, tolerance)
+        static.computeLoadsJacobian = 0
+        static.newton.modifiedNewtonContractivity = CONTRACTION
+        static.newton.useModifiedNewton = modified
+
+        def before_step(mbs: Any, load_factor: float) -> bool:
+            mbs.SetObjectParameter(self.drive, "offset", turns[round(load_factor * (len(turns) - 1))])
+            return True
+
+        self.mbs.SetPreStepUserFunction(before_step)
+        return self.run(self.exu.MainSolverStatic(), asked)
+
+    def release_at(self, start: float) -> None:
+        """Drive the body to `start` [rad] and release it there, at rest."""
+        count = max(1, int(np.ceil(abs(start) / INCREMENT)))
+        self.drive_through(np.linspace(0.0, start, count + 1), START_TOLERANCE, modified=False)
+        data = self.mbs.systemData
+        initial = self.exu.ConfigurationType.Initial
+        data.SetSystemState(systemStateList=data.GetSystemState(), configuration=initial)
+        self.mbs.SetObjectParameter(self.drive, "activeConnector", False)
+        self.mbs.SetPreStepUserFunction(0)
+
+    def run(self, solver: Any, asked: Any) -> float:
+        """Run a solver and return what its steps took [s]; raises Unanswered unless it reaches the end."""
+        try:
+            solver.InitializeSolver(self.mbs, asked)
+            begin = time.perf_counter()
+            reached = solver.SolveSteps(self.mbs, asked)
+            seconds = time.perf_counter() - begin
+            solver.FinalizeSolver(self.mbs, asked)
+        except (self.exu.SolverError, RuntimeError, ValueError) as error:
+            raise Unanswered(f"Exudyn: {str(error).splitlines()[0]}") from None
+        if not reached:
+            raise Unanswered(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
+        return seconds
 
     def stored(self, sensor: int) -> Array:
         """Return the values (T, 1 + K) of a sensor in the last run: time [s] or load factor [1], K values."""
         return np.array(self.mbs.GetSensorStoredData(sensor))
 
 
-def _path(
-    system_of: Callable[..., System],
-    problem: Problem,
-    *,
-    relative_tolerance: float = 1e-8,
-    **settings: Any,
-) -> SolvedPath:
+#: Adds a strip with its clamp to the pivot, elements between places (E + 1, 2) [m] along a direction (2,);
+#: returns the number of the last node and the angle of its axes at rest [rad].
+_Strip = Callable[[_System, Problem, Array, Array], tuple[int, float]]
+
+
+def _path(strip: _Strip, problem: Problem, *, elements: int, relative_tolerance: float = 1e-8) -> SolvedPath:
     """Return the path, one load step an increment.
 
     Args:
-        system_of: makes the system of a pivot and of the settings of its strips.
+        strip: adds a strip. elements: of it [1].
         relative_tolerance: of Newton's residual against that at the step's start [1].
     """
-    system, turns = system_of(problem, **settings), turns_of(problem)
-    seconds = _driven(system, _static(system, len(turns) - 1, relative_tolerance), turns)
+    system, turns = _System(strip, problem, elements), turns_of(problem)
+    seconds = system.drive_through(turns, relative_tolerance)
     moved, torque = (system.stored(sensor) for sensor in (system.place, system.reaction))
     rest = np.array(system.mbs.GetNode(system.body)["referenceCoordinates"][:2])
     centre = moved[:, 1:3] + rest
@@ -112,14 +206,14 @@ def _path(
 
 
 def _swing(
-    system_of: Callable[..., System],
+    strip: _Strip,
     problem: Problem,
     duration: float,
     *,
+    elements: int,
     step: float,
     relative_tolerance: float = 1e-4,
     spectral_radius: float = 0.9,
-    **settings: Any,
 ) -> SolvedMotion:
     """Return the motion by generalised-alpha in steps of `step` [s].
 
@@ -127,87 +221,14 @@ def _swing(
         spectral_radius: at infinite frequency, 0 to 1. The others as of `_path`.
     """
     steps = steps_of(duration, step)
-    system = system_of(problem, **settings)
-    _hold_at(system, problem.rotation)
-    asked, solver = _quiet(system), system.exu.MainSolverImplicitSecondOrder()
-    moving = asked.timeIntegration
-    moving.endTime, moving.numberOfSteps, moving.verboseMode = duration, steps, 0
+    system = _System(strip, problem, elements)
+    system.release_at(problem.rotation)
+    asked, moving = system.settings("timeIntegration", steps, relative_tolerance)
+    moving.endTime = duration
     moving.generalizedAlpha.spectralRadius = spectral_radius
-    _tune(system, asked, moving, relative_tolerance)
-    seconds = _run(system, solver, asked)
+    seconds = system.run(system.exu.MainSolverImplicitSecondOrder(), asked)
     record = system.stored(system.place)
     return SolvedMotion(time=record[:, 0], rotation=record[:, 3], solve_s=seconds)
-
-
-def _hold_at(system: System, start: float) -> None:
-    """Drive the body to `start` [rad] and release it there, at rest."""
-    count = max(1, int(np.ceil(abs(start) / INCREMENT)))
-    asked = _static(system, count, START_TOLERANCE)
-    asked.staticSolver.newton.useModifiedNewton = False
-    _driven(system, asked, np.linspace(0.0, start, count + 1))
-    data = system.mbs.systemData
-    held = data.GetSystemState()
-    data.SetSystemState(systemStateList=held, configuration=system.exu.ConfigurationType.Initial)
-    system.mbs.SetObjectParameter(system.drive, "activeConnector", False)
-    system.mbs.SetPreStepUserFunction(0)
-
-
-def _driven(system: System, asked: Any, turns: Array) -> float:
-    """Solve the static path through `turns`; return what its steps took [s]."""
-
-    def before_step(mbs: Any, load_factor: float) -> bool:
-        mbs.SetObjectParameter(system.drive, "offset", turns[round(load_factor * (len(turns) - 1))])
-        return True
-
-    system.mbs.SetPreStepUserFunction(before_step)
-    return _run(system, system.exu.MainSolverStatic(), asked)
-
-
-def _run(system: System, solver: Any, asked: Any) -> float:
-    """Run a solver and return what its steps took [s]; raises Unanswered unless it reaches the end."""
-    try:
-        solver.InitializeSolver(system.mbs, asked)
-        begin = time.perf_counter()
-        reached = solver.SolveSteps(system.mbs, asked)
-        seconds = time.perf_counter() - begin
-        solver.FinalizeSolver(system.mbs, asked)
-    except (system.exu.SolverError, RuntimeError, ValueError) as error:
-        raise Unanswered(f"Exudyn: {str(error).splitlines()[0]}") from None
-    if not reached:
-        raise Unanswered(f"Exudyn: no convergence at load factor or time {solver.it.currentTime:g}")
-    return seconds
-
-
-def _static(system: System, steps: int, tolerance: float) -> Any:
-    """Return the settings of the static solver."""
-    asked = _quiet(system)
-    static = asked.staticSolver
-    static.numberOfLoadSteps = steps
-    static.verboseMode = 0
-    static.computeLoadsJacobian = 0
-    static.newton.modifiedNewtonContractivity = CONTRACTION
-    _tune(system, asked, static, tolerance)
-    return asked
-
-
-def _quiet(system: System) -> Any:
-    """Return settings that write no file and keep every step in the sensors."""
-    asked = system.exu.SimulationSettings()
-    asked.solution.file.write = False
-    asked.solution.sensors.writePeriod = EVERY_STEP
-    return asked
-
-
-def _tune(system: System, asked: Any, solver: Any, tolerance: float) -> None:
-    """Set fixed steps and modified Newton, and the faster linear solver for the number of coordinates."""
-    solver.adaptiveStep = False
-    solver.stepInformation = 0
-    solver.newton.useModifiedNewton = True
-    solver.newton.relativeTolerance = tolerance
-    kinds = system.exu.LinearSolverType
-    size = system.mbs.systemData.ODE2Size() + system.mbs.systemData.AEsize()
-    asked.linearSolver.solverType = kinds.EigenSparse if size >= SPARSE_FROM else kinds.EigenDense
-    asked.linearSolver.reuseAnalyzedPattern = size >= SPARSE_FROM
 
 
 def _loaded() -> tuple[Any, Any]:
@@ -220,142 +241,61 @@ def _loaded() -> tuple[Any, Any]:
     return exudyn, items
 
 
-def _system_of(problem: Problem, strip: Callable[..., tuple[int, float]]) -> System:
-    """Return the pivot with the strips that `strip` makes.
+def _rigidities(problem: Problem, elements: int) -> dict[str, float]:
+    """Return what both kinds of elements are given."""
+    return {
+        "length": problem.length / elements,
+        "massPerLength": problem.density * problem.area,
+        "bendingStiffness": problem.youngs_modulus * problem.second_moment_of_area,
+        "axialStiffness": problem.youngs_modulus * problem.area,
+    }
 
-    `strip(items, mbs, ground, root, direction)` adds one with its clamp, `ground` being a marker of a
-    coordinate that is zero, and returns the number of the last node and the angle of its axes at rest [rad].
-    """
-    exu, items = _loaded()
-    at_rest = geometry_of(problem)
-    container = exu.SystemContainer()
-    mbs = container.AddSystem()
-    node = mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*at_rest.centre, 0.0]))
-    body = mbs.AddObject(
-        items.ObjectRigidBody2D(
-            mass=problem.body_mass, inertia=problem.body_moment_of_inertia, nodeNumber=node
-        )
+
+def _cable(system: _System, problem: Problem, places: Array, direction: Array) -> tuple[int, float]:
+    """Add a strip of ANCF cables, its slope held along the strip, whose length is left to stretch."""
+    slopes = [[*place, *direction] for place in places]
+    nodes = [system.add("NodePoint2DSlope1", referenceCoordinates=each) for each in slopes]
+    for pair in pairwise(nodes):
+        system.add("ObjectANCFCable2D", nodeNumbers=list(pair), **_rigidities(problem, len(nodes) - 1))
+    for coordinate in range(2):
+        system.hold(nodes[0], coordinate)
+    clamped = (system.add("NodePointGround"), nodes[0])
+    system.add(
+        "ObjectConnectorCoordinateVector",
+        markerNumbers=[system.add("MarkerNodeCoordinates", nodeNumber=node) for node in clamped],
+        scalingMarker0=[],
+        scalingMarker1=np.array([[0.0, 0.0, -direction[1], direction[0]]]),
+        offset=[0.0],
     )
-    ground = mbs.AddNode(items.NodePointGround())
-    zero = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
-    for k in range(2):
-        last, angle = strip(items, mbs, zero, at_rest.root[k], at_rest.direction[k])
-        _attach(exu, items, mbs, body, at_rest.tip[k] - at_rest.centre, last, angle)
-    turn = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
-    drive = mbs.AddObject(items.CoordinateConstraint(markerNumbers=[zero, turn], offset=0.0))
-    kinds = exu.OutputVariableType
-    place = mbs.AddSensor(
-        items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kinds.Coordinates)
-    )
-    reaction = mbs.AddSensor(
-        items.SensorObject(objectNumber=drive, storeInternal=True, outputVariableType=kinds.Force)
-    )
-    mbs.Assemble()
-    return System(
-        exu=exu, container=container, mbs=mbs, body=node, drive=drive, place=place, reaction=reaction
-    )
+    return nodes[-1], float(np.arctan2(direction[1], direction[0]))
 
 
-def _attach(exu: Any, items: Any, mbs: Any, body: int, place: Array, last: int, angle: float) -> None:
-    """Join the node `last`, of axes at `angle` [rad], rigidly to the body, at `place` from its centre [m]."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    there = exu.HT(rotation=axes, translation=[*place, 0.0])
-    markers = [
-        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localHT=there)),
-        mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=last)),
-    ]
-    mbs.AddObject(items.ObjectJointGeneric(markerNumbers=markers, constrainedAxes=[1, 1, 0, 0, 0, 1]))
+def _beam(system: _System, problem: Problem, places: Array, direction: Array) -> tuple[int, float]:
+    """Add a strip of exact beams, of three nodes each."""
+    shear_modulus = problem.youngs_modulus / (2.0 * (1.0 + problem.poisson_ratio))
+    own = _rigidities(problem, len(places) - 1) | {
+        "crossSectionInertia": problem.density * problem.second_moment_of_area,
+        "shearStiffness": SHEAR_CORRECTION * shear_modulus * problem.area,
+    }
+    halves = np.insert(places, range(1, len(places)), 0.5 * (places[1:] + places[:-1]), axis=0)
+    nodes = [system.add("NodeRigidBody2D", referenceCoordinates=[*place, 0.0]) for place in halves]
+    for first in range(0, len(nodes) - 1, 2):
+        system.add("ObjectBeamGeometricallyExact2D", nodeNumbers=nodes[first : first + 3], **own)
+    for coordinate in range(3):
+        system.hold(nodes[0], coordinate)
+    return nodes[-1], 0.0
 
 
-def _hold(items: Any, mbs: Any, zero: int, node: int, coordinate: int) -> None:
-    """Hold one coordinate of a node where it is at rest."""
-    marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-    mbs.AddObject(items.CoordinateConstraint(markerNumbers=[zero, marker]))
-
-
-def _cables(problem: Problem, *, elements: int = 8) -> System:
-    """Return the pivot with so many ANCF cables a strip [1]."""
-
-    def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
-        places = root + np.linspace(0.0, problem.length, elements + 1)[:, None] * direction
-        nodes = [
-            mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[*place, *direction]))
-            for place in places
-        ]
-        for pair in pairwise(nodes):
-            mbs.AddObject(
-                items.ObjectANCFCable2D(
-                    length=problem.length / elements,
-                    massPerLength=problem.density * problem.area,
-                    bendingStiffness=problem.youngs_modulus * problem.second_moment_of_area,
-                    axialStiffness=problem.youngs_modulus * problem.area,
-                    nodeNumbers=list(pair),
-                )
-            )
-        _clamp(items, mbs, zero, nodes[0], direction)
-        return nodes[-1], float(np.arctan2(direction[1], direction[0]))
-
-    return _system_of(problem, strip)
-
-
-def _clamp(items: Any, mbs: Any, zero: int, node: int, direction: Array) -> None:
-    """Hold the place of the first node, and its slope along `direction`, whose length is left to stretch."""
-    _hold(items, mbs, zero, node, 0)
-    _hold(items, mbs, zero, node, 1)
-    ground = mbs.AddNode(items.NodePointGround())
-    mbs.AddObject(
-        items.ObjectConnectorCoordinateVector(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=ground)),
-                mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)),
-            ],
-            scalingMarker0=[],
-            scalingMarker1=np.array([[0.0, 0.0, -direction[1], direction[0]]]),
-            offset=[0.0],
-        )
-    )
-
-
-def _beams(problem: Problem, *, elements: int = 4) -> System:
-    """Return the pivot with so many exact beams a strip, of three nodes each [1]."""
-    modulus = problem.youngs_modulus
-    shear_modulus = modulus / (2.0 * (1.0 + problem.poisson_ratio))
-
-    def strip(items: Any, mbs: Any, zero: int, root: Array, direction: Array) -> tuple[int, float]:
-        numbers = [
-            mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*(root + s * direction), 0.0]))
-            for s in np.linspace(0.0, problem.length, 2 * elements + 1)
-        ]
-        for first in range(0, 2 * elements, 2):
-            mbs.AddObject(
-                items.ObjectBeamGeometricallyExact2D(
-                    length=problem.length / elements,
-                    massPerLength=problem.density * problem.area,
-                    crossSectionInertia=problem.density * problem.second_moment_of_area,
-                    bendingStiffness=modulus * problem.second_moment_of_area,
-                    axialStiffness=modulus * problem.area,
-                    shearStiffness=SHEAR_CORRECTION * shear_modulus * problem.area,
-                    nodeNumbers=numbers[first : first + 3],
-                )
-            )
-        for coordinate in range(3):
-            _hold(items, mbs, zero, numbers[0], coordinate)
-        return numbers[-1], 0.0
-
-    return _system_of(problem, strip)
-
-
-def _model(name: str, system_of: Callable[..., System], *, sheared: bool = False) -> Model:
-    """Return the model of a pivot whose strips `system_of` makes."""
+def _model(name: str, strip: _Strip, *, sheared: bool = False) -> Model:
+    """Return the model of a pivot whose strips `strip` adds."""
     return Model(
         name=name,
-        path=partial(_path, system_of),
-        swing=partial(_swing, system_of),
+        path=partial(_path, strip),
+        swing=partial(_swing, strip),
         sheared=sheared,
         installed=lambda: importlib.util.find_spec("exudyn") is not None,
     )
 
 
-exudyn_ancf = _model("exudyn ancf", _cables)
-exudyn_exact = _model("exudyn exact", _beams, sheared=True)
+exudyn_ancf = _model("exudyn ancf", _cable)
+exudyn_exact = _model("exudyn exact", _beam, sheared=True)

@@ -6,8 +6,8 @@ increments or steps alone stands beside it. An advice is the cheapest setting of
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Mapping, Sequence
+from itertools import product
 from operator import attrgetter
 from typing import Any
 
@@ -24,7 +24,7 @@ from studies.cost.settings import Setting
 from studies.engine import Row
 from studies.errors import BadInput, Unanswered
 from studies.kinds import Array, Progress
-from studies.record.progress import measure, silent
+from studies.record.progress import measure, silent, watched
 
 #: Theories of a strip, both with bending per reference length: without and with shear.
 THEORIES = MATERIAL, SHEAR = "material", "shear"
@@ -40,14 +40,19 @@ def path_limit(design: Design, theory: str) -> Reference:
     return reference.reference(design, "corotational" if theory == MATERIAL else "reissner")
 
 
-#: Passes through all settings, far apart in time: what else the machine does lasts longer than one setting.
+#: Passes through the settings that are timed again, far apart in time: what else the machine does lasts
+#: longer than one setting.
 PASSES = 3
 #: Time that the runs of a setting may take in a pass [s], and their largest number; what takes longer than
-#: that time at once is timed in one pass alone.
-AFFORDED, RUNS = 0.2, 5
+#: that time at once is timed by its first run alone.
+AFFORDED, RUNS = 0.2, 3
+#: What takes longer than this [s] is timed again only where its first run is within a factor of the fastest
+#: of its group that keeps as small an error: it may still be the cheapest.
+QUICK, RIVAL = 0.03, 2.0
 
-#: Errors of a path, and those that it is judged by first.
+#: Errors of a path, and those that it is judged by first; those of a motion.
 PATH_ERRORS, PATH_JUDGED = ("trajectory", "torque", "stiffness", "stress"), ("trajectory", "torque")
+SWING_JUDGED = ("rotation_rad",)
 
 
 def compared(
@@ -62,53 +67,53 @@ def compared(
     """Return errors [1, rad] and times [s] of the path of a design, or of its motion up to `instants`
     (T,) [s].
 
-    One row per setting; one that fails has no errors.
+    One row per setting: the medians of its times, of whole calls and of what they are without set-up, and how
+    many `runs` they are of. One that fails has no errors.
     """
 
-    def solve(each: Setting) -> Any:
-        if instants is None:
-            return each.model.path(design, **each.settings)
-        return each.model.swing(design, float(instants[-1]), **each.settings)
+    def timed(each: Setting, runs: int, warm_up: int = 0) -> Any:
+        def solve() -> Any:
+            if instants is None:
+                return each.model.path(design, **each.settings)
+            return each.model.swing(design, float(instants[-1]), **each.settings)
 
-    errors = reference.largest_errors if instants is None else reference.swing_errors
+        return measure(solve, repeat=runs, warm_up=warm_up, part=attrgetter("solve_s"))
+
+    on_path = instants is None
+    errors = reference.largest_errors if on_path else reference.swing_errors
     rows: list[Row] = []
-    for done, each in enumerate(settings):
-        progress(done, len(settings))
-        row: Row = {"model": each.model.name, "group": each.group, "setting": each.text}
-        row |= {"theory": each.theory, "family": each.family, "fineness": each.fineness}
+    times: list[list[tuple[float, float]]] = []
+    loaded: set[Any] = set()
+    for each in watched(settings, progress):
+        row, kind = each.columns, (each.model, *each.settings, *each.settings.values())
+        kind = tuple(part for part in kind if not isinstance(part, int | float))
+        times.append([])
         try:
-            answer = solve(each)
+            first = timed(each, 1, warm_up=int(kind not in loaded))
+            found = errors(first.result, limits[each.theory])
+            rows.append(row | {"status": "converged", "message": ""} | found)
+            times[-1] += zip(first.seconds, first.parts, strict=True)
         except (Unanswered, BadInput) as stopped:
             rows.append(row | {"status": "failed", "message": str(stopped)})
-            continue
-        found = errors(answer, limits[each.theory])
-        rows.append(row | {"status": "converged", "message": "", "solver": each} | found)
-    seconds = _times([row["solver"] for row in rows if "solver" in row], solve, passes)
-    progress(len(settings), len(settings))
-    return pd.DataFrame([row | spread(*seconds.get(row.pop("solver", None), ((), ()))) for row in rows])
+        loaded.add(kind)
+    table = pd.DataFrame(rows)
+    judged = PATH_JUDGED if on_path else SWING_JUDGED
+    firsts = [own[0][0] if own else math.nan for own in times]
+    again = _rivals(table.assign(whole_s=firsts), judged)
+    for place in again:  # whose first run has prepared what it depends on
+        times[place].clear()
+    for _, place in product(range(passes), again):
+        more = timed(settings[place], int(min(RUNS, max(1.0, AFFORDED / firsts[place]))))
+        times[place] += zip(more.seconds, more.parts, strict=True)
+    whole, alone = np.transpose([np.median(own or [(math.nan, math.nan)], axis=0) for own in times])
+    return table.assign(whole_s=whole, solve_s=alone, runs=list(map(len, times)))
 
 
-def _times(
-    settings: Iterable[Setting], solve: Callable[[Setting], Any], passes: int
-) -> dict[Setting, tuple[list[float], list[float]]]:
-    """Return times of whole calls, and of their increments or steps alone [s]."""
-    found: dict[Setting, tuple[list[float], list[float]]] = {each: ([], []) for each in settings}
-    for _ in range(passes):
-        for each, (whole, part) in found.items():
-            longest = max(whole, default=0.0)
-            if longest > AFFORDED:
-                continue
-            runs = 1 if not whole else int(min(RUNS, max(1.0, AFFORDED / longest)))
-            timed = measure(partial(solve, each), repeat=runs, warm_up=0, part=attrgetter("solve_s"))
-            whole += timed.seconds
-            part += timed.parts
-    return found
-
-
-def spread(whole: Sequence[float], alone: Sequence[float]) -> dict[str, float]:
-    """Return the medians of whole calls and of what they are without set-up [s], and how many they are."""
-    medians = (float(np.median(each)) if len(each) else math.nan for each in (whole, alone))
-    return dict(zip(("whole_s", "solve_s"), medians, strict=True)) | {"runs": len(whole)}
+def _rivals(rows: pd.DataFrame, judged: Sequence[str]) -> list[int]:
+    """Return the places of the rows that may be the cheapest of their group at some error."""
+    ordered = rows.assign(held=kept(rows, judged)).sort_values(["held", "whole_s"])
+    enough = (RIVAL * ordered.groupby("group")["whole_s"].cummin()).clip(QUICK, AFFORDED)
+    return [int(place) for place in ordered.index[ordered["whole_s"] <= enough]]
 
 
 def kept(rows: pd.DataFrame, judged: Sequence[str]) -> pd.Series:

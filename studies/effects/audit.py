@@ -13,10 +13,10 @@ from studies.cases.design import Design
 from studies.cases.effects import OF_SIDES
 from studies.cases.mechanism import Mechanism
 from studies.cases.problem import Problem
-from studies.effects.scenes import SIZES, Answer, Outcome, Run, Variant, strayed, tried
+from studies.effects.scenes import Answer, Run, Scene, strayed, tried
 from studies.errors import Unanswered
 from studies.kinds import Progress
-from studies.record.progress import silent
+from studies.record.progress import silent, watched
 
 #: Timed rounds of all scenes, one after the other.
 ROUNDS = 3
@@ -38,27 +38,11 @@ class Audit:
 
     tolerance: float
     run: Run
-    full: Outcome
-    rows: tuple[Outcome, ...]
-    tried: tuple[Outcome, ...]
+    full: Scene
+    rows: tuple[Scene, ...]
+    tried: tuple[Scene, ...]
     beyond: list[dict[str, Any]]
-    cheapest: Outcome
-
-    def row(self, of: Outcome) -> dict[str, Any]:
-        """Return a scene as columns of a table: what it is, how it ended, changes and the largest of them,
-        time, time_ratio (of the full scene over its own: above 1 it is faster) and size; NaN for none."""
-        return {
-            "scene": of.variant.label,
-            "dropped": of.variant.dropped,
-            "effects": of.variant.effects.names,
-            "status": of.status,
-            "reason": of.reason,
-            **of.changes,
-            "largest": of.largest if np.isfinite(of.largest) else np.nan,
-            "time_ratio": self.full.wall_s / of.wall_s,
-            "wall_s": of.wall_s,
-            **(of.size or dict.fromkeys(SIZES, np.nan)),
-        }
+    cheapest: Scene
 
 
 def audit(design: Design, settings: SplineSettings, tolerance: float, progress: Progress = silent) -> Audit:
@@ -75,18 +59,18 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     Raises:
         BadInput: the model rejects the full scene. Unanswered: the full scene has no answer.
     """
-    upset = _upsetting(design, settings)
-    scene = Variant.full(design.effects, [row.variant.added[0] for row in upset])
+    own = Scene(effects=design.effects)
+    upset = _upsetting(design, own, settings)
+    added = [scene.added[0] for scene in own.beside() if scene.added not in [each.added for each in upset]]
+    scene = Scene(effects=design.effects.plus(*added))
     run = Run.of(scene.of(design), settings)
     base = run.answer(run.design)
-    full = run.outcome(scene, base)
+    full = run.asked(scene, base)
     names = scene.effects.names
     rows = []
-    for done, name in enumerate(names):
-        progress(done, len(names) + 2)
-        rows.append(run.outcome(scene.without([name]), base))
+    for name in watched(names, lambda done, total: progress(done, total + 2)):
+        rows.append(run.asked(scene.without(name), base))
     tried = [*_fewer(rows, scene, run, base, tolerance)]
-    progress(len(names), len(names) + 2)
     full, *others = _timed([full, *rows, *tried], run)
     progress(len(names) + 1, len(names) + 2)
     return Audit(
@@ -100,45 +84,42 @@ def audit(design: Design, settings: SplineSettings, tolerance: float, progress: 
     )
 
 
-def _upsetting(design: Design, settings: SplineSettings) -> list[Outcome]:
-    """Return a row for each effect beside the design's own that makes a stable design unstable at rest."""
-    rows: list[Outcome] = []
-    for variant in Variant.beside(design.effects):
+def _upsetting(design: Design, own: Scene, settings: SplineSettings) -> list[Scene]:
+    """Return the scenes with an effect beside its own that makes a stable design unstable at rest."""
+    found: list[Scene] = []
+    for scene in own.beside():
         try:
-            Run.of(variant.of(design), settings)
+            Run.of(scene.of(design), settings)
         except Unanswered as error:
             Run.of(design, settings)  # refused for its own sake, if it is
-            rows.append(Outcome(variant=variant, status="unstable", reason=str(error)))
-    return rows
+            found.append(replace(scene, status="unstable", reason=str(error)))
+    return found
 
 
-def _fewer(
-    rows: Sequence[Outcome], scene: Variant, run: Run, full: Answer, tolerance: float
-) -> Iterator[Outcome]:
+def _fewer(rows: Sequence[Scene], scene: Scene, run: Run, full: Answer, tolerance: float) -> Iterator[Scene]:
     """Yield the scene without all effects that can each be removed, then without all but the most important
     of them, and so on until one is within the tolerance."""
     within = sorted((row for row in rows if row.largest <= tolerance), key=lambda row: row.largest)
-    names = [row.variant.dropped[0] for row in within]
+    names = [row.dropped[0] for row in within]
     while names:
-        found = run.outcome(scene.without(names), full)
+        found = run.asked(scene.without(*names), full)
         yield found
         if found.largest <= tolerance:
             return
         names.pop()
 
 
-def _timed(outcomes: Sequence[Outcome], run: Run) -> list[Outcome]:
+def _timed(scenes: Sequence[Scene], run: Run) -> list[Scene]:
     """Return the scenes with their median times of path and motion, taken round by round in turn; slow ones
     keep their first time."""
-    walls: dict[int, list[float]] = {
-        id(each): [] for each in outcomes if each.wall_s <= SLOW * outcomes[0].wall_s
-    }
-    for _, each in product(range(ROUNDS), outcomes):
-        if id(each) in walls:
-            scene = each.variant.of(run.design)
-            motion = answer_release(scene, run.settings, duration=run.duration, step=run.step)
-            walls[id(each)].append(answer_static(scene, run.settings).wall_s + motion.wall_s)
-    return [replace(each, wall_s=float(np.median(walls.get(id(each), each.wall_s)))) for each in outcomes]
+    slow = SLOW * scenes[0].wall_s
+    walls: list[list[float]] = [[] if each.wall_s <= slow else [each.wall_s] for each in scenes]
+    for _, (each, own) in product(range(ROUNDS), list(zip(scenes, walls, strict=True))):
+        if each.wall_s <= slow:
+            design = each.of(run.design)
+            motion = answer_release(design, run.settings, duration=run.duration, step=run.step)
+            own.append(answer_static(design, run.settings).wall_s + motion.wall_s)
+    return [replace(each, wall_s=float(np.median(own))) for each, own in zip(scenes, walls, strict=True)]
 
 
 Either = TypeVar("Either", bound=Problem | Mechanism)

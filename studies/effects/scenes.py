@@ -1,9 +1,9 @@
 """The scenes that an audit compares: effects, sizes, answers, and how far these are from the full one's."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Self, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -33,18 +33,33 @@ TOGETHER = {"strip_inertia": ("section_rotary_inertia",)}
 CALLED = {"stretching": "inextensible strips", "strip_inertia": "massless strips"}
 
 
+#: What says how large a scene is, and what its change against the full one is told by.
+SIZES = ("unknowns", "degrees_of_freedom", "highest_frequency_Hz", "explicit_step_s")
+CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
+
+
 @dataclass(frozen=True, kw_only=True)
-class Variant:
-    """A scene in place of the full one.
+class Scene:
+    """A scene in place of the full one and, once it is asked, how far it is from the answer of the full one.
 
     Attributes:
         dropped: effects of the full scene that were removed or simplified; added: those that were put in
             though the full scene could not have them. effects: of the scene.
+        status: "converged", "refused", "not_converged" or "unstable"; reason: in a line, also why there was
+            no motion.
+        changes: each of `CHANGES` [1], NaN where there is none; trajectory and torque are the largest along
+            the path, over the largest travel and torque.
+        size: of `size_of`; empty where the scene has no answer. wall_s: the median of its times [s].
     """
 
-    dropped: tuple[str, ...]
     effects: Effects
+    dropped: tuple[str, ...] = ()
     added: tuple[str, ...] = ()
+    status: str = "converged"
+    reason: str = ""
+    changes: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CHANGES, math.nan))
+    size: Mapping[str, float] = field(default_factory=dict)
+    wall_s: float = math.nan
 
     @property
     def label(self) -> str:
@@ -53,34 +68,45 @@ class Variant:
         words += [CALLED.get(name, f"no {name.replace('_', ' ')}") for name in self.dropped]
         return ", ".join(words) or "full scene"
 
+    @property
+    def largest(self) -> float:
+        """The largest change of all [1]; infinite where the scene has no whole answer."""
+        if self.status != "converged":
+            return math.inf
+        known = (abs(each) for each in self.changes.values() if not math.isnan(each))
+        return max(known, default=math.inf)
+
     def of(self, design: Design) -> Design:
         """Return the design with this scene."""
         return replace(design, effects=self.effects)
 
-    @classmethod
-    def full(cls, effects: Effects, omitted: Iterable[str] = ()) -> Self:
-        """Return the scene with what could matter beside its own effects, but for what is omitted."""
-        added = [variant.added[0] for variant in cls.beside(effects)]
-        return cls(dropped=(), effects=effects.plus(*(name for name in added if name not in omitted)))
-
-    @classmethod
-    def beside(cls, effects: Effects) -> Iterator[Self]:
+    def beside(self) -> Iterator[Self]:
         """Yield the scene with each effect that it does not have but that could matter."""
         for name, base in BESIDE.items():
-            if name not in effects.names and base in effects.names:
-                yield cls(dropped=(), added=(name,), effects=effects.plus(name))
+            if name not in self.effects.names and base in self.effects.names:
+                yield replace(self, added=(name,), effects=self.effects.plus(name))
 
-    def without(self, dropped: Iterable[str]) -> Self:
+    def without(self, *dropped: str) -> Self:
         """Return the scene without these effects, or with their simpler forms."""
-        chosen = tuple(dropped)
-        gone = {*chosen, *(other for name in chosen for other in TOGETHER.get(name, ()))}
+        gone = {*dropped, *(other for name in dropped for other in TOGETHER.get(name, ()))}
         names = [SIMPLER.get(name, "") if name in gone else name for name in self.effects.names]
-        return replace(self, dropped=chosen, effects=self.effects.renamed([name for name in names if name]))
+        return replace(self, dropped=dropped, effects=self.effects.renamed([name for name in names if name]))
 
-
-#: What says how large a scene is, and what its change against the full one is told by.
-SIZES = ("unknowns", "degrees_of_freedom", "highest_frequency_Hz", "explicit_step_s")
-CHANGES = ("trajectory", "torque", "swing_frequency", "first_mode", "loss")
+    def row(self, full: "Scene") -> dict[str, Any]:
+        """Return the scene as columns of a table: what it is, how it ended, changes and the largest of them,
+        time, time_ratio (of the full scene over its own: above 1 it is faster) and size; NaN for none."""
+        return {
+            "scene": self.label,
+            "dropped": self.dropped,
+            "effects": self.effects.names,
+            "status": self.status,
+            "reason": self.reason,
+            **self.changes,
+            "largest": self.largest if math.isfinite(self.largest) else math.nan,
+            "time_ratio": full.wall_s / self.wall_s,
+            "wall_s": self.wall_s,
+            **(self.size or dict.fromkeys(SIZES, math.nan)),
+        }
 
 
 def size_of(design: Design, settings: SplineSettings) -> dict[str, float]:
@@ -171,34 +197,6 @@ def tried(ask: Callable[[], Given]) -> tuple[Given | None, str, str]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
-    """A scene held against the full one.
-
-    Attributes:
-        variant: the scene. status: "converged", "refused", "not_converged" or "unstable"; reason: in a line,
-            also why there was no motion.
-        changes: each of `CHANGES` [1], NaN where there is none; trajectory and torque are the largest along
-            the path, over the largest travel and torque.
-        size: of `size_of`; empty where the scene has no answer. wall_s: the median of its times [s].
-    """
-
-    variant: Variant
-    status: str = "converged"
-    reason: str = ""
-    changes: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(CHANGES, math.nan))
-    size: Mapping[str, float] = field(default_factory=dict)
-    wall_s: float = math.nan
-
-    @property
-    def largest(self) -> float:
-        """The largest change of all [1]; infinite where the scene has no whole answer."""
-        if self.status != "converged":
-            return math.inf
-        known = (abs(each) for each in self.changes.values() if not math.isnan(each))
-        return max(known, default=math.inf)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Run:
     """What all scenes of an audit are asked: a static path, then a motion; duration and step [s]."""
 
@@ -242,12 +240,12 @@ class Run:
             wall_s=answer.static_s + motion.wall_s,
         )
 
-    def outcome(self, variant: Variant, full: Answer) -> Outcome:
-        """Return how far a scene is from the full one's answer; one without keeps its reason."""
-        scene = variant.of(self.design)
-        found, status, reason = tried(lambda: (self.answer(scene, full), size_of(scene, self.settings)))
+    def asked(self, scene: Scene, full: Answer) -> Scene:
+        """Return a scene with how far it is from the full one's answer; one without keeps its reason."""
+        design = scene.of(self.design)
+        found, status, reason = tried(lambda: (self.answer(design, full), size_of(design, self.settings)))
         if found is None:
-            return Outcome(variant=variant, status=status, reason=reason)
+            return replace(scene, status=status, reason=reason)
         answer, size = found
         torque = float(np.abs(full.torque).max())
         change = float(np.abs(answer.torque - full.torque).max())
@@ -258,8 +256,8 @@ class Run:
             answer.mode / full.mode - 1.0,
             answer.loss - full.loss,
         )
-        return Outcome(
-            variant=variant,
+        return replace(
+            scene,
             status="not_converged" if answer.stopped else status,
             reason=answer.note,
             changes=dict(zip(CHANGES, changes, strict=True)),

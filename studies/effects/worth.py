@@ -33,8 +33,8 @@ def _audited(name: str) -> Answer:
     """Return the worth of a design's effects (a row a scene: changes, size, or why there is no answer), the
     times (of the full scene over the scene's) and the cheapest scene."""
     found = audit(_designs()[name], SETTINGS, TOLERANCE)
-    full, *rows = ({"design": name, **found.row(each)} for each in (found.full, *found.rows))
-    best = found.row(found.cheapest) | {"design": name, "tolerance": found.tolerance}
+    full, *rows = ({"design": name, **each.row(found.full)} for each in (found.full, *found.rows))
+    best = found.cheapest.row(found.full) | {"design": name, "tolerance": found.tolerance}
     best["effects"] = " ".join(best["effects"])
     return {
         "worth": pd.DataFrame([row | {"dropped": row["dropped"][0]} for row in rows])[list(WORTH)],

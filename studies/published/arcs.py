@@ -6,8 +6,8 @@ body along the force, as far as the displacement grows.
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from fe_reference.control import Control, equilibrate
 from fe_reference.model import Model
 from fe_reference.path import Path, follow
 from fe_reference.response import respond
-from fe_reference.structure import Structure, structure_of
+from fe_reference.structure import structure_of
 from studies.answers.models import put
 from studies.answers.settings import FeSettings, Settings, SplineSettings
 from studies.errors import BadInput
@@ -35,11 +35,10 @@ PART, STEPS = 0.1, 60
 
 
 class _Critical(NamedTuple):
-    """A critical point: "limit point" or "bifurcation", its load and the place (3,) of the reported body."""
+    """A critical point: "limit point" or "bifurcation", and its load."""
 
     kind: str
     load: float
-    place: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +63,6 @@ class Arc:
     status: str
     message: str
     resolution: str = ""
-    counters: Mapping[str, int] = field(default_factory=dict)
 
     def critical_load(self, kind: str, place: int = 0) -> float:
         """Return the load of a critical point of a kind, 0 the first, in the frame's unit; NaN if none."""
@@ -106,21 +104,21 @@ def _of_spline(frame: Frame, settings: SplineSettings, branch: str) -> Arc:
         raise BadInput(
             f"spline: measure: got {settings.measure}, expected one with a potential: stability has no other"
         )
-    at = path.system.layout.body(frame.body)
     return Arc(
         load=frame.load * path.load_factor,
         place=path.bodies[frame.body],
         energy=path.bending_energy + path.axial_energy,
         inertia=path.inertia,
-        critical=tuple(
-            _Critical(point.kind, frame.load * point.load_factor, point.z[at])
-            for point in path.critical_points
-        ),
+        critical=_critical(frame, path.critical_points),
         status=path.status.value,
         message=path.message,
         resolution=path.resolution,
-        counters=path.counters,
     )
+
+
+def _critical(frame: Frame, points: Iterable[Any]) -> tuple[_Critical, ...]:
+    """Return the critical points of a model's path by their loads."""
+    return tuple(_Critical(point.kind, frame.load * point.load_factor) for point in points)
 
 
 def _led(model: Model, frame: Frame) -> Control:
@@ -174,58 +172,33 @@ def _led_on(path: Path, load: Array) -> tuple[Path, Array]:
 
 def _of_elements(model: Model, frame: Frame, path: Path) -> Arc:
     """Return the states of a path, and those on from the limit of its load if that is what stopped it."""
-    structure = structure_of(model)
-    at, rest = structure.body_slice(model.body_index(frame.body)), np.array([*frame.rest, 0.0])
-    parameter = [state.parameter for state in path.states]
-    place = rest + np.array([state.y[at] for state in path.states])
-    critical = []
-    for point in path.critical:
-        where = np.array([np.interp(point.load_factor, parameter, axis) for axis in place.T])
-        critical.append(_Critical(point.kind, frame.load * point.load_factor, where))
-    arc = Arc(
-        load=frame.load * np.array(parameter),
-        place=place,
-        energy=_stored(structure, path),
-        inertia=np.array([state.inertia for state in path.states]),
-        critical=tuple(critical),
-        status=STOPPED if path.message else REACHED,
-        message=path.message or _told(critical),
-    )
-    snaps = path.message and critical and critical[-1].kind == LIMIT
-    return _beyond(arc, frame, path, structure, at) if snaps else arc
-
-
-def _beyond(arc: Arc, frame: Frame, path: Path, structure: Structure, at: slice) -> Arc:
-    """Return an arc with the states on from the limit of its load, as far as its body is led."""
-    assert path.control.load is not None
-    force, _ = structure.load_force(np.zeros(structure.size), path.control.load)
-    on, factors = _led_on(path, force)
-    if len(on.states) < 2:
-        return arc
-    load, slope = frame.load * factors
-    p, rates = [state.parameter for state in on.states], [state.rate[at] for state in on.states]
-    place = np.array([*frame.rest, 0.0]) + np.array([state.y[at] for state in on.states])
-    pulled, moved = CubicHermiteSpline(p, load, slope), CubicHermiteSpline(p, place, rates)
-    turns = pulled.derivative().roots(extrapolate=False)
-    limits = (_Critical(LIMIT, float(pulled(turn)), moved(turn)) for turn in turns)
-    critical, reached = (*arc.critical[:-1], *limits), bool(load[-1] >= frame.load)
-    unstable = [state.inertia for state in on.states] + (slope < 0.0)
+    structure, states, message = structure_of(model), list(path.states), path.message
+    load = frame.load * np.array([state.parameter for state in states])
+    inertia = np.array([state.inertia for state in states])
+    critical = _critical(frame, path.critical)
+    if message and critical and critical[-1].kind == LIMIT:
+        assert path.control.load is not None
+        on, factors = _led_on(path, structure.load_force(np.zeros(structure.size), path.control.load)[0])
+        if len(on.states) > 1:
+            further, slope = frame.load * factors
+            pulled = CubicHermiteSpline([state.parameter for state in on.states], further, slope)
+            turns = pulled.derivative().roots(extrapolate=False)
+            critical = (*critical[:-1], *(_Critical(LIMIT, float(pulled(turn))) for turn in turns))
+            reached = bool(further[-1] >= frame.load)
+            message = "" if reached else f"{frame.body} is led no further than load {further[-1]:.6g}"
+            unstable = [state.inertia for state in on.states] + (slope < 0.0)
+            states, load, inertia = (
+                [*states, *on.states],
+                np.append(load, further),
+                np.append(inertia, unstable),
+            )
+    at = structure.body_slice(model.body_index(frame.body))
     return Arc(
-        load=np.append(arc.load, load),
-        place=np.append(arc.place, place, axis=0),
-        energy=np.append(arc.energy, _stored(structure, on)),
-        inertia=np.append(arc.inertia, unstable),
+        load=load,
+        place=np.array([*frame.rest, 0.0]) + np.array([state.y[at] for state in states]),
+        energy=np.array([sum(structure.evaluate(state.y).strain) for state in states]),
+        inertia=inertia,
         critical=critical,
-        status=REACHED if reached else STOPPED,
-        message=_told(critical) if reached else f"{frame.body} is led no further than load {load[-1]:.6g}",
+        status=STOPPED if message else REACHED,
+        message=message or "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical),
     )
-
-
-def _stored(structure: Structure, path: Path) -> Array:
-    """Return the strain energy of the states of a path (S,)."""
-    return np.array([sum(structure.evaluate(state.y).strain) for state in path.states])
-
-
-def _told(critical: Iterable[_Critical]) -> str:
-    """Return the critical points in words."""
-    return "; ".join(f"{point.kind} at {point.load:.6g}" for point in critical)

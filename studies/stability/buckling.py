@@ -19,19 +19,8 @@ from studies.engine import Answer, Part
 from studies.published.arcs import BIFURCATION, LIMIT, Arc, arc_of
 from studies.published.case import Frame, published
 from studies.record.store import Digits
-from studies.stability.verdict import (
-    ARCS,
-    CHECK,
-    DEFAULT,
-    FE,
-    REFINED,
-    TOLERANCE,
-    TWELVE,
-    Found,
-    as_mechanism,
-    judged,
-    study,
-)
+from studies.stability import verdict
+from studies.stability.verdict import FE, TOLERANCE, TWELVE, Found, judged
 
 TOGGLE, LEE = "Williams' toggle", "Lee's frame"
 #: Of the column: L sqrt(EA / EI) [1], and the load beyond which it is asked for its critical one [EI/L^2].
@@ -119,7 +108,7 @@ def _pushed_pivot(depth: float) -> Frame:
         names=("bending", "stretching", "driven_displacement"),
         tables={"driven_displacement": {"displacement": (0.0, -depth)}},
     )
-    design = replace(as_mechanism(given, 0.0), rotation=None, effects=effects)
+    design = replace(verdict.as_mechanism(given, 0.0), rotation=None, effects=effects)
     return Frame(design=design, load=depth, body="body", tilt=TILT * depth / given.length)
 
 
@@ -128,7 +117,9 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
 
     It is settled by elements, or by the published value where they do not reach it.
     """
-    refined, check, independent = (case.value(case.arc(each)) for each in (REFINED, CHECK, INDEPENDENT))
+    refined, check, independent = (
+        case.value(case.arc(each)) for each in (verdict.REFINED, verdict.CHECK, INDEPENDENT)
+    )
     reference = refined if math.isnan(case.exact) else case.exact
     spread = max(_difference(check, refined), _difference(refined, reference))
     gap = _difference(case.published if math.isnan(independent) else independent, reference)
@@ -146,7 +137,7 @@ def _outcomes_of(case: _BucklingCase) -> Answer:
     rows = [
         {**place, "model": model, "load": case.frame.load, "found": math.nan, **known}
         | judged(partial(attempt, settings), TOLERANCE, model)
-        for model, settings in ARCS.items()
+        for model, settings in verdict.ARCS.items()
     ]
     reached = {"model": FE, "refinement": spread, "independent": gap, "settled": settled}
     return {"outcomes": rows, "references": {**place, **reached, **known}}
@@ -161,13 +152,13 @@ def _difference(found: float, reference: float) -> float:
 PRIMARY, OTHER = "primary", "other"
 BETWEEN = (3e-3, 7e-3, 1.5e-2)
 #: Models that follow them.
-PUSHED = (DEFAULT, TWELVE, FE)
+PUSHED = (TWELVE, FE)
 
 
 def _branch(depth: float, model: str, branch: str) -> Answer:
     """Return the last state of the pushed pivot on a branch; stable where it has no unstable direction."""
     frame = _pushed_pivot(depth)
-    arc = arc_of(frame, ARCS[model], follow_branch=branch == OTHER)
+    arc = arc_of(frame, verdict.ARCS[model], follow_branch=branch == OTHER)
     found = {
         "model": model,
         "branch": branch,
@@ -190,7 +181,7 @@ DIGITS: dict[str, Digits | None] = {
     "largest_right_error": Digits(relative=0.05),
 }
 
-STUDY = study(
+STUDY = verdict.study(
     Part(at=_cases, ask=_outcomes_of),
     Part(at=lambda: product(sorted({*DEPTHS, *BETWEEN}), PUSHED, (PRIMARY, OTHER)), ask=_branch),
     digits=DIGITS,

@@ -40,7 +40,7 @@ def few(monkeypatch):
     chosen = [
         each
         for each in settings.paths()
-        if each.model.name in models and each.theory == "material" and each.fineness <= 40.0
+        if each.model.name in models and each.theory == "material" and each.columns["fineness"] <= 40.0
     ]
     monkeypatch.setattr(settings, "paths", lambda: chosen)
 

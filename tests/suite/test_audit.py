@@ -68,9 +68,9 @@ def test_weight_that_makes_a_design_unstable_is_a_finding(monkeypatch):
     """The polymer pivot, which its weight would tip over, is audited without it, and a row says why."""
     monkeypatch.setattr(scenes, "SWINGS", 0.05)
     found = module.audit(named_design("polymer_pivot"), SplineSettings(control_points=6), 1e-3)
-    assert "gravity" not in found.full.variant.effects.names
+    assert "gravity" not in found.full.effects.names
     row = found.rows[-1]
-    assert (row.variant.label, row.status) == ("with gravity", "unstable")
+    assert (row.label, row.status) == ("with gravity", "unstable")
     assert row.reason == "the first natural frequency at rest is -1.017 Hz"
     assert row.largest == math.inf
 
