@@ -26,7 +26,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .arrays import Array, Flags, kernel
+from .arrays import Array, Flags
 from .matrix import Symmetric
 from .places import swept, turned
 from .structure import Structure
@@ -147,32 +147,6 @@ def couplings(structure: Structure, bodies: RigidBodies, held: Flags) -> Array:
         if x != y and first.any():
             rows.append([structure.nodes + k, x, mass, bodies.moment_of_inertia[k], *first, turn])
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
-
-
-@kernel()
-def couple(coupled: Array, u: Array, v: Array, out: Array) -> None:
-    """Write the forces that resist the coupled motions as if the mass were diagonal.
-
-    With the first moment (X, Y) in place and y free, m y'' + X t'' - Y t'^2 = -f and X y'' + J t'' = -g. With
-    x free, -Y stands for X and X for Y.
-
-    Args:
-        coupled: bodies that are led one way (K, 7), as of `couplings`.
-        u, v: displacements (rows, 3) [m, rad] and velocities (rows, 3) [m/s, rad/s].
-        out: resisting forces (rows, 3) [N, N m], changed.
-    """
-    for k in range(len(coupled)):
-        b, free, mass, inertia = int(coupled[k, 0]), int(coupled[k, 1]), coupled[k, 2], coupled[k, 3]
-        x, y = turned(u[b, 2], coupled[k, 4], coupled[k, 5])
-        cross, inward = (x, y) if free == 1 else (-y, x)
-        push, twist = inward * v[b, 2] ** 2 - out[b, free], -out[b, 2]
-        if coupled[k, 6] > 0.0:  # a led turn bears what the free motion exerts
-            out[b, free] = -push
-            out[b, 2] += cross * push / mass
-        else:
-            rest = mass * inertia - cross * cross
-            out[b, free] = -mass * (inertia * push - cross * twist) / rest
-            out[b, 2] = -inertia * (mass * twist - cross * push) / rest
 
 
 def carried_over(before: Structure, y: Array, after: Structure, v: Array | None = None) -> Array:

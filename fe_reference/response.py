@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from .actions import Tables
 from .arrays import Array, Flags, kernel
 from .control import Control, State, equilibrate
 from .law import Written
@@ -18,7 +19,7 @@ from .loads import between
 from .matrix import Singular, Symmetric
 from .model import Model
 from .places import turned
-from .structure import Evaluation, Structure, Tables, structure_of
+from .structure import Evaluation, Structure, structure_of
 
 Rates = tuple[float, float, float, float]
 
@@ -69,7 +70,7 @@ def _stiffness_between(
     exceeds EI. What is `left` to equilibrium (size,) takes the round-off of places out of the forces.
     """
     u, (v, w, rest) = structure.displacement(y), (structure.velocity(y, rate) for rate in (one, other, left))
-    written = (structure.work[0], at.ends, at.matrices, structure.work[1])
+    written = (structure.written[0], at.ends, at.matrices, structure.written[3])
     own = float(_between(structure.tables, u, v, w, rest, written))
     own += at.tangent.apart(one, other) + float(at.curvature[:, 1] @ (v[:, 2] * w[:, 2]))
     return own + between(structure.links, u, v, w) if len(structure.links[1]) else own
@@ -93,11 +94,8 @@ def _between(tables: Tables, u: Array, one: Array, other: Array, left: Array, wr
 
         c.H d + w (X c_y - Y c_x) + v (X d_y - Y d_x) + v w (X x + Y y)        [N m]
     """
-    ((_, table, first, _), (attached, carrier, offsets, _), _, _), (force, ends, matrices, _) = (
-        tables,
-        written,
-    )
-    total = 0.0
+    (_, table, first, _), (attached, carrier, offsets, _) = tables[0], tables[1]
+    (force, ends, matrices, _), total = written, 0.0
     force[:] = 0.0
     for e in range(len(first)):
         i, h = first[e], matrices[e]

@@ -36,14 +36,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from .actions import Actions, Instant, advance
+from .actions import advance
 from .arrays import Array, Flags
 from .errors import InvalidParameter
 from .law import MATERIAL, TANGENT
 from .loads import fastest
 from .mass import RigidBodies, lumped_elements
 from .matrix import Factors, Singular
-from .motion import Samples, Scheme
+from .motion import Instant, Samples, Scheme
 from .structure import Structure
 
 
@@ -63,17 +63,16 @@ def critical_step(structure: Structure, bodies: RigidBodies, y: Array, coupled: 
     Dampers reduce the step: with c the sum of the highest ratios of damping to mass of strips and bodies,
     h = 4 / (c + sqrt(c^2 + 4 w^2)); without them it is 2 / w.
     """
-    actions, links = Actions(structure), structure.links
-    mass, inertia = bodies.rows(structure)
+    links, (mass, inertia) = structure.links, bodies.rows(structure)
     square = _highest(structure, inertia, y, TANGENT)
     square += float(np.max(structure.evaluate(y).curvature[:, 0] / inertia, initial=0.0))
     square += structure.loads.steepest(inertia)
     square += fastest(links, links[3], mass, inertia)
     for _, _, own, turning, *first, turn in () if coupled is None else coupled:
         square /= 1.0 if turn else 1.0 - np.hypot(*first) / np.sqrt(own * turning)
-    decay = actions.drag_rate + fastest(links, links[4], mass, inertia)
-    if len(actions.dissipative[0]):
-        decay += float(actions.dissipative[0][0]) * _highest(structure, inertia, y, MATERIAL)
+    decay = structure.drag + fastest(links, links[4], mass, inertia)
+    if structure.relaxation:
+        decay += structure.relaxation * _highest(structure, inertia, y, MATERIAL)
     return float(4.0 / (decay + np.sqrt(decay**2 + 4.0 * square)))
 
 
@@ -116,13 +115,14 @@ class Explicit(Scheme):
 
     def go(self, now: Instant, h: float, steps: int, samples: Samples) -> Instant:
         """Return the instant after steps of h [s]."""
-        s, actions, totals = self.structure, self.actions, np.zeros(2)
+        s, totals = self.structure, np.zeros(2)
         late = now.v - 0.5 * h * now.a  # half a step before
         state = s.displacement(now.y), s.velocity(now.y, late)
-        drives = actions.coupled, s.coordinates[self.held]
-        advance(actions.acting, *drives, s.spread(self.inverse), state, totals, now.time, h, steps)
+        acting = s.tables, s.written, s.curvature, s.loads.histories
+        drives = self.coupled, s.coordinates[self.held], s.spread(self.inverse)
+        advance(*acting, *drives, state, totals, now.time, h, steps)
         y, late = (s.gathered(moved) for moved in state)
-        after = actions.resist(y, late, now.time + steps * h)
+        after = self.resist(y, late, now.time + steps * h)
         a = -self.inverse * after.force
         v = late + 0.5 * h * a
         # what the loop gathered is brought from mid-step to the sample
@@ -234,7 +234,7 @@ class Implicit(Scheme):
         a, norms = now.a, [np.inf]
         for _ in range(ITERATIONS):
             y, v = coasting + reach * a, drifting + GAMMA * h * a
-            after = replace(self.actions.resist(y, v, time), a=a)
+            after = replace(self.resist(y, v, time), a=a)
             residual = (1.0 - AM) * mass * a + (1.0 - AF) * after.force + held
             residual[self.held] = 0.0
             norms.append(float(np.abs(residual / scale).max()))
@@ -264,8 +264,8 @@ class Implicit(Scheme):
         modified one.
         """
         tangent = self.structure.evaluate(y, load=self.structure.loads.factors(time)).tangent
-        if self.actions.damped:
-            tangent.data += GAMMA / (BETA * h) * self.actions.damping_matrix(y).data
+        if self.structure.damped:
+            tangent.data += GAMMA / (BETA * h) * self.structure.damping_matrix(y).data
         tangent.data *= 1.0 - AF
         tangent.left *= 1.0 - AF
         tangent.data[tangent.pattern.diagonal] += (1.0 - AM) / (BETA * h**2) * self.mass
