@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array, Indices, kernel
-from .effects import BodyDamping, Load, Spring, StripDamping, TipForce
+from .effects import BodyDamping, Load, Spring, StripDamping
 from .errors import History
 from .matrix import Symmetric
 from .model import Model
@@ -123,7 +123,7 @@ class Loads:
         """Return those of a model whose bodies are reduced about `points` (B, 2) [m]."""
         rows, table, histories = [], [], list[History]()
         for load in model.effects.every(Load):
-            if isinstance(load, TipForce):
+            if load.strip is not None:
                 row, offset = (model.strip_index(load.strip) + 1) * model.arcs.shape[1] - 1, np.zeros(2)
             else:
                 k = model.body_index(load.body)
